@@ -1,0 +1,2 @@
+//! Project tasks: serve, build, test, bench.
+fn main() {}
