@@ -1,0 +1,46 @@
+import { existsSync } from 'node:fs';
+import { defineConfig } from '@playwright/test';
+
+// The browser tests run against the built site (`dist/`), once at the root of a host and once in a folder of one. The
+// Chromium is CHROMIUM_PATH, else the system's, else Playwright's own.
+const system = process.env.CHROMIUM_PATH ?? '/usr/bin/chromium';
+const executablePath = existsSync(system) ? system : undefined;
+
+const quiet = [
+  '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+];
+// Software WebGPU and WebGL2; with fewer flags the graphics process fails on presenting while the API reports success.
+const webgpu = [
+  '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--use-vulkan=swiftshader', '--enable-features=Vulkan',
+  '--use-angle=swiftshader', '--ignore-gpu-blocklist',
+];
+const port = Number(process.env.MARCHING_PARTICLES_TEST_PORT ?? 4517);
+
+/** @param {string[]} args */
+const chromium = (args) => ({
+  browserName: /** @type {const} */ ('chromium'),
+  launchOptions: { executablePath, args: [...quiet, ...args] },
+});
+
+export default defineConfig({
+  testDir: 'tests',
+  testMatch: '**/*.spec.js',
+  outputDir: 'test-results',
+  forbidOnly: !!process.env.CI,
+  // Software rendering is slow and the machines are small: generous limits, one page at a time.
+  timeout: 60_000,
+  expect: { timeout: 20_000 },
+  workers: 1,
+  reporter: [['list']],
+  use: { viewport: { width: 480, height: 360 }, baseURL: `http://localhost:${port}/`, serviceWorkers: 'block' },
+  webServer: {
+    command: `node tests/server.js ${port}`,
+    url: `http://localhost:${port}/`,
+    reuseExistingServer: !process.env.CI,
+  },
+  projects: [
+    { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d}.spec.js' },
+    { name: 'webgpu', use: chromium(webgpu), testMatch: '**/*.webgpu.spec.js' },
+    { name: 'canvas2d', use: chromium(['--disable-3d-apis']), testMatch: '**/*.canvas2d.spec.js' },
+  ],
+});

@@ -1,0 +1,316 @@
+/**
+ * Types of the engine: what the core describes, what the engine's signals carry, what its commands take.
+ *
+ * Only JSDoc lives here; import a type with `@typedef {import('./types.js').State} State`. Lengths are in the field's own
+ * coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says otherwise.
+ *
+ * @module
+ */
+
+/**
+ * @template T
+ * @typedef {import('@preact/signals-core').Signal<T>} Signal
+ */
+/**
+ * @template T
+ * @typedef {import('@preact/signals-core').ReadonlySignal<T>} ReadonlySignal
+ */
+
+/** @typedef {[number, number, number]} Vec3 */
+/** @typedef {{min: Vec3, max: Vec3}} Bounds */
+/** @typedef {{name: string, label: string, value: number, min: number, max: number, step: number}} Parameter */
+
+// ---- what the core describes ------------------------------------------------------------------------------------------
+
+/**
+ * One entry of the gallery.
+ * @typedef {object} SurfaceInfo
+ * @property {string} id
+ * @property {string} name
+ * @property {string} formula
+ * @property {Parameter[]} parameters
+ * @property {Bounds} bounds
+ * @property {number | null} degree
+ * @property {number | null} genus
+ * @property {string} story
+ * @property {string} mathml
+ */
+/**
+ * One setting of the sampler; the interface builds its control from this.
+ * @typedef {object} SettingInfo
+ * @property {string} name
+ * @property {string} label
+ * @property {string} group
+ * @property {'number' | 'integer' | 'choice'} kind
+ * @property {number | string} default
+ * @property {number} min
+ * @property {number} max
+ * @property {number} step
+ * @property {'linear' | 'log'} scale
+ * @property {string} unit
+ * @property {{value: string, label: string}[]} [choices]
+ * @property {string} help
+ * @property {{name: string, value: number | string}} [when]  shown only while that other setting has that value
+ */
+/**
+ * One row of the report. `key` is a path into {@link Report}, for example `quality.six`.
+ * @typedef {object} ReportRow
+ * @property {string} key
+ * @property {string} label
+ * @property {string} group
+ * @property {string} unit
+ * @property {number} digits
+ * @property {string} ideal
+ * @property {'higher' | 'lower' | null} better
+ * @property {string} help
+ */
+/**
+ * Everything the interface is generated from.
+ * @typedef {object} Description
+ * @property {string} version
+ * @property {string} default_surface
+ * @property {SurfaceInfo[]} surfaces
+ * @property {SettingInfo[]} settings
+ * @property {ReportRow[]} report
+ * @property {{name: string, label: string, help: string}[]} fates
+ * @property {{name: string, signature: string, help: string}[]} functions
+ * @property {{id: string, label: string, help: string, unit: string}[]} colours
+ */
+
+/**
+ * @typedef {object} FieldRequest
+ * @property {string} [surface]
+ * @property {string} [formula]
+ * @property {Record<string, number>} [parameters]
+ * @property {Parameter[]} [declare]
+ * @property {Bounds} [bounds]
+ */
+/**
+ * @typedef {object} FieldOk
+ * @property {true} ok
+ * @property {string | null} surface  null once the formula is no longer the gallery's
+ * @property {string} formula
+ * @property {Parameter[]} parameters
+ * @property {string[]} auto  parameters that became sliders by themselves
+ * @property {Bounds} bounds
+ * @property {string} mathml
+ */
+/**
+ * Offsets are UTF-16 code units into the formula, as a textarea's selection uses them.
+ * @typedef {object} FieldFault
+ * @property {string} kind
+ * @property {string} message
+ * @property {number} start
+ * @property {number} end
+ * @property {string | null} suggestion
+ * @property {string[]} names  names that could become sliders
+ */
+/** @typedef {{ok: false, error: FieldFault, mathml?: string}} FieldError */
+/** @typedef {FieldOk | FieldError} FieldAnswer */
+
+/** @typedef {Record<string, number | string>} Settings  by the settings' names; a missing one has its default */
+/** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'relaxation' | 'done'} CorePhase */
+/** @typedef {null | 'complete' | 'cancelled' | 'cap' | 'no_surface' | 'constant' | 'undefined' | 'one_particle'} StopReason */
+
+/**
+ * What one step of the core answers.
+ * @typedef {object} CoreProgress
+ * @property {CorePhase} phase
+ * @property {number} particles
+ * @property {number} level
+ * @property {number} relax_step
+ * @property {number} relax_steps
+ * @property {number} evaluations
+ * @property {number} fraction  0 … 1
+ * @property {StopReason} stop_reason
+ * @property {string | null} message
+ * @property {number} radius
+ * @property {boolean} moved  columns of existing particles changed since the last step
+ */
+/**
+ * Where the present run stands, as the page shows it. `phase` knows one more value than the core: the quality figures are
+ * being worked out.
+ * @typedef {Omit<CoreProgress, 'phase'> & {phase: CorePhase | 'quality', run: number, live: boolean}} Progress
+ */
+
+/**
+ * @typedef {object} Quality
+ * @property {number} d_hex
+ * @property {number} area
+ * @property {number} err_max
+ * @property {number} err_mean
+ * @property {number} nn_min
+ * @property {number} nn_mean
+ * @property {number} nn_cv
+ * @property {number} nn_ratio
+ * @property {number} rho
+ * @property {number} rho_1
+ * @property {number} cover
+ * @property {number} quant
+ * @property {number} six
+ * @property {number} five_seven
+ * @property {number} val_sd
+ * @property {number} open
+ * @property {number} psi6
+ * @property {number} tri_ok
+ * @property {number} agree
+ * @property {number} euler
+ * @property {number} components
+ * @property {number} ang_min
+ * @property {number} ang_min_mean
+ * @property {number} lt30
+ * @property {number} gt90
+ * @property {number} edge_cv
+ * @property {number} boundary_excluded
+ */
+/** @typedef {{seeding: number, generation: number, relaxation: number, quality: number}} Seconds */
+/**
+ * The figures of a finished run. `seconds` is measured in the worker; everything else is the core's.
+ * @typedef {object} Report
+ * @property {number} count
+ * @property {number} levels
+ * @property {number} components_seeded
+ * @property {number} radius
+ * @property {number} evaluations
+ * @property {number} evaluations_per_particle
+ * @property {{added: number, matched: number, not_converged: number, outside: number, undefined: number, capped: number}} fates
+ * @property {Exclude<StopReason, null>} stop_reason
+ * @property {string[]} warnings
+ * @property {number[]} level_counts
+ * @property {number[]} energy
+ * @property {string} digest
+ * @property {Quality | null} quality
+ * @property {Quality | null} quality_before  after the front, before relaxation
+ * @property {{min: number, max: number, bins: number[]}} nearest_histogram
+ * @property {Seconds} seconds
+ */
+
+// ---- the shareable state ----------------------------------------------------------------------------------------------
+
+/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'normal' | 'plain'} ColourMode */
+/**
+ * Where the eye is: on a sphere around `target`, z up. With `fit` the engine chooses target and distance itself and
+ * follows the surface; any zoom or pan by hand ends that, the fit command starts it again.
+ * @typedef {{target: Vec3, distance: number, yaw: number, pitch: number, fit: boolean}} CameraState
+ */
+/**
+ * @typedef {object} ViewState
+ * @property {ColourMode} colour
+ * @property {number} size  disc radius as a share of the repulsion radius, 0.2 … 1.5; 0.92 by default
+ * @property {'auto' | 'light' | 'dark'} theme
+ * @property {boolean} box  draw the clip box
+ * @property {CameraState} camera
+ */
+/**
+ * The whole shareable state, plain JSON. `surface` is the gallery entry started from, `formula` the text in the editor
+ * (the gallery's own until it is edited), `parameters` and `settings` hold only what differs from the defaults.
+ * @typedef {object} State
+ * @property {1} v
+ * @property {string} surface
+ * @property {string} formula
+ * @property {Record<string, number>} parameters
+ * @property {Parameter[]} declared
+ * @property {Bounds | null} bounds  null: the surface's own box
+ * @property {Settings} settings
+ * @property {ViewState} view
+ */
+
+// ---- what the engine tells --------------------------------------------------------------------------------------------
+
+/** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
+/**
+ * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `cap`, …);
+ * a later notice of the same cause replaces it. `details` is a report worth copying.
+ * @typedef {object} Notice
+ * @property {string} id
+ * @property {'info' | 'warn' | 'error'} kind
+ * @property {string} text
+ * @property {string} [details]
+ * @property {{label: string, run: () => void}} [action]
+ */
+/**
+ * The particle under the pointer, or tapped. x and y are CSS pixels inside the canvas host; `residual` and `nearest` are
+ * null until the report of the run is there, `valence` likewise.
+ * @typedef {object} Hover
+ * @property {number} index
+ * @property {number} level
+ * @property {number | null} parent  null for a seed
+ * @property {Vec3} position
+ * @property {Vec3} normal
+ * @property {number} radius
+ * @property {number | null} residual
+ * @property {number | null} valence
+ * @property {number | null} nearest
+ * @property {number} x
+ * @property {number} y
+ */
+/** @typedef {{label: string, colour: string, count?: number}} LegendEntry  colour is `#rrggbb` */
+/**
+ * What the colours mean. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to `range[1]`.
+ * `entries` name categories. `pending` says that the figures behind the colours are still being worked out.
+ * @typedef {object} Legend
+ * @property {string} title
+ * @property {string} unit
+ * @property {'cyclic' | 'categories' | 'sequential' | 'plain' | 'normal'} kind
+ * @property {LegendEntry[]} [entries]
+ * @property {[number, number]} [range]
+ * @property {number} [mark]  a value on the ramp worth a tick (the ideal distance 2r)
+ * @property {string[]} colours
+ * @property {boolean} [pending]
+ */
+/** @typedef {{total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing */
+/**
+ * How the last slider drag went: runs asked for and shown, the median time from the request to the picture.
+ * @typedef {{requested: number, shown: number, latency_ms: number, particles: number, coarse: boolean}} LastDrag
+ */
+
+/**
+ * @typedef {object} EngineSignals
+ * @property {ReadonlySignal<State>} state
+ * @property {ReadonlySignal<Description | null>} description  null until the core has arrived
+ * @property {ReadonlySignal<FieldOk | null>} field  the last good field
+ * @property {ReadonlySignal<FieldFault | null>} fieldError  what is wrong with the formula as it stands
+ * @property {ReadonlySignal<string | null>} fieldPreview  MathML of the formula as it stands, as far as it could be read
+ * @property {ReadonlySignal<Progress>} progress
+ * @property {ReadonlySignal<Report | null>} report  null while stale
+ * @property {ReadonlySignal<Timing | null>} timing
+ * @property {ReadonlySignal<BackendName>} backend
+ * @property {ReadonlySignal<string>} adapter  the graphics adapter in words, may be empty
+ * @property {ReadonlySignal<Notice | null>} notice
+ * @property {ReadonlySignal<Hover | null>} hover
+ * @property {ReadonlySignal<Legend | null>} legend
+ * @property {ReadonlySignal<boolean>} busy
+ * @property {ReadonlySignal<boolean>} partial  the picture is a run that was stopped or capped
+ * @property {ReadonlySignal<boolean>} empty  the last run found no surface
+ * @property {ReadonlySignal<LastDrag | null>} lastDrag
+ * @property {ReadonlySignal<'light' | 'dark'>} theme  the theme in force, after `auto` is resolved
+ */
+/**
+ * @typedef {object} EngineCommands
+ * @property {(id: string) => void} setSurface
+ * @property {(text: string) => void} setFormula
+ * @property {(name: string, value: number, options?: {live?: boolean}) => void} setParameter  `live` while it is dragged; call once more without it at rest
+ * @property {(name: string) => void} resetParameter  back to the value of the gallery or of the declaration
+ * @property {(name: string) => void} declareParameter  makes an unknown name of the formula a slider
+ * @property {(bounds: Bounds | null, options?: {live?: boolean}) => void} setBounds
+ * @property {(name: string, value: number | string, options?: {live?: boolean}) => void} setSetting
+ * @property {(name: string) => void} resetSetting
+ * @property {() => void} run  samples from the start; while a run of the same input is under way it does nothing
+ * @property {() => void} stop  keeps the partial result, labelled
+ * @property {() => void} generateOnly  a run without relaxation
+ * @property {(steps: number) => void} relax  relaxes the present particles that many steps more
+ * @property {(patch: Partial<ViewState>) => void} setView
+ * @property {() => void} fit
+ * @property {(factor: number) => void} zoom  > 1 comes nearer
+ * @property {(dx_rad: number, dy_rad: number) => void} orbit
+ * @property {() => Promise<string>} shareUrl
+ * @property {(hash: string) => Promise<void>} loadUrl
+ * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
+ * @property {(format: 'ply' | 'csv') => Promise<Blob>} exportFile
+ * @property {() => void} dismissNotice
+ * @property {(x: number, y: number) => number | null} pick  index of the particle under a point of the canvas host
+ * @property {() => void} destroy
+ */
+/** @typedef {EngineSignals & EngineCommands} Engine */
+
+export {};

@@ -1,0 +1,31 @@
+/**
+ * Serves the built site for the browser tests: `dist/` at `/` and again at `/sub/path/`, as a plain static host would.
+ *
+ * Usage: node tests/server.js [port]
+ */
+import { createReadStream, existsSync, statSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { extname, join, normalize } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const root = fileURLToPath(new URL('../../dist/', import.meta.url));
+const port = Number(process.argv[2] ?? 4517);
+
+/** @type {Record<string, string>} */
+const types = {
+  '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.svg': 'image/svg+xml',
+  '.png': 'image/png', '.webp': 'image/webp', '.avif': 'image/avif', '.json': 'application/json', '.woff2': 'font/woff2', '.txt': 'text/plain',
+  '.webmanifest': 'application/manifest+json',
+};
+
+createServer((request, response) => {
+  const { pathname } = new URL(request.url ?? '/', 'http://localhost');
+  const inside = pathname.startsWith('/sub/path/') ? pathname.slice('/sub/path'.length) : pathname;
+  let file = join(root, normalize(decodeURIComponent(inside)));
+  if (!file.startsWith(root)) return response.writeHead(403).end();
+  if (existsSync(file) && statSync(file).isDirectory()) file = join(file, 'index.html');
+  if (!existsSync(file)) return response.writeHead(404, { 'content-type': 'text/plain' }).end('not found');
+  response.writeHead(200, { 'content-type': types[extname(file)] ?? 'application/octet-stream', 'cache-control': 'no-store' });
+  createReadStream(file).pipe(response);
+  return undefined;
+}).listen(port, 'localhost');
