@@ -1,0 +1,281 @@
+//! The three WebAssembly bundles: the core, and the renderer for WebGPU and for WebGL2.
+//!
+//! One bundle is: cargo (release, SIMD) → wasm-bindgen → wasm-opt → `www/src/wasm/NAME/`. A bundle is skipped when a
+//! hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding and
+//! optimising are skipped as well.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+use serde_json::{Value, json};
+
+use crate::fingerprint::{Fingerprint, files_under, sha256_of};
+use crate::node;
+use crate::project::{Project, cargo};
+use crate::step;
+use crate::wasm_target::WasmTarget;
+
+/// One of the bundles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Bundle {
+    /// The sampler, which runs in a worker.
+    Core,
+    /// The renderer on WebGPU.
+    Webgpu,
+    /// The renderer on WebGL2.
+    Webgl,
+}
+
+impl Bundle {
+    /// All of them, the one that everything needs first.
+    pub(crate) const ALL: [Self; 3] = [Self::Core, Self::Webgpu, Self::Webgl];
+
+    /// The folder under `www/src/wasm`.
+    pub(crate) fn folder(self) -> &'static str {
+        match self {
+            Self::Core => "core",
+            Self::Webgpu => "render-webgpu",
+            Self::Webgl => "render-webgl",
+        }
+    }
+
+    /// The stem of the bundle's files.
+    pub(crate) fn out_name(self) -> &'static str {
+        match self {
+            Self::Core => "core",
+            Self::Webgpu | Self::Webgl => "render",
+        }
+    }
+
+    /// The class that JavaScript gets from the bundle.
+    fn class(self) -> &'static str {
+        match self {
+            Self::Core => "Core",
+            Self::Webgpu | Self::Webgl => "Renderer",
+        }
+    }
+
+    /// The features that cargo builds it with.
+    pub(crate) fn features(self) -> &'static str {
+        match self {
+            Self::Core => "",
+            Self::Webgpu => "webgpu",
+            Self::Webgl => "webgl",
+        }
+    }
+
+    /// The core is built for speed. The renderers' work is on the GPU; what counts there is the time to load them.
+    fn opt_level(self) -> &'static str {
+        match self {
+            Self::Core => "3",
+            Self::Webgpu | Self::Webgl => "z",
+        }
+    }
+
+    fn wasm_opt(self) -> &'static [&'static str] {
+        match self {
+            Self::Core => &["-O3", "--strip-debug", "--strip-producers"],
+            Self::Webgpu | Self::Webgl => &["-Oz", "--strip-debug", "--strip-producers"],
+        }
+    }
+}
+
+/// Builds the bundles that are not up to date.
+pub(crate) fn build(project: &Project, bundles: &[Bundle]) -> Result<()> {
+    let target = WasmTarget::prepare(project)?;
+    let mut current = Vec::new();
+    for &bundle in bundles {
+        if !build_one(project, &target, bundle)? {
+            current.push(bundle.folder());
+        }
+    }
+    if !current.is_empty() {
+        println!("  up to date: {}", current.join(", "));
+    }
+    Ok(())
+}
+
+/// Builds a bundle; false if it was up to date.
+fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<bool> {
+    let name = bundle.folder();
+    let out_dir = project.www.join("src/wasm").join(name);
+    let stamp_file = project.scratch("stamps")?.join(format!("{name}.json"));
+    let stamp: Value =
+        fs::read(&stamp_file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
+    let inputs = inputs(project, target, bundle)?;
+    let intact = stamp["outputs"].as_object().is_some_and(|outputs| {
+        !outputs.is_empty()
+            && outputs
+                .iter()
+                .all(|(file, hash)| sha256_of(&out_dir.join(file)).is_ok_and(|have| hash == have.as_str()))
+    });
+    if intact && stamp["inputs"] == inputs.as_str() {
+        return Ok(false);
+    }
+    let module = compile(project, target, bundle)?;
+    let process =
+        Fingerprint::default().file(&module)?.text("process", &process_version(project, bundle)?).finish();
+    if !(intact && stamp["process"] == process.as_str()) {
+        let stage = project.scratch("stage")?.join(name);
+        if stage.exists() {
+            fs::remove_dir_all(&stage)?;
+        }
+        bind(project, bundle, &module, &stage)?;
+        optimise(project, bundle, &stage)?;
+        publish(&stage, &out_dir)?;
+    }
+    let mut outputs = serde_json::Map::new();
+    for file in files_under(&out_dir)? {
+        let relative = file.strip_prefix(&out_dir)?.to_string_lossy().into_owned();
+        outputs.insert(relative, Value::from(sha256_of(&file)?));
+    }
+    fs::write(
+        &stamp_file,
+        serde_json::to_vec_pretty(&json!({ "inputs": inputs, "process": process, "outputs": outputs }))?,
+    )?;
+    Ok(true)
+}
+
+/// A hash over everything that goes into a bundle.
+fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<String> {
+    let root = &project.root;
+    Ok(Fingerprint::default()
+        .text("compiler", &target.version)
+        .text("flags", &rust_flags(project).join(" "))
+        .text("opt-level", bundle.opt_level())
+        .text("features", bundle.features())
+        .text("process", &process_version(project, bundle)?)
+        .file(&root.join("Cargo.toml"))?
+        .file(&root.join("Cargo.lock"))?
+        .tree(&root.join("src"))?
+        .tree(&root.join("shaders"))?
+        .finish())
+}
+
+/// What identifies the steps after the compiler.
+fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
+    Ok(Fingerprint::default()
+        .file(&project.root.join("xtask/bindgen/Cargo.toml"))?
+        .file(&project.root.join("xtask/bindgen/src/main.rs"))?
+        .file(&project.www.join("node_modules/binaryen/package.json"))?
+        .text("wasm-opt", &bundle.wasm_opt().join(" "))
+        .finish())
+}
+
+/// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment does not change
+/// what is published; paths of this machine are kept out of the panic messages.
+pub(crate) fn rust_flags(project: &Project) -> Vec<String> {
+    let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
+    let cargo_home = std::env::var_os("CARGO_HOME")
+        .map(PathBuf::from)
+        .or_else(|| std::env::home_dir().map(|home| home.join(".cargo")));
+    if let Some(home) = cargo_home {
+        flags.push(format!("--remap-path-prefix={}=cargo", home.display()));
+    }
+    flags.push(format!("--remap-path-prefix={}=.", project.root.display()));
+    flags
+}
+
+/// Compiles the library for a bundle and returns the module.
+fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<PathBuf> {
+    let folder = project.target.join("wasm");
+    let mut command = target.cargo(project, "rustc");
+    command
+        // The crate type is stated because a library that is also built as an rlib gets no link-time optimisation.
+        .args(["--package", "marching-particles", "--lib", "--crate-type", "cdylib", "--release", "--locked"])
+        .args(["--no-default-features", "--features", bundle.features()])
+        .arg("--message-format=json-render-diagnostics")
+        .env("CARGO_TARGET_DIR", &folder)
+        .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
+        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project).join("\u{1f}"))
+        // Without this the three builds would write one file of the same name, and cargo would take one bundle's
+        // module for another's. With it the name carries a hash of the features and the profile.
+        .env("__CARGO_DEFAULT_LIB_METADATA", bundle.folder());
+    let messages = step::run(&format!("{}: compile", bundle.folder()), &mut command, "")?;
+    let module = messages
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .filter(|message| {
+            message["reason"] == "compiler-artifact" && message["target"]["name"] == "marching_particles"
+        })
+        .filter_map(|message| {
+            message["filenames"]
+                .as_array()?
+                .iter()
+                .find_map(|name| name.as_str().filter(|name| name.ends_with(".wasm")).map(PathBuf::from))
+        })
+        .next_back();
+    module.context("cargo named no wasm module among its results")
+}
+
+/// Writes the module and its JavaScript to `stage`.
+fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
+    let name = bundle.folder();
+    let mut tool = Command::new(cargo());
+    tool.current_dir(&project.root).args([
+        "build",
+        "--package",
+        "xtask-bindgen",
+        "--locked",
+        "--message-format=json-render-diagnostics",
+    ]);
+    let label = format!("{name}: the binding tool (compiled once, about half a minute)");
+    let messages = step::run(&label, &mut tool, "")?;
+    let executable = messages
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
+        .context("cargo named no executable for xtask-bindgen")?;
+    step::run(
+        &format!("{name}: bind"),
+        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()),
+        "",
+    )?;
+    let script = stage.join(format!("{}.js", bundle.out_name()));
+    let text = fs::read_to_string(&script).with_context(|| format!("could not read {}", script.display()))?;
+    if !text.contains(&format!("export class {} ", bundle.class())) {
+        bail!("{} exports no class `{}`: is it still in src/web/?", script.display(), bundle.class());
+    }
+    Ok(())
+}
+
+/// Optimises the bound module in place.
+fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
+    let tool = project.www.join("node_modules/binaryen/bin/wasm-opt");
+    if !tool.is_file() {
+        bail!(
+            "{} is missing: the package `binaryen` belongs to www/package.json",
+            project.relative(&tool).display()
+        );
+    }
+    let bound = stage.join(format!("{}_bg.wasm", bundle.out_name()));
+    let optimised = stage.join("optimised.wasm");
+    let mut command = Command::new(node::node()?);
+    command.arg(tool).arg(&bound).arg("-o").arg(&optimised).args(bundle.wasm_opt());
+    step::run(&format!("{}: optimise (wasm-opt)", bundle.folder()), &mut command, "")?;
+    fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
+}
+
+/// Moves the finished files to where the page takes them from. Each file is replaced at once, so that a running
+/// development server never reads half of one.
+fn publish(stage: &Path, out_dir: &Path) -> Result<()> {
+    fs::create_dir_all(out_dir).with_context(|| format!("could not create {}", out_dir.display()))?;
+    let fresh = files_under(stage)?;
+    for old in files_under(out_dir)? {
+        if !stage.join(old.strip_prefix(out_dir)?).is_file() {
+            fs::remove_file(&old)?;
+        }
+    }
+    for file in fresh {
+        let to = out_dir.join(file.strip_prefix(stage)?);
+        if let Some(parent) = to.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        let beside = to.with_extension("new");
+        fs::copy(&file, &beside).with_context(|| format!("could not write {}", beside.display()))?;
+        fs::rename(&beside, &to).with_context(|| format!("could not write {}", to.display()))?;
+    }
+    Ok(())
+}

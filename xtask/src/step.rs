@@ -1,0 +1,166 @@
+//! Running a command as a named step: what it does, how long it took, and on failure the command, its output and
+//! what to do.
+
+use std::io::{Read, Write as _};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, anyhow};
+
+static VERBOSE: AtomicBool = AtomicBool::new(false);
+
+/// Whether steps pass their commands' output through as it comes.
+pub(crate) fn set_verbose(verbose: bool) {
+    VERBOSE.store(verbose, Ordering::Relaxed);
+}
+
+/// A step that has been announced and not yet finished.
+pub(crate) struct Step {
+    label: String,
+    started: Instant,
+}
+
+impl Step {
+    /// Announces a step.
+    pub(crate) fn begin(label: &str) -> Self {
+        print!("  {label} … ");
+        if VERBOSE.load(Ordering::Relaxed) {
+            println!();
+        }
+        flush();
+        Self { label: label.to_owned(), started: Instant::now() }
+    }
+
+    /// Says that the step succeeded, with `note` beside its time.
+    pub(crate) fn done(self, note: &str) {
+        let gap = if note.is_empty() { "" } else { "  " };
+        let head =
+            if VERBOSE.load(Ordering::Relaxed) { format!("  {} … ", self.label) } else { String::new() };
+        println!("{head}ok {}{gap}{note}", seconds(self.started.elapsed()));
+    }
+
+    /// Says that the step failed.
+    pub(crate) fn failed(self) {
+        println!("FAILED {}", seconds(self.started.elapsed()));
+    }
+}
+
+/// Runs `work` as a step.
+pub(crate) fn task<T>(label: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    let step = Step::begin(label);
+    match work() {
+        Ok(value) => {
+            step.done("");
+            Ok(value)
+        }
+        Err(error) => {
+            step.failed();
+            Err(error)
+        }
+    }
+}
+
+/// Runs `command` as a step and returns what it wrote to its standard output. A failure carries the command line, all
+/// it wrote, and `advice`.
+pub(crate) fn run(label: &str, command: &mut Command, advice: &str) -> Result<String> {
+    let step = Step::begin(label);
+    match capture(command, advice) {
+        Ok(text) => {
+            step.done("");
+            Ok(text)
+        }
+        Err(error) => {
+            step.failed();
+            Err(error)
+        }
+    }
+}
+
+/// Runs `command` without announcing it. As [`run`] otherwise.
+pub(crate) fn capture(command: &mut Command, advice: &str) -> Result<String> {
+    let line = command_line(command);
+    let with_advice = |text: String| {
+        let gap = if advice.is_empty() { "" } else { "\n\n" };
+        anyhow!("{text}{gap}{advice}")
+    };
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| with_advice(format!("could not start `{line}`: {error}")))?;
+    let out = child.stdout.take().map(|pipe| std::thread::spawn(move || drain(pipe, false)));
+    let err = child.stderr.take().map(|pipe| std::thread::spawn(move || drain(pipe, true)));
+    let status = child.wait()?;
+    let join = |handle: Option<std::thread::JoinHandle<Vec<u8>>>| {
+        let bytes = handle.and_then(|handle| handle.join().ok()).unwrap_or_default();
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    let (out, err) = (join(out), join(err));
+    if status.success() {
+        return Ok(out);
+    }
+    let mut text = format!("`{line}` failed ({status})");
+    for part in [out.trim_end(), err.trim_end()] {
+        if !part.is_empty() {
+            text.push_str("\n\n");
+            text.push_str(part);
+        }
+    }
+    Err(with_advice(text))
+}
+
+/// Reads a pipe to its end; passes it on as it comes when verbose.
+fn drain(mut pipe: impl Read, is_error: bool) -> Vec<u8> {
+    let mut all = Vec::new();
+    let mut buffer = [0_u8; 8192];
+    loop {
+        match pipe.read(&mut buffer) {
+            Ok(0) | Err(_) => return all,
+            Ok(n) => {
+                all.extend_from_slice(&buffer[..n]);
+                if VERBOSE.load(Ordering::Relaxed) {
+                    // A closed terminal must not lose the output kept for the failure report.
+                    let _ = if is_error {
+                        std::io::stderr().write_all(&buffer[..n])
+                    } else {
+                        std::io::stdout().write_all(&buffer[..n])
+                    };
+                }
+            }
+        }
+    }
+}
+
+/// The command as one could type it, with the variables set for it and its folder.
+pub(crate) fn command_line(command: &Command) -> String {
+    let mut words = Vec::new();
+    for (key, value) in command.get_envs() {
+        let value = value.map(|value| value.to_string_lossy().replace('\u{1f}', " ")).unwrap_or_default();
+        words.push(format!("{}={}", key.to_string_lossy(), quoted(&value)));
+    }
+    words.push(quoted(&command.get_program().to_string_lossy()));
+    words.extend(command.get_args().map(|argument| quoted(&argument.to_string_lossy())));
+    let line = words.join(" ");
+    match command.get_current_dir() {
+        Some(folder) => format!("cd {} && {line}", quoted(&folder.display().to_string())),
+        None => line,
+    }
+}
+
+fn quoted(word: &str) -> String {
+    let plain =
+        !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric() || "-_=./:+,@%".contains(c));
+    if plain { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+/// A duration as a person reads it.
+pub(crate) fn seconds(duration: Duration) -> String {
+    format!("{:.1} s", duration.as_secs_f64())
+}
+
+/// Shows what was printed without a line end. A closed terminal is no reason to stop.
+fn flush() {
+    let _ = std::io::stdout().flush();
+}
