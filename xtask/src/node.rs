@@ -44,6 +44,18 @@ pub(crate) fn prepare(project: &Project) -> Result<()> {
     fs::write(&stamp, wanted).with_context(|| format!("could not write {}", stamp.display()))
 }
 
+/// Runs one of the page's npm scripts as a step.
+pub(crate) fn script(
+    project: &Project,
+    label: &str,
+    name: &str,
+    environment: &[(&str, &str)],
+) -> Result<String> {
+    let mut command = npm()?;
+    command.args(["run", "--silent", name]).current_dir(&project.www).envs(environment.iter().copied());
+    step::run(label, &mut command, &format!("To see it alone: cd www && npm run {name}"))
+}
+
 /// The Node executable.
 pub(crate) fn node() -> Result<PathBuf> {
     on_path("node").with_context(|| format!("`node` is not on the search path.\n\n{GET_NODE}"))

@@ -15,6 +15,8 @@ pub(crate) struct Project {
     pub(crate) target: PathBuf,
     /// The page: a Vite project.
     pub(crate) www: PathBuf,
+    /// The built static site.
+    pub(crate) dist: PathBuf,
 }
 
 impl Project {
@@ -34,7 +36,7 @@ impl Project {
         let metadata: serde_json::Value = serde_json::from_slice(&output.stdout)?;
         let target =
             metadata["target_directory"].as_str().context("cargo metadata names no target folder")?.into();
-        Ok(Self { www: root.join("www"), root, target })
+        Ok(Self { www: root.join("www"), dist: root.join("dist"), root, target })
     }
 
     /// A folder under the target folder for the tasks' own files, made if need be.

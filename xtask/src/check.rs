@@ -1,0 +1,196 @@
+//! The project's checks, which are also what runs in continuous integration.
+
+use std::process::Command;
+
+use anyhow::{Result, bail};
+
+use crate::bundle::{self, Bundle};
+use crate::chromium;
+use crate::node;
+use crate::project::{Project, cargo};
+use crate::site;
+use crate::step;
+use crate::wasm_target::WasmTarget;
+
+/// A part of the checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Part {
+    /// rustfmt.
+    Format,
+    /// Clippy on the native code, warnings denied.
+    Lint,
+    /// Clippy on the core and both renderers for wasm32, warnings denied.
+    LintWasm,
+    /// rustdoc, warnings denied.
+    Docs,
+    /// Unit, integration and documentation tests.
+    Native,
+    /// The shader tests alone (also part of `native`).
+    Shaders,
+    /// The core as WebAssembly, in Node, against the digests of the native core.
+    Parity,
+    /// The page: types and unit tests.
+    Page,
+    /// The built site in a browser, at / and in a sub-path.
+    Browser,
+}
+
+/// Everything, the quick checks first.
+const ALL: [Part; 8] = [
+    Part::Format,
+    Part::Lint,
+    Part::Native,
+    Part::Docs,
+    Part::LintWasm,
+    Part::Parity,
+    Part::Page,
+    Part::Browser,
+];
+
+/// Without WebAssembly and a browser.
+const FAST: [Part; 3] = [Part::Format, Part::Lint, Part::Native];
+
+/// Which checks to run.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Only format, lint and native.
+    #[arg(long, conflicts_with = "parts")]
+    fast: bool,
+    /// The parts to run; everything if none is named.
+    parts: Vec<Part>,
+}
+
+impl Options {
+    fn parts(&self) -> Vec<Part> {
+        if self.fast {
+            FAST.to_vec()
+        } else if self.parts.is_empty() {
+            ALL.to_vec()
+        } else {
+            self.parts.clone()
+        }
+    }
+}
+
+/// Runs the checks. Parts that fail do not keep the others from running; the first line of each failure is repeated at
+/// the end.
+pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
+    let parts = options.parts();
+    // What may be missing is looked for before the long builds start.
+    if parts.iter().any(|part| matches!(part, Part::Parity | Part::Page | Part::Browser)) {
+        node::prepare(project)?;
+    }
+    let chromium = if parts.contains(&Part::Browser) { Some(chromium::find(project)?) } else { None };
+    let mut failures = Vec::new();
+    for part in parts {
+        let result = match part {
+            Part::Format => format(project),
+            Part::Lint => lint(project),
+            Part::LintWasm => lint_wasm(project),
+            Part::Docs => docs(project),
+            Part::Native => native(project),
+            Part::Shaders => shaders(project),
+            Part::Parity => parity(project),
+            Part::Page => page(project),
+            Part::Browser => {
+                let path =
+                    chromium.as_deref().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
+                browser(project, &path)
+            }
+        };
+        if let Err(error) = result {
+            eprintln!("\nerror: {error:#}\n");
+            failures.push(format!("{part:?}").to_lowercase());
+        }
+    }
+    if !failures.is_empty() {
+        bail!("failed: {}", failures.join(", "));
+    }
+    println!("  all passed");
+    Ok(())
+}
+
+fn cargo_at_root(project: &Project, arguments: &[&str]) -> Command {
+    let mut command = Command::new(cargo());
+    command.current_dir(&project.root).args(arguments);
+    command
+}
+
+fn format(project: &Project) -> Result<()> {
+    let mut command = cargo_at_root(project, &["fmt", "--all", "--check"]);
+    step::run("format", &mut command, "`cargo fmt --all` puts it right.").map(drop)
+}
+
+fn lint(project: &Project) -> Result<()> {
+    let arguments =
+        ["clippy", "--workspace", "--all-targets", "--all-features", "--locked", "--", "--deny", "warnings"];
+    step::run("lint (native)", &mut cargo_at_root(project, &arguments), "").map(drop)
+}
+
+fn lint_wasm(project: &Project) -> Result<()> {
+    let target = WasmTarget::prepare(project)?;
+    for bundle in Bundle::ALL {
+        let mut command = target.cargo(project, "clippy");
+        command.args([
+            "--package",
+            "marching-particles",
+            "--lib",
+            "--no-default-features",
+            "--features",
+            bundle.features(),
+            "--locked",
+        ]);
+        command.args(["--", "--deny", "warnings"]);
+        step::run(&format!("lint (wasm32, {})", bundle.folder()), &mut command, "")?;
+    }
+    Ok(())
+}
+
+fn docs(project: &Project) -> Result<()> {
+    let mut command = cargo_at_root(
+        project,
+        &["doc", "--package", "marching-particles", "--no-deps", "--all-features", "--locked"],
+    );
+    command.env("RUSTDOCFLAGS", "--deny warnings");
+    step::run("documentation", &mut command, "").map(drop)
+}
+
+fn native(project: &Project) -> Result<()> {
+    let packages = [
+        "--package",
+        "marching-particles",
+        "--package",
+        "xtask",
+        "--features",
+        "marching-particles/cli",
+        "--locked",
+    ];
+    let mut build = cargo_at_root(project, &["test", "--no-run"]);
+    step::run("native tests: compile", build.args(packages), "")?;
+    let mut tests = cargo_at_root(project, &["test", "--no-fail-fast"]);
+    step::run("native tests", tests.args(packages), "").map(drop)
+}
+
+fn shaders(project: &Project) -> Result<()> {
+    step::run("shader tests", &mut cargo_at_root(project, &["test", "--locked", "--test", "shaders"]), "")
+        .map(drop)
+}
+
+fn parity(project: &Project) -> Result<()> {
+    bundle::build(project, &[Bundle::Core])?;
+    let mut command = Command::new(node::node()?);
+    command.current_dir(&project.root).arg("tests/wasm/parity.mjs");
+    step::run("the same digests in WebAssembly as natively", &mut command, "").map(drop)
+}
+
+fn page(project: &Project) -> Result<()> {
+    bundle::build(project, &Bundle::ALL)?;
+    node::script(project, "page: types", "check", &[])?;
+    node::script(project, "page: unit tests", "test", &[]).map(drop)
+}
+
+fn browser(project: &Project, chromium: &str) -> Result<()> {
+    site::build(project)?;
+    site::report_sizes(project)?;
+    node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", chromium)]).map(drop)
+}

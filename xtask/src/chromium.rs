@@ -1,0 +1,112 @@
+//! A Chromium for the browser tests and the browser bench.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Result, bail};
+
+use crate::node;
+use crate::project::{Project, on_path};
+use crate::step;
+
+/// Variables that name an executable, the one the page's tests read first.
+const VARIABLES: [&str; 2] = ["CHROMIUM_PATH", "CHROME"];
+
+/// Names under which systems install it.
+const NAMES: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
+
+/// Places that are on no search path.
+const PLACES: [&str; 3] = [
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    r"C:\Program Files\Google\Chrome\Application\chrome.exe",
+];
+
+/// Finds a Chromium that starts, or installs one: Playwright's own, else Debian's package when root.
+pub(crate) fn find(project: &Project) -> Result<PathBuf> {
+    for variable in VARIABLES {
+        if let Some(path) = env::var_os(variable).map(PathBuf::from) {
+            if starts(&path) {
+                return Ok(path);
+            }
+            bail!("{variable} is {}, which does not start", path.display());
+        }
+    }
+    if let Some(path) = installed(project) {
+        return Ok(path);
+    }
+    let mut attempts = Vec::new();
+    let mut playwright = Command::new(node::node()?);
+    playwright.current_dir(&project.www).args([
+        "node_modules/@playwright/test/cli.js",
+        "install",
+        "chromium",
+    ]);
+    attempt(&mut attempts, "Chromium (Playwright's download)", &mut playwright);
+    if let Some(path) = installed(project) {
+        return Ok(path);
+    }
+    if on_path("apt-get").is_some() && is_root() {
+        attempt(
+            &mut attempts,
+            "Debian's package index (apt-get update)",
+            Command::new("apt-get").arg("update"),
+        );
+        let mut install = Command::new("apt-get");
+        install
+            .args(["install", "--yes", "--no-install-recommends", "chromium"])
+            .env("DEBIAN_FRONTEND", "noninteractive");
+        attempt(&mut attempts, "Chromium (Debian's package)", &mut install);
+        if let Some(path) = installed(project) {
+            return Ok(path);
+        }
+    }
+    bail!(
+        "No Chromium was found, and none could be installed. Any one of these helps:\n\
+         \x20 apt-get install chromium                     (Debian, as root)\n\
+         \x20 cd www && npx playwright install chromium    (Playwright's own)\n\
+         \x20 CHROME=/path/to/chrome cargo xtask test      (one that is installed elsewhere)\n\
+         \x20 cargo xtask test --fast                      (the tests that need no browser)\n\n{}",
+        attempts.join("\n\n")
+    )
+}
+
+/// The first Chromium on this machine that starts.
+fn installed(project: &Project) -> Option<PathBuf> {
+    let named = NAMES.iter().filter_map(|name| on_path(name));
+    let placed = PLACES.iter().map(PathBuf::from).filter(|path| path.is_file());
+    named.chain(placed).chain(playwrights(project)).find(|path| starts(path))
+}
+
+/// Where Playwright would put its own.
+fn playwrights(project: &Project) -> Option<PathBuf> {
+    let ask = "import('@playwright/test').then(({ chromium }) => console.log(chromium.executablePath()))";
+    let mut command = Command::new(node::node().ok()?);
+    command.current_dir(&project.www).args(["--input-type=module", "--eval", ask]);
+    let path = PathBuf::from(step::capture(&mut command, "").ok()?.trim());
+    path.is_file().then_some(path)
+}
+
+/// Whether the executable starts: a download without the system libraries it needs does not.
+fn starts(path: &Path) -> bool {
+    // Chrome on Windows prints no version; that it is there has to do.
+    cfg!(windows) && path.is_file() || step::capture(Command::new(path).arg("--version"), "").is_ok()
+}
+
+fn attempt(failures: &mut Vec<String>, label: &str, command: &mut Command) {
+    if let Err(error) = step::run(label, command, "") {
+        failures.push(format!("{error:#}"));
+    }
+}
+
+/// Whether this process may install system packages.
+fn is_root() -> bool {
+    fs::read_to_string("/proc/self/status").is_ok_and(|status| {
+        status
+            .lines()
+            .find_map(|line| line.strip_prefix("Uid:"))
+            .is_some_and(|ids| ids.split_whitespace().nth(1) == Some("0"))
+    })
+}

@@ -1,0 +1,150 @@
+//! The static site, and the report on its size.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use crate::bundle::{self, Bundle};
+use crate::fingerprint::{files_under, sha256_of};
+use crate::node;
+use crate::project::Project;
+
+/// The largest gzip size of what the page shows before any WebAssembly: HTML, style sheets and scripts.
+const FIRST_PAINT_BUDGET_KB: f64 = 60.0;
+
+/// The largest gzip size of a bundle, its JavaScript included.
+fn budget_kb(bundle: Bundle) -> f64 {
+    match bundle {
+        Bundle::Core => 120.0,
+        Bundle::Webgpu => 90.0,
+        Bundle::Webgl => 850.0,
+    }
+}
+
+/// Builds the site into `dist/`.
+pub(crate) fn build(project: &Project) -> Result<()> {
+    node::prepare(project)?;
+    bundle::build(project, &Bundle::ALL)?;
+    node::script(project, "page: build (Vite)", "build", &[])?;
+    Ok(())
+}
+
+/// One line of the size report.
+struct Line {
+    name: String,
+    raw: usize,
+    gzip: usize,
+    budget_kb: Option<f64>,
+}
+
+/// Prints the sizes of what a visitor loads; an error if a part is over its budget.
+pub(crate) fn report_sizes(project: &Project) -> Result<()> {
+    let mut shipped = BTreeMap::new();
+    for file in files_under(&project.dist)? {
+        shipped.insert(sha256_of(&file)?, file);
+    }
+    let mut lines = Vec::new();
+    for bundle in Bundle::ALL {
+        let folder = project.www.join("src/wasm").join(bundle.folder());
+        let module = folder.join(format!("{}_bg.wasm", bundle.out_name()));
+        if !shipped.contains_key(&sha256_of(&module)?) {
+            bail!(
+                "{} is not in {}: the page does not load it",
+                project.relative(&module).display(),
+                project.dist.display()
+            );
+        }
+        let script = folder.join(format!("{}.js", bundle.out_name()));
+        lines.push(line(bundle.folder(), &[module, script], Some(budget_kb(bundle)))?);
+    }
+    let page = project.dist.join("index.html");
+    let html = fs::read_to_string(&page).with_context(|| format!("could not read {}", page.display()))?;
+    let mut first = vec![page];
+    first.extend(first_paint(&html).into_iter().map(|address| project.dist.join(address)));
+    lines.push(line("first paint", &first, Some(FIRST_PAINT_BUDGET_KB))?);
+    let everything: Vec<PathBuf> = shipped.into_values().collect();
+    lines.push(line("whole site", &everything, None)?);
+
+    println!("\n  {:<16}{:>12}{:>12}{:>12}", "", "raw kB", "gzip kB", "budget kB");
+    let mut over = Vec::new();
+    for line in &lines {
+        let gzip_kb = kilobytes(line.gzip);
+        let budget = line.budget_kb.map_or_else(|| "–".to_owned(), |budget| format!("{budget:.0}"));
+        let is_over = line.budget_kb.is_some_and(|budget| gzip_kb > budget);
+        let mark = if is_over { "  over budget" } else { "" };
+        println!("  {:<16}{:>12.1}{:>12.1}{:>12}{mark}", line.name, kilobytes(line.raw), gzip_kb, budget);
+        if is_over {
+            over.push(line.name.as_str());
+        }
+    }
+    if !over.is_empty() {
+        bail!("over budget: {}", over.join(", "));
+    }
+    Ok(())
+}
+
+/// A thousand bytes, as browsers count them.
+fn kilobytes(bytes: usize) -> f64 {
+    bytes as f64 / 1000.0
+}
+
+fn line(name: &str, files: &[PathBuf], budget_kb: Option<f64>) -> Result<Line> {
+    let mut raw = 0;
+    let mut gzip = 0;
+    for file in files {
+        let content = fs::read(file).with_context(|| format!("could not read {}", file.display()))?;
+        raw += content.len();
+        gzip += gzip_size(file, &content)?;
+    }
+    Ok(Line { name: name.to_owned(), raw, gzip, budget_kb })
+}
+
+fn gzip_size(file: &Path, content: &[u8]) -> Result<usize> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(content).with_context(|| format!("could not compress {}", file.display()))?;
+    Ok(encoder.finish()?.len())
+}
+
+/// The addresses of the scripts and style sheets that a page loads before it first paints: scripts, module preloads
+/// (Vite lists the static imports of the entry there) and style sheets.
+fn first_paint(html: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for tag in html.split('<').filter_map(|part| part.split_once('>')).map(|(tag, _)| tag) {
+        let address = if tag.starts_with("script") {
+            attribute(tag, "src")
+        } else if tag.starts_with("link")
+            && matches!(attribute(tag, "rel"), Some("stylesheet" | "modulepreload"))
+        {
+            attribute(tag, "href")
+        } else {
+            None
+        };
+        if let Some(address) = address {
+            found.push(address.trim_start_matches("./").to_owned());
+        }
+    }
+    found
+}
+
+/// The value of a quoted attribute of a tag.
+fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
+    let (_, rest) = tag.split_once(&format!(" {name}=\""))?;
+    rest.split_once('"').map(|(value, _)| value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_paint;
+
+    #[test]
+    fn first_paint_is_scripts_preloads_and_style_sheets() {
+        let html = r#"<head><link rel="icon" href="./icon.svg"><link rel="stylesheet" crossorigin href="./assets/a.css">
+            <link rel="modulepreload" crossorigin href="./assets/b.js"><script type="module" src="./assets/c.js"></script>"#;
+        assert_eq!(first_paint(html), ["assets/a.css", "assets/b.js", "assets/c.js"]);
+    }
+}
