@@ -67,6 +67,10 @@ impl WasmTarget {
         command.current_dir(&project.root).args([subcommand, "--target", TARGET]);
         if let Some(rustc) = &self.rustc {
             command.env("RUSTC", rustc);
+            // Clippy's driver looks for its sysroot here first, else beside itself.
+            if let Some(sysroot) = rustc.ancestors().nth(2) {
+                command.env("SYSROOT", sysroot);
+            }
         }
         if self.from_source {
             command.env("RUSTC_BOOTSTRAP", "1").arg("-Zbuild-std=std,panic_abort");
