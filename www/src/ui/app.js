@@ -1,0 +1,84 @@
+/** Puts the interface together over an engine. */
+import { effect } from '@preact/signals-core';
+import { byId, h } from './dom.js';
+import { mountField } from './field/panel.js';
+import { mountLayout } from './layout.js';
+import { mountReport } from './report/panel.js';
+import { mountSampling } from './sampling/panel.js';
+import { mountShortcuts } from './shortcuts.js';
+import { mountToasts } from './toasts.js';
+import { createLegend } from './view/legend.js';
+import { mountHover } from './view/hover.js';
+import { mountOverlay } from './view/overlay.js';
+import { createToolbar } from './view/toolbar.js';
+
+/** @typedef {import('../engine/types.js').Engine} Engine */
+
+/** @param {Engine} engine */
+export function mountInterface(engine) {
+  const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
+  const [field, sampling, report] = [byId('panel-field'), byId('panel-sampling'), byId('panel-report')];
+  const toast = mountToasts(byId('toasts'), engine);
+  const samplingTools = h('div', { class: 'sampling-tools' });
+  const head = (/** @type {HTMLElement} */ panel) => /** @type {HTMLElement} */ (panel.querySelector('.panel-head'));
+  const layout = mountLayout({
+    shell,
+    view,
+    panels: [
+      { id: 'field', title: 'Field', panel: field, head: head(field) },
+      { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools },
+      { id: 'report', title: 'Report', panel: report, head: head(report) },
+    ],
+    inset: (insets) => { /** @type {any} */ (engine).setInsets?.(insets); },
+  });
+  const shortcuts = mountShortcuts([
+    { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
+    { keys: ['Escape'], shown: 'Esc', label: 'Stop', act: () => { if (engine.busy.peek()) engine.stop(); } },
+    { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
+    { keys: ['e', 'E'], shown: 'E', label: 'Relax one step', act: () => { if (!engine.busy.peek()) engine.relax(1); } },
+    { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
+    { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
+    { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
+    { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
+    { keys: ['t', 'T'], shown: 'T', label: 'Light or dark', act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }) },
+    { keys: ['h', 'H'], shown: 'H', label: 'Hide or show the panels', act: () => layout.toggleHidden() },
+    { keys: ['?'], shown: '?', label: 'This sheet', act: () => shortcuts.open() },
+  ]);
+
+  effect(() => {
+    const { theme } = engine.state.value.view;
+    if (theme === 'auto') delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
+  });
+
+  mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start') });
+  mountHover(stage, engine);
+  layout.nav.append(goButton(engine));
+
+  let mounted = false;
+  effect(() => {
+    const description = engine.description.value;
+    if (!description || mounted) return;
+    mounted = true;
+    mountField(byId('field-body'), engine, description);
+    mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
+    mountReport(byId('report-body'), engine, description);
+    view.prepend(createLegend(engine, description), createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
+    shell.dataset.ready = '';
+  });
+}
+
+/** Run or stop, always in reach on a phone. @param {Engine} engine */
+function goButton(engine) {
+  const button = h('button', { type: 'button', class: 'button primary go', on: { click: () => (engine.busy.peek() ? engine.stop() : engine.run()) } });
+  effect(() => { button.textContent = engine.busy.value ? 'Stop' : 'Run'; });
+  return button;
+}
+
+/** @param {Engine} engine */
+function nextColouring(engine) {
+  const colours = engine.description.peek()?.colours ?? [];
+  const at = colours.findIndex(({ id }) => id === engine.state.peek().view.colour);
+  const next = colours[(at + 1) % Math.max(1, colours.length)];
+  if (next) engine.setView({ colour: /** @type {import('../engine/types.js').ColourMode} */ (next.id) });
+}

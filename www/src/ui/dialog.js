@@ -1,0 +1,30 @@
+/** A modal dialog with a title and a way out. */
+import { h, uniqueId } from './dom.js';
+import { icon } from './icons.js';
+
+/**
+ * @param {string} title
+ * @param {...import('./dom.js').Child} content
+ */
+export function createDialog(title, ...content) {
+  const id = uniqueId('dialog');
+  const element = h(
+    'dialog',
+    { class: 'dialog', 'aria-labelledby': id },
+    h(
+      'div',
+      { class: 'dialog-head' },
+      h('h2', { id }, title),
+      h('button', { type: 'button', class: 'button plain square', 'aria-label': 'Close', on: { click: () => element.close() } }, icon('close')),
+    ),
+    content,
+  );
+  // A press on the backdrop closes it.
+  element.addEventListener('click', (event) => { if (event.target === element) element.close(); });
+  document.body.append(element);
+  return {
+    element,
+    open: () => { if (!element.open) element.showModal(); },
+    close: () => element.close(),
+  };
+}

@@ -1,0 +1,97 @@
+/**
+ * Explanations: one shared popover that says what a figure or a control means, on hover, on keyboard focus and on tap.
+ * It can be dismissed with Escape and stays while the pointer is on it (WCAG 1.4.13).
+ */
+import { fill, h, usesKeyboard } from './dom.js';
+import { clamp } from './scale.js';
+
+/** @typedef {{ title?: string, text: string, ideal?: string }} Explanation */
+
+const HOVER_DELAY_MS = 350;
+const LEAVE_DELAY_MS = 120;
+const MARGIN_PX = 8;
+
+/** @type {HTMLDivElement | null} */
+let popover = null;
+/** @type {Element | null} */
+let owner = null;
+let timer = 0;
+
+function ensure() {
+  if (popover) return popover;
+  const made = h('div', { class: 'explain', id: 'explain', role: 'tooltip', popover: 'manual' });
+  made.addEventListener('pointerenter', () => clearTimeout(timer));
+  made.addEventListener('pointerleave', () => later(hide, LEAVE_DELAY_MS));
+  document.body.append(made);
+  addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && owner) {
+      hide();
+      event.stopPropagation();
+    }
+  }, true);
+  addEventListener('scroll', hide, { capture: true, passive: true });
+  addEventListener('resize', hide);
+  popover = made;
+  return made;
+}
+
+/** @param {() => void} act @param {number} delay_ms */
+function later(act, delay_ms) {
+  clearTimeout(timer);
+  timer = window.setTimeout(act, delay_ms);
+}
+
+function hide() {
+  clearTimeout(timer);
+  if (owner?.getAttribute('aria-describedby') === 'explain') owner.removeAttribute('aria-describedby');
+  owner = null;
+  if (popover?.matches(':popover-open')) popover.hidePopover();
+}
+
+/** @param {Element} anchor @param {Explanation} explanation */
+function show(anchor, explanation) {
+  clearTimeout(timer);
+  const element = ensure();
+  if (owner !== anchor) hide();
+  owner = anchor;
+  fill(
+    element,
+    explanation.title ? h('strong', null, explanation.title) : null,
+    explanation.text,
+    explanation.ideal ? h('span', { class: 'ideal' }, explanation.ideal) : null,
+  );
+  if (!anchor.hasAttribute('aria-describedby')) anchor.setAttribute('aria-describedby', 'explain');
+  // Open it where the anchor is: a popover inside a modal dialog's top layer must come after the dialog.
+  if (!element.matches(':popover-open')) element.showPopover();
+  place(element, anchor.getBoundingClientRect());
+}
+
+/** Below the anchor, or above where there is no room. @param {HTMLElement} element @param {DOMRect} anchor */
+export function place(element, anchor) {
+  const { width, height } = element.getBoundingClientRect();
+  const below = anchor.bottom + MARGIN_PX / 2;
+  const top = below + height <= innerHeight - MARGIN_PX ? below : anchor.top - height - MARGIN_PX / 2;
+  element.style.left = `${clamp(anchor.left, MARGIN_PX, Math.max(MARGIN_PX, innerWidth - width - MARGIN_PX))}px`;
+  element.style.top = `${clamp(top, MARGIN_PX, Math.max(MARGIN_PX, innerHeight - height - MARGIN_PX))}px`;
+}
+
+/**
+ * Gives `target` an explanation.
+ * @param {Element} target hovered or focused
+ * @param {() => Explanation | null} read
+ * @param {{ tap?: boolean }} [options] with `tap`, a press toggles it (for elements that do nothing else)
+ */
+export function explain(target, read, options = {}) {
+  const open = () => {
+    const explanation = read();
+    if (explanation?.text && target.isConnected) show(target, explanation);
+  };
+  target.addEventListener('pointerenter', (event) => {
+    if (/** @type {PointerEvent} */ (event).pointerType === 'mouse') later(open, owner ? 60 : HOVER_DELAY_MS);
+  });
+  target.addEventListener('pointerleave', () => later(hide, LEAVE_DELAY_MS));
+  target.addEventListener('pointerdown', () => { if (!options.tap) hide(); });
+  target.addEventListener('focusin', () => { if (usesKeyboard()) open(); });
+  target.addEventListener('focusout', hide);
+  if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));
+}

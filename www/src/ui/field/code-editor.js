@@ -1,0 +1,174 @@
+/**
+ * The full formula editor, loaded on the first focus: colours, bracket pairs, completion with help, and the place of an
+ * error underlined. It lives in a shadow root, where its style sheets are constructed and need no inline style.
+ */
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
+import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
+import { EditorState, StateEffect, StateField } from '@codemirror/state';
+import { Decoration, EditorView, keymap, MatchDecorator, ViewPlugin, WidgetType } from '@codemirror/view';
+import { h } from '../dom.js';
+
+/** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
+/** @typedef {import('../../engine/types.js').Description['functions']} Functions */
+/**
+ * @typedef {object} CodeEditorOptions
+ * @property {string} text
+ * @property {{ anchor: number, head: number }} selection
+ * @property {Functions} functions
+ * @property {() => string[]} names the parameters of the formula
+ * @property {(text: string) => void} change
+ */
+
+/** @type {import('@codemirror/state').StateEffectType<{ fault: FieldFault | null, message: string }>} */
+const faultEffect = StateEffect.define();
+
+class CaretWidget extends WidgetType {
+  toDOM() {
+    return h('span', { class: 'cm-fault-caret', 'aria-hidden': 'true' });
+  }
+}
+
+/** @typedef {{ fault: boolean, marks: import('@codemirror/view').DecorationSet }} FaultState */
+/** @type {StateField<FaultState>} */
+const faultField = StateField.define({
+  create: () => /** @type {FaultState} */ ({ fault: false, marks: Decoration.none }),
+  update(value, transaction) {
+    let { fault, marks } = value;
+    if (transaction.docChanged) marks = marks.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (!effect.is(faultEffect)) continue;
+      const length = transaction.state.doc.length;
+      fault = effect.value.fault !== null;
+      if (!effect.value.fault) marks = Decoration.none;
+      else {
+        const start = Math.min(effect.value.fault.start, length);
+        const end = Math.min(Math.max(start, effect.value.fault.end), length);
+        marks = Decoration.set(end > start
+          ? Decoration.mark({ class: 'cm-fault' }).range(start, end)
+          : Decoration.widget({ widget: new CaretWidget(), side: 1 }).range(start));
+      }
+    }
+    return fault === value.fault && marks === value.marks ? value : { fault, marks };
+  },
+  provide: (field) => [
+    EditorView.decorations.from(field, ({ marks }) => marks),
+    EditorView.contentAttributes.from(field, ({ fault }) => ({
+      'aria-label': 'Formula', 'aria-invalid': String(fault), 'aria-describedby': 'message', spellcheck: 'false', autocapitalize: 'off', autocorrect: 'off',
+    })),
+  ],
+});
+
+/** Colours for numbers, functions, coordinates and parameters. @param {Functions} functions */
+function tokens(functions) {
+  const known = new Set(functions.map(({ name }) => name));
+  const marks = Object.fromEntries(['number', 'function', 'axis', 'name'].map((name) => [name, Decoration.mark({ class: `cm-${name}` })]));
+  const decorator = new MatchDecorator({
+    regexp: /(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|([\p{L}_][\p{L}\p{N}_]*)/gu,
+    decoration: ([, number, name]) => {
+      if (number) return marks.number;
+      if (known.has(name)) return marks.function;
+      return /^[xyz]$/.test(name) ? marks.axis : marks.name;
+    },
+  });
+  return ViewPlugin.fromClass(class {
+    /** @param {EditorView} view */
+    constructor(view) {
+      this.decorations = decorator.createDeco(view);
+    }
+
+    /** @param {import('@codemirror/view').ViewUpdate} update */
+    update(update) {
+      this.decorations = decorator.updateDeco(update, this.decorations);
+    }
+  }, { decorations: (plugin) => plugin.decorations });
+}
+
+/**
+ * @param {Functions} functions
+ * @param {() => string[]} names
+ */
+function completion(functions, names) {
+  return autocompletion({
+    icons: false,
+    activateOnTypingDelay: 150,
+    override: [(context) => {
+      const word = context.matchBefore(/[\p{L}_][\p{L}\p{N}_]*/u);
+      if (!word || (word.text.length < 2 && !context.explicit)) return null;
+      return {
+        from: word.from,
+        options: [
+          ...functions.map(({ name, signature, help }) => ({
+            label: name, detail: signature.startsWith(name) ? signature.slice(name.length) : signature, info: help, apply: signature.includes('(') ? `${name}(` : name,
+          })),
+          ...names().map((name) => ({ label: name, detail: ' parameter' })),
+        ],
+      };
+    }],
+  });
+}
+
+const theme = EditorView.theme({
+  '&': { font: '0.8125rem/1.25rem var(--mono)', color: 'var(--ink)', maxHeight: '12rem' },
+  '&.cm-focused': { outline: 'none' },
+  '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },
+  '.cm-content': { padding: '0.4375rem 0', minHeight: '2.125rem', caretColor: 'var(--ink)' },
+  '.cm-line': { padding: '0 0.5rem' },
+  '.cm-number': { color: 'var(--ink-2)' },
+  '.cm-axis': { color: 'var(--ink)' },
+  '.cm-function': { color: 'var(--accent-strong)' },
+  '.cm-name': { color: 'var(--accent-strong)', fontStyle: 'italic' },
+  '.cm-fault': { backgroundColor: 'var(--fault-soft)', textDecoration: 'underline wavy var(--fault) 1px', textUnderlineOffset: '3px' },
+  '.cm-fault-caret': { display: 'inline-block', width: '2px', height: '1.1em', verticalAlign: 'text-bottom', backgroundColor: 'var(--fault)' },
+  '.cm-tooltip': { border: '1px solid var(--line)', borderRadius: '0.375rem', backgroundColor: 'var(--panel)', color: 'var(--ink)', overflow: 'hidden' },
+  '.cm-tooltip.cm-tooltip-autocomplete > ul': { font: '0.75rem/1.25rem var(--mono)', maxHeight: '11rem' },
+  '.cm-tooltip.cm-tooltip-autocomplete > ul > li': { padding: '0.125rem 0.5rem' },
+  '.cm-tooltip.cm-tooltip-autocomplete > ul > li[aria-selected]': { backgroundColor: 'var(--accent-soft)', color: 'var(--ink)' },
+  '.cm-completionMatchedText': { textDecoration: 'none', color: 'var(--accent-strong)' },
+  '.cm-completionDetail': { color: 'var(--ink-3)', fontStyle: 'normal', marginLeft: '0' },
+  '.cm-completionInfo': { padding: '0.25rem 0.5rem', font: '0.75rem/1.0625rem var(--font)', maxWidth: '14rem' },
+});
+
+/** @param {CodeEditorOptions} options @returns {import('./formula.js').Editor} */
+export function createCodeEditor({ text, selection, functions, names, change }) {
+  const element = h('div', { class: 'code-host' });
+  const root = element.attachShadow({ mode: 'open', delegatesFocus: true });
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync('#message { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }');
+  const message = h('span', { id: 'message' });
+  let own = false;
+  const view = new EditorView({
+    root,
+    parent: /** @type {any} */ (root),
+    state: EditorState.create({
+      doc: text,
+      selection: { anchor: Math.min(selection.anchor, text.length), head: Math.min(selection.head, text.length) },
+      extensions: [
+        history(), closeBrackets(), faultField, tokens(functions), completion(functions, names), theme, EditorView.lineWrapping,
+        keymap.of([...closeBracketsKeymap, ...completionKeymap, ...historyKeymap, ...defaultKeymap]),
+        EditorView.updateListener.of((update) => { if (update.docChanged && !own) change(update.state.doc.toString()); }),
+      ],
+    }),
+  });
+  root.append(message);
+  root.adoptedStyleSheets.push(sheet);
+  return {
+    element,
+    marks: true,
+    text: () => view.state.doc.toString(),
+    setText(next) {
+      own = true;
+      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } });
+      own = false;
+    },
+    replace(start, end, inserted) {
+      const length = view.state.doc.length;
+      view.dispatch({ changes: { from: Math.min(start, length), to: Math.min(end, length), insert: inserted }, selection: { anchor: Math.min(start, length) + inserted.length } });
+    },
+    setFault(fault, words) {
+      message.textContent = words;
+      view.dispatch({ effects: faultEffect.of({ fault, message: words }) });
+    },
+    selection: () => ({ anchor: view.state.selection.main.anchor, head: view.state.selection.main.head }),
+    focus: () => view.focus(),
+  };
+}

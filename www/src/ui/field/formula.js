@@ -1,0 +1,126 @@
+/** The formula: an editor, what is wrong with it and how to mend that, and how it reads as mathematics. */
+import { computed, effect } from '@preact/signals-core';
+import { fill, h } from '../dom.js';
+import { mathElement } from '../mathml.js';
+import { describeFault } from './fault.js';
+import { createTextarea } from './textarea.js';
+import { openFunctions } from './functions.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
+/**
+ * What both editors can do. Offsets are UTF-16 code units.
+ * @typedef {object} Editor
+ * @property {HTMLElement} element
+ * @property {() => string} text
+ * @property {(text: string) => void} setText
+ * @property {(start: number, end: number, text: string) => void} replace
+ * @property {(fault: FieldFault | null, message: string) => void} setFault
+ * @property {() => { anchor: number, head: number }} selection
+ * @property {() => void} focus
+ * @property {boolean} marks whether it shows the place of the error itself
+ */
+
+/**
+ * @param {Engine} engine
+ * @param {import('../../engine/types.js').Description} description
+ */
+export function createFormula(engine, description) {
+  const error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
+  const preview = h('div', { class: 'preview', role: 'group', 'aria-label': 'The formula as mathematics', tabindex: 0 });
+  const holder = h('div', { class: 'editor', id: 'formula' });
+  const shown = computed(() => engine.state.value.formula);
+  const fault = computed(() => engine.fieldError.value);
+
+  /** @type {Editor} */
+  let editor = createTextarea({ text: shown.peek(), change: (text) => engine.setFormula(text), focused: upgrade });
+  holder.append(editor.element);
+  let upgrading = false;
+
+  /** The full editor arrives with the first focus; until then, and where it cannot load, the text area does the work. */
+  async function upgrade() {
+    if (upgrading) return;
+    upgrading = true;
+    try {
+      const { createCodeEditor } = await import('./code-editor.js');
+      const plain = editor;
+      if (plain.element.matches('[data-composing]')) await new Promise((done) => plain.element.addEventListener('compositionend', done, { once: true }));
+      const focused = plain.element === document.activeElement;
+      const next = createCodeEditor({
+        text: plain.text(), functions: description.functions, change: (text) => engine.setFormula(text), names: () => engine.field.peek()?.parameters.map(({ name }) => name) ?? [],
+        selection: plain.selection(),
+      });
+      editor = next;
+      plain.element.replaceWith(next.element);
+      render();
+      if (focused) next.focus();
+    } catch {
+      // The text area stays.
+    }
+  }
+
+  function render() {
+    const text = editor.text();
+    const view = describeFault(text, fault.value);
+    holder.classList.toggle('has-fault', view?.tone === 'fault');
+    editor.setFault(view?.tone === 'fault' ? fault.peek() : null, view?.message ?? '');
+    if (!view) return fill(error);
+    const { excerpt } = view;
+    error.dataset.tone = view.tone;
+    fill(
+      error,
+      excerpt && !editor.marks
+        ? h('code', { class: 'excerpt' }, excerpt.before, h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked), excerpt.after)
+        : null,
+      h('p', null, view.message),
+      view.repairs.length
+        ? h('div', { class: 'repairs' }, view.repairs.map((repair) => h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label)))
+        : null,
+    );
+  }
+
+  /** @param {import('./fault.js').Repair} repair */
+  function mend(repair) {
+    if (repair.declare) engine.declareParameter(repair.declare);
+    if (repair.replace) editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
+    editor.focus();
+  }
+
+  effect(() => {
+    const text = shown.value;
+    if (editor.text() !== text) editor.setText(text);
+  });
+  effect(() => {
+    void fault.value;
+    void shown.value;
+    render();
+  });
+  effect(() => {
+    const source = engine.fieldPreview.value ?? engine.field.value?.mathml ?? '';
+    const math = mathElement(source);
+    math?.setAttribute('display', 'block');
+    fill(preview, math);
+    preview.classList.toggle('stale', engine.fieldError.value !== null);
+  });
+  document.querySelector('.skip')?.addEventListener('click', (event) => {
+    event.preventDefault();
+    editor.focus();
+  });
+
+  const help = h('button', { type: 'button', class: 'button plain small', on: { click: () => openFunctions(description, (name) => insert(name)) } }, 'Functions');
+  /** @param {string} name */
+  function insert(name) {
+    const { anchor, head } = editor.selection();
+    editor.replace(Math.min(anchor, head), Math.max(anchor, head), `${name}(`);
+    editor.focus();
+  }
+  return h(
+    'div',
+    { class: 'section formula' },
+    h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
+    holder,
+    error,
+    preview,
+  );
+}
+

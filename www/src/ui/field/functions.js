@@ -1,0 +1,24 @@
+/** The list of functions that a formula may use, generated from the core's description. */
+import { h } from '../dom.js';
+import { createDialog } from '../dialog.js';
+
+/** @type {ReturnType<typeof createDialog> | null} */
+let dialog = null;
+
+/**
+ * @param {import('../../engine/types.js').Description} description
+ * @param {(name: string) => void} insert
+ */
+export function openFunctions(description, insert) {
+  dialog ??= createDialog(
+    'What a formula may hold',
+    h('p', { class: 'quiet' }, 'Write f(x, y, z), or an equation. Products may be left out: 2x y. Powers: x^2 or x². Names that are not known become sliders.'),
+    h('ul', { class: 'functions' }, description.functions.map(({ name, signature, help }) => h(
+      'li',
+      null,
+      h('button', { type: 'button', class: 'button plain small', on: { click: () => { dialog?.close(); insert(name); } } }, h('code', null, signature)),
+      h('span', { class: 'quiet' }, help),
+    ))),
+  );
+  dialog.open();
+}

@@ -1,0 +1,46 @@
+/** The formula in a native text area: there at once, works everywhere. */
+import { h } from '../dom.js';
+
+/**
+ * @param {{ text: string, change: (text: string) => void, focused: () => void }} options
+ * @returns {import('./formula.js').Editor}
+ */
+export function createTextarea({ text, change, focused }) {
+  const area = h('textarea', {
+    class: 'code', rows: 1, spellcheck: 'false', autocapitalize: 'off', autocomplete: 'off', autocorrect: 'off', 'aria-label': 'Formula', 'aria-describedby': 'formula-fault',
+    prop: { value: text },
+    on: {
+      input: () => {
+        grow();
+        change(area.value);
+      },
+      focus: focused,
+      compositionstart: () => { area.dataset.composing = ''; },
+      compositionend: () => { delete area.dataset.composing; },
+    },
+  });
+  function grow() {
+    const lines = Math.ceil(area.value.length / 34) + (area.value.match(/\n/g)?.length ?? 0);
+    area.rows = Math.min(8, Math.max(1, lines));
+  }
+  grow();
+  return {
+    element: area,
+    marks: false,
+    text: () => area.value,
+    setText(next) {
+      area.value = next;
+      grow();
+    },
+    replace(start, end, inserted) {
+      area.setRangeText(inserted, start, end, 'end');
+      grow();
+      change(area.value);
+    },
+    setFault(fault) {
+      area.setAttribute('aria-invalid', String(fault !== null));
+    },
+    selection: () => ({ anchor: area.selectionStart, head: area.selectionEnd }),
+    focus: () => area.focus(),
+  };
+}

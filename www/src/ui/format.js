@@ -1,0 +1,107 @@
+/** Numbers as the reader's language writes them, with thin spaces and a true minus sign. */
+
+/** U+2212, as wide as a digit, where Intl writes a hyphen. */
+const MINUS = '\u2212';
+const THIN_NO_BREAK = '\u202f';
+export const MISSING = '\u2013';
+
+/** @type {string | string[] | undefined} */
+let locale = typeof navigator === 'undefined' ? undefined : [...navigator.languages];
+/** @type {Map<string, Intl.NumberFormat>} */
+const formats = new Map();
+
+/** For tests. @param {string | string[] | undefined} tag */
+export function setLocale(tag) {
+  locale = tag;
+  formats.clear();
+}
+
+/**
+ * @param {number} value
+ * @param {Intl.NumberFormatOptions} options
+ */
+function write(value, options) {
+  const key = JSON.stringify(options);
+  let format = formats.get(key);
+  if (!format) {
+    format = new Intl.NumberFormat(locale, options);
+    formats.set(key, format);
+  }
+  return format.format(value).replace(/-/g, MINUS).replace(/[\u00a0\u2009]/g, THIN_NO_BREAK);
+}
+
+/** @param {unknown} value @returns {value is number} */
+const isNumber = (value) => typeof value === 'number' && !Number.isNaN(value);
+
+/** A whole number with grouped digits. @param {unknown} value */
+export function formatCount(value) {
+  return isNumber(value) ? write(value, { maximumFractionDigits: 0 }) : MISSING;
+}
+
+/**
+ * A number with exactly `digits` decimals; a value that rounds to nothing is written as a power of ten instead.
+ * @param {unknown} value
+ * @param {number} [digits]
+ */
+export function formatFixed(value, digits = 3) {
+  if (!isNumber(value)) return MISSING;
+  if (!Number.isFinite(value)) return value > 0 ? '∞' : `${MINUS}∞`;
+  if (value !== 0 && Math.abs(value) < 0.5 * 10 ** -digits) return formatPower(value);
+  const rounded = Number(value.toFixed(digits));
+  return write(rounded === 0 ? 0 : value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+}
+
+/** As many decimals as a grid of width `step` needs. @param {unknown} value @param {number} step */
+export function formatStep(value, step) {
+  if (!isNumber(value)) return MISSING;
+  return write(value, { maximumFractionDigits: decimalsOf(step) });
+}
+
+/** `digits` significant digits. @param {unknown} value @param {number} [digits] */
+export function formatSignificant(value, digits = 3) {
+  if (!isNumber(value)) return MISSING;
+  if (!Number.isFinite(value)) return value > 0 ? '∞' : `${MINUS}∞`;
+  if (value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e7)) return formatPower(value);
+  return write(value, { maximumSignificantDigits: digits });
+}
+
+const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({ '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' });
+
+/** 3.1·10⁻⁶. @param {number} value */
+function formatPower(value) {
+  const [mantissa, exponent] = value.toExponential(1).split('e');
+  const power = String(Number(exponent)).replace(/./g, (sign) => SUPERSCRIPTS[sign] ?? sign);
+  return `${write(Number(mantissa), { maximumFractionDigits: 1 })}${THIN_NO_BREAK}·${THIN_NO_BREAK}10${power}`;
+}
+
+/** A share as per cent. @param {unknown} value @param {number} [digits] */
+export function formatShare(value, digits = 1) {
+  return isNumber(value) ? write(value, { style: 'percent', maximumFractionDigits: digits }) : MISSING;
+}
+
+/** A time span: ms below one second, else s. @param {unknown} seconds */
+export function formatSeconds(seconds) {
+  if (!isNumber(seconds)) return MISSING;
+  if (seconds < 0.0995) return `${write(seconds * 1000, { maximumFractionDigits: 1 })}${THIN_NO_BREAK}ms`;
+  if (seconds < 0.9995) return `${write(seconds * 1000, { maximumFractionDigits: 0 })}${THIN_NO_BREAK}ms`;
+  return `${write(seconds, { minimumFractionDigits: 2, maximumFractionDigits: 2 })}${THIN_NO_BREAK}s`;
+}
+
+/** The decimals of a step such as 0.05 or 1e-4. @param {number} step */
+export function decimalsOf(step) {
+  if (!(step > 0) || !Number.isFinite(step)) return 6;
+  for (let digits = 0; digits < 12; digits += 1) {
+    if (Math.abs(step - Number(step.toFixed(digits))) <= step * 1e-9) return digits;
+  }
+  return 12;
+}
+
+/**
+ * '12 particles', '1 particle'.
+ * @param {number} count
+ * @param {string} one
+ * @param {string} [many]
+ */
+export function plural(count, one, many = `${one}s`) {
+  return `${formatCount(count)} ${count === 1 ? one : many}`;
+}

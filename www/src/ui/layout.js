@@ -1,0 +1,84 @@
+/** Folding, hiding, tabs of the compact layout, and the part of the window that stays free for the picture. */
+import { h } from './dom.js';
+import { explain } from './explain.js';
+import { icon } from './icons.js';
+
+/** The same condition as in layout.css. */
+const COMPACT = '(max-width: 719px), (max-height: 479px)';
+/** Below this width the report starts folded, so that the picture has room. */
+const NARROW = '(max-width: 1079px)';
+
+/** @typedef {{ id: string, title: string, panel: HTMLElement, head: HTMLElement }} Panel */
+
+/**
+ * @param {object} parts
+ * @param {HTMLElement} parts.shell
+ * @param {HTMLElement} parts.view
+ * @param {Panel[]} parts.panels
+ * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
+ */
+export function mountLayout({ shell, view, panels, inset }) {
+  const compact = matchMedia(COMPACT);
+  const folds = panels.map((panel) => createFold(panel));
+  for (const { button, host } of folds) host.append(button);
+  if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
+
+  const tabs = panels.map(({ title, panel }) => h('button', {
+    type: 'button', class: 'button tab', 'aria-controls': panel.id, 'aria-expanded': 'false', on: { click: () => toggle(panel) },
+  }, title));
+  const nav = h('nav', { class: 'tabs', 'aria-label': 'Panels' }, tabs);
+  shell.append(nav);
+
+  /** @param {HTMLElement | null} active */
+  function activate(active) {
+    panels.forEach(({ panel }, i) => {
+      panel.toggleAttribute('data-active', panel === active);
+      tabs[i].setAttribute('aria-expanded', String(panel === active));
+    });
+  }
+  /** @param {HTMLElement} panel */
+  function toggle(panel) {
+    activate(panel.hasAttribute('data-active') ? null : panel);
+  }
+  activate(panels[0].panel);
+
+  const unhide = h('button', { type: 'button', class: 'button unhide', on: { click: () => hide(false) } }, 'Show the panels');
+  view.append(unhide);
+  /** @param {boolean} hidden */
+  function hide(hidden) {
+    shell.toggleAttribute('data-hidden', hidden);
+    if (hidden && document.activeElement instanceof HTMLElement && document.activeElement.offsetParent === null) unhide.focus();
+  }
+
+  const measure = () => {
+    const { left, top, right, bottom } = view.getBoundingClientRect();
+    inset({ left, top, right: innerWidth - right, bottom: innerHeight - bottom });
+  };
+  new ResizeObserver(measure).observe(view);
+  addEventListener('resize', measure);
+  measure();
+
+  return {
+    nav,
+    compact,
+    toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
+  };
+}
+
+/** @param {Panel} panel */
+function createFold({ title, panel, head }) {
+  const button = h('button', { type: 'button', class: 'button plain square fold', 'aria-controls': panel.id });
+  let folded = false;
+  /** @param {boolean} next */
+  const set = (next) => {
+    folded = next;
+    panel.toggleAttribute('data-folded', folded);
+    button.setAttribute('aria-expanded', String(!folded));
+    button.setAttribute('aria-label', folded ? `Unfold ${title.toLowerCase()}` : `Fold ${title.toLowerCase()}`);
+    button.replaceChildren(icon(folded ? 'unfold' : 'fold'));
+  };
+  button.addEventListener('click', () => set(!folded));
+  explain(button, () => ({ text: folded ? 'Unfold' : 'Fold' }));
+  set(false);
+  return { button, host: head, set };
+}

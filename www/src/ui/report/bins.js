@@ -1,0 +1,22 @@
+/** Bins of a histogram. Pure. */
+
+/** @typedef {{ min: number, max: number, bins: number[] }} Bins */
+
+/**
+ * At most `rows` wider bins that hold the same counts, empty ones at both ends left out.
+ * @param {Bins} histogram
+ * @param {number} rows
+ */
+export function coarsen({ min, max, bins }, rows) {
+  const width = (max - min) / bins.length;
+  let first = bins.findIndex((count) => count > 0);
+  let last = bins.findLastIndex((count) => count > 0);
+  if (first < 0) [first, last] = [0, -1];
+  const group = Math.max(1, Math.ceil((last - first + 1) / rows));
+  const result = [];
+  for (let start = first; start <= last; start += group) {
+    const stop = Math.min(last + 1, start + group);
+    result.push({ from: min + start * width, to: min + stop * width, count: bins.slice(start, stop).reduce((sum, count) => sum + count, 0) });
+  }
+  return result;
+}

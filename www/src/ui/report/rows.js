@@ -1,0 +1,66 @@
+/** Figures of a report by their path, and how they are written. Pure. */
+import { formatCount, formatFixed, MISSING } from '../format.js';
+
+/** @typedef {import('../../engine/types.js').Report} Report */
+/** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
+
+/**
+ * The value at a path such as `quality.six`.
+ * @param {unknown} root
+ * @param {string} key
+ * @returns {unknown}
+ */
+export function valueAt(root, key) {
+  /** @type {any} */
+  let value = root;
+  for (const part of key.split('.')) {
+    if (value === null || typeof value !== 'object') return undefined;
+    value = value[part];
+  }
+  return value;
+}
+
+/**
+ * The figure now and, for the quality figures, before relaxation.
+ * @param {Report} report
+ * @param {string} key
+ */
+export function figuresOf(report, key) {
+  const quality = key.startsWith('quality.');
+  return {
+    paired: quality,
+    now: valueAt(report, key),
+    before: quality ? valueAt(report, key.replace(/^quality\./, 'quality_before.')) : undefined,
+  };
+}
+
+/** @param {ReportRow} row @param {unknown} value */
+export function writeFigure({ digits, unit }, value) {
+  if (typeof value === 'string') return value;
+  if (typeof value !== 'number') return MISSING;
+  if (unit === '%') return formatFixed(value * 100, digits);
+  return digits === 0 ? formatCount(value) : formatFixed(value, digits);
+}
+
+/**
+ * Whether relaxation made the figure better, worse, or neither.
+ * @param {ReportRow} row
+ * @param {unknown} before
+ * @param {unknown} now
+ * @returns {'better' | 'worse' | 'same'}
+ */
+export function compare({ better, digits, unit }, before, now) {
+  if (!better || typeof before !== 'number' || typeof now !== 'number') return 'same';
+  const scale = unit === '%' ? 100 : 1;
+  const change = (now - before) * scale;
+  if (!(Math.abs(change) >= 0.5 * 10 ** -digits)) return 'same';
+  return change > 0 === (better === 'higher') ? 'better' : 'worse';
+}
+
+/** The groups in the order of their first row. @param {ReportRow[]} rows */
+export function groupRows(rows) {
+  /** @type {Map<string, ReportRow[]>} */
+  const groups = new Map();
+  for (const row of rows) groups.set(row.group, [...(groups.get(row.group) ?? []), row]);
+  return groups;
+}

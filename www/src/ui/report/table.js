@@ -1,0 +1,67 @@
+/** The report's rows as a table; every name explains its figure. */
+import { effect } from '@preact/signals-core';
+import { h } from '../dom.js';
+import { explain } from '../explain.js';
+import { compare, figuresOf, groupRows, writeFigure } from './rows.js';
+
+/** @typedef {import('../../engine/types.js').Report} Report */
+/** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
+
+/**
+ * One table, so that every figure stands in the same column; the unit has its own.
+ * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
+ * @param {ReportRow[]} rows
+ */
+export function createTable(report, rows) {
+  const groups = [...groupRows(rows)];
+  const headed = groups.findIndex(([, members]) => members.some(isPaired));
+  const table = h(
+    'table',
+    { class: 'figures', 'aria-label': 'Figures of the run' },
+    groups.map(([group, members], i) => h(
+      'tbody',
+      null,
+      h(
+        'tr',
+        { class: 'group' },
+        h('th', { scope: 'rowgroup' }, group),
+        h('td', null, i === headed ? 'Front' : null),
+        h('td', null, i === headed ? 'Relaxed' : null),
+        h('td'),
+      ),
+      members.map((row) => createRow(report, row)),
+    )),
+  );
+  const section = h('div', { class: 'section' }, table);
+  effect(() => { section.hidden = report.value === null; });
+  return section;
+}
+
+/** @param {ReportRow} row */
+const isPaired = ({ key }) => key.startsWith('quality.');
+
+/**
+ * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
+ * @param {ReportRow} row
+ */
+function createRow(report, row) {
+  const term = h('button', { type: 'button', class: 'term' }, row.label);
+  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row) }), { tap: true });
+  const before = h('td');
+  const now = h('td', { class: 'now' });
+  effect(() => {
+    const current = report.value;
+    const figures = current ? figuresOf(current, row.key) : null;
+    before.textContent = writeFigure(row, figures?.before);
+    now.textContent = writeFigure(row, figures?.now);
+    now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
+  });
+  const paired = isPaired(row);
+  return h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now, h('td', { class: 'unit' }, row.unit));
+}
+
+/** @param {ReportRow} row */
+function idealOf({ ideal, better }) {
+  const direction = better === 'higher' ? 'Higher is better.' : better === 'lower' ? 'Lower is better.' : '';
+  return [ideal ? `Ideal: ${ideal}${/[.!]$/.test(ideal) ? '' : '.'}` : '', direction].filter(Boolean).join(' ') || undefined;
+}

@@ -1,0 +1,58 @@
+/** Taking things away: a link, a picture, a file. */
+
+/** @typedef {import('../engine/types.js').Engine} Engine */
+/** @typedef {import('./toasts.js').Toast} Toast */
+
+/** Width of a saved picture in pixels; its height follows the window. */
+const PICTURE_WIDTH_PX = 2400;
+
+/** @param {Engine} engine @param {Toast} toast */
+export async function copyLink(engine, toast) {
+  try {
+    const url = await engine.shareUrl();
+    history.replaceState(null, '', url);
+    try {
+      await navigator.clipboard.writeText(url);
+      toast({ id: 'share', kind: 'info', text: 'The link is on the clipboard.' });
+    } catch {
+      toast({ id: 'share', kind: 'info', text: 'The link is in the address bar.' });
+    }
+  } catch {
+    toast({ id: 'share', kind: 'error', text: 'The link could not be made.' });
+  }
+}
+
+/** @param {Engine} engine @param {Toast} toast */
+export async function savePicture(engine, toast) {
+  try {
+    const height = Math.round((PICTURE_WIDTH_PX * innerHeight) / innerWidth);
+    download(await engine.savePng({ width: PICTURE_WIDTH_PX, height }), `${stem(engine)}.png`);
+  } catch {
+    toast({ id: 'save', kind: 'error', text: 'The picture could not be drawn.' });
+  }
+}
+
+/** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
+export async function exportFile(engine, toast, format) {
+  try {
+    download(await engine.exportFile(format), `${stem(engine)}.${format}`);
+  } catch {
+    toast({ id: 'save', kind: 'error', text: 'The particles could not be exported.' });
+  }
+}
+
+/** @param {Engine} engine */
+function stem(engine) {
+  const surface = engine.field.peek()?.surface ?? 'formula';
+  return `${surface}-${engine.progress.peek().particles}`;
+}
+
+/** @param {Blob} blob @param {string} name */
+function download(blob, name) {
+  const url = URL.createObjectURL(blob);
+  const link = document.createElement('a');
+  link.href = url;
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}

@@ -1,0 +1,33 @@
+/** One quiet line that says where the run stands. Pure. */
+import { formatCount, formatSeconds, plural } from '../format.js';
+
+/**
+ * @param {import('../../engine/types.js').Progress} progress
+ * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null }} facts
+ */
+export function captionOf(progress, { partial, empty, busy, seconds }) {
+  const particles = plural(progress.particles, 'particle');
+  switch (progress.phase) {
+    case 'seeding':
+      return 'Looking for the surface';
+    case 'pilot':
+      return 'Finding the radius for the wanted count';
+    case 'generation':
+      return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
+    case 'relaxation':
+      return busy ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}` : resting();
+    case 'quality':
+      return `${particles} · measuring`;
+    case 'done':
+      return resting();
+    default:
+      return progress.particles > 0 ? resting() : '';
+  }
+
+  function resting() {
+    if (empty) return '';
+    if (progress.stop_reason === 'cap') return `Stopped at the limit · ${particles}`;
+    if (partial || progress.stop_reason === 'cancelled') return `Stopped · ${particles}`;
+    return seconds === null ? particles : `${particles} · ${formatSeconds(seconds)}`;
+  }
+}

@@ -1,0 +1,114 @@
+/** What stands on the picture itself: the caption, the hint, the empty state, the poster's end. */
+import { computed, effect } from '@preact/signals-core';
+import { bindText, fill, h } from '../dom.js';
+import { captionOf } from './caption.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+
+const HINT_MS = 9000;
+/** Assistive technology hears of a run no more often than this. */
+const ANNOUNCE_MS = 3000;
+
+/**
+ * @param {HTMLElement} view
+ * @param {Engine} engine
+ * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement }} parts
+ */
+export function mountOverlay(view, engine, { stage, poster, start }) {
+  const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
+  const hint = h('p', { class: 'hint' }, 'Drag to turn');
+  const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
+  const empty = h('div', { class: 'empty', role: 'status' });
+  view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
+
+  const text = computed(() => captionOf(engine.progress.value, {
+    partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: engine.timing.value?.total ?? null,
+  }));
+  bindText(caption, () => text.value);
+  announce(spoken, text, engine.busy);
+
+  // The poster stands in until the first particles are on screen.
+  const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
+  const settled = computed(() => drawn.value || engine.empty.value);
+  effect(() => {
+    if (!settled.value) return;
+    poster.classList.add('gone');
+    start.hidden = true;
+  });
+  effect(() => { if (engine.description.value) start.hidden = true; });
+
+  hintUntilUsed(hint, stage, settled);
+
+  const lost = computed(() => engine.empty.value && !engine.busy.value);
+  effect(() => {
+    empty.hidden = !lost.value;
+    if (lost.value) fill(empty, ...emptyState(engine));
+    else fill(empty);
+  });
+  effect(() => { stage.classList.toggle('faulty', engine.fieldError.value !== null); });
+}
+
+/** @param {Engine} engine */
+function emptyState(engine) {
+  const { message, stop_reason } = engine.progress.peek();
+  const bounds = engine.field.peek()?.bounds;
+  const widen = () => {
+    if (!bounds) return;
+    const grow = (/** @type {1 | -1} */ side) => /** @type {[number, number, number]} */ (bounds.min.map((low, i) => {
+      const high = bounds.max[i];
+      return (low + high) / 2 + side * (high - low);
+    }));
+    engine.setBounds({ min: grow(-1), max: grow(1) });
+  };
+  const title = stop_reason === 'constant' ? 'The formula is constant' : stop_reason === 'undefined' ? 'The formula is undefined in the box' : 'No surface inside the box';
+  return [
+    h('h2', null, title),
+    message ? h('p', { class: 'quiet' }, message) : null,
+    h(
+      'div',
+      { class: 'empty-actions' },
+      stop_reason === 'no_surface' ? h('button', { type: 'button', class: 'button', on: { click: widen } }, 'Double the box') : null,
+      h('button', { type: 'button', class: 'button', on: { click: () => engine.setSurface(engine.state.peek().surface) } }, 'Take the gallery formula back'),
+    ),
+  ];
+}
+
+/**
+ * @param {HTMLElement} hint
+ * @param {HTMLElement} stage
+ * @param {import('@preact/signals-core').ReadonlySignal<boolean>} settled
+ */
+function hintUntilUsed(hint, stage, settled) {
+  const end = () => {
+    hint.classList.add('gone');
+    stage.removeEventListener('pointerdown', end);
+  };
+  stage.addEventListener('pointerdown', end);
+  const stop = effect(() => {
+    if (!settled.value) return;
+    hint.classList.add('shown');
+    setTimeout(end, HINT_MS);
+    queueMicrotask(() => stop());
+  });
+}
+
+/**
+ * Reads the caption out, at most once in a while, and always the last word of a run.
+ * @param {HTMLElement} spoken
+ * @param {import('@preact/signals-core').ReadonlySignal<string>} text
+ * @param {import('@preact/signals-core').ReadonlySignal<boolean>} busy
+ */
+function announce(spoken, text, busy) {
+  let last = -Infinity;
+  let timer = 0;
+  const say = () => {
+    last = performance.now();
+    spoken.textContent = text.peek();
+  };
+  effect(() => {
+    void text.value;
+    clearTimeout(timer);
+    const wait = busy.value ? Math.max(0, last + ANNOUNCE_MS - performance.now()) : 300;
+    timer = window.setTimeout(say, wait);
+  });
+}

@@ -1,0 +1,105 @@
+/** The tools beside the picture: zoom, fit, view options, link, picture, export. */
+import { computed, effect } from '@preact/signals-core';
+import { h } from '../dom.js';
+import { explain } from '../explain.js';
+import { formatShare } from '../format.js';
+import { icon } from '../icons.js';
+import { attachMenu } from '../menu.js';
+import { createSlider } from '../slider.js';
+import { copyLink, exportFile, savePicture } from '../share.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+
+const ZOOM = 1.25;
+const TURN_RAD = Math.PI / 12;
+const SIZE = { min: 0.2, max: 1.5, step: 0.01, initial: 0.92 };
+
+/**
+ * @param {Engine} engine
+ * @param {{ hide: () => void, shortcuts: () => void, toast: import('../toasts.js').Toast }} page
+ */
+export function createToolbar(engine, { hide, shortcuts, toast }) {
+  const view = tool('options', 'View options', 'Turning, size of the discs, theme.');
+  const save = tool('save', 'Export', 'The particles as a file.');
+  const bar = h(
+    'div',
+    { class: 'toolbar', role: 'toolbar', 'aria-label': 'View tools', 'aria-orientation': 'vertical' },
+    tool('plus', 'Zoom in', 'Key +', () => engine.zoom(ZOOM)),
+    tool('minus', 'Zoom out', 'Key −', () => engine.zoom(1 / ZOOM)),
+    tool('fit', 'Fit', 'Brings the whole surface into view. Key F.', () => engine.fit()),
+    view,
+    h('span', { class: 'rule', 'aria-hidden': 'true' }),
+    tool('link', 'Copy link', 'A link that holds the whole state and the camera.', () => copyLink(engine, toast)),
+    tool('picture', 'Save picture', 'The picture as a PNG file.', () => savePicture(engine, toast)),
+    save,
+    h('span', { class: 'rule', 'aria-hidden': 'true' }),
+    tool('help', 'Keyboard shortcuts', 'Key ?', shortcuts),
+  );
+  attachMenu(view, [turning(engine), discSize(engine), theme(engine), choice('Hide the panels', hide)], { label: 'View options' });
+  attachMenu(save, [
+    choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
+    choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
+  ], { label: 'Export' });
+  return bar;
+}
+
+/**
+ * @param {import('../icons.js').IconName} name
+ * @param {string} label
+ * @param {string} help
+ * @param {() => void} [act]
+ */
+function tool(name, label, help, act) {
+  const button = h('button', { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} }, icon(name));
+  explain(button, () => ({ title: label, text: help }));
+  return button;
+}
+
+/** @param {string} label @param {() => void} act @param {string} [note] */
+function choice(label, act, note) {
+  return h('button', { type: 'button', class: 'button', data: { closes: '' }, on: { click: act } }, label, note ? h('span', { class: 'unit note' }, note) : null);
+}
+
+/** Buttons for those who cannot drag. @param {Engine} engine */
+function turning(engine) {
+  /** @type {[import('../icons.js').IconName, string, number, number][]} */
+  const turns = [['left', 'Turn left', -1, 0], ['right', 'Turn right', 1, 0], ['up', 'Tilt up', 0, -1], ['down', 'Tilt down', 0, 1]];
+  return h(
+    'div',
+    { class: 'menu-line', role: 'group', 'aria-label': 'Turn' },
+    h('span', null, 'Turn'),
+    h('span', { class: 'pad' }, turns.map(([name, label, x, y]) => h(
+      'button',
+      { type: 'button', class: 'button square', 'aria-label': label, on: { click: () => engine.orbit(x * TURN_RAD, y * TURN_RAD) } },
+      icon(name),
+    ))),
+  );
+}
+
+/** @param {Engine} engine */
+function discSize(engine) {
+  const size = computed(() => engine.state.value.view.size);
+  const slider = createSlider({
+    name: 'Disc size',
+    scale: SIZE,
+    value: size.peek(),
+    describe: (value) => `${formatShare(value, 0)} of the repulsion radius`,
+    change: (value) => engine.setView({ size: value }),
+    reset: () => engine.setView({ size: SIZE.initial }),
+    number: false,
+  });
+  effect(() => slider.set(size.value));
+  return h('div', { class: 'menu-line' }, h('span', null, 'Disc size'), slider.range);
+}
+
+/** @param {Engine} engine */
+function theme(engine) {
+  const chosen = computed(() => engine.state.value.view.theme);
+  const themes = /** @type {const} */ ([['auto', 'System'], ['light', 'Light'], ['dark', 'Dark']]);
+  const buttons = themes.map(([id, label]) => {
+    const button = h('button', { type: 'button', class: 'button small', on: { click: () => engine.setView({ theme: id }) } }, label);
+    effect(() => button.setAttribute('aria-pressed', String(chosen.value === id)));
+    return button;
+  });
+  return h('div', { class: 'menu-line', role: 'group', 'aria-label': 'Theme' }, h('span', null, 'Theme'), h('span', { class: 'pad' }, buttons));
+}

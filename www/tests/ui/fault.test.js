@@ -1,0 +1,40 @@
+import { describe, expect, it } from 'vitest';
+import { describeFault, excerptOf } from '../../src/ui/field/fault.js';
+
+const fault = { kind: 'unknown_name', message: 'Unknown name foo.', start: 4, end: 7, suggestion: null, names: ['foo'] };
+
+describe('a fault in a formula', () => {
+  it('is a hint, not an error, where nothing is typed', () => {
+    expect(describeFault('', null)?.tone).toBe('hint');
+    expect(describeFault(' \n', { ...fault, names: [] })?.tone).toBe('hint');
+  });
+
+  it('is nothing where the formula is good', () => {
+    expect(describeFault('x^2', null)).toBeNull();
+  });
+
+  it('marks its place and offers a slider for every unknown name', () => {
+    const view = describeFault('x + foo = 1', { ...fault, names: ['foo', 'bar'] });
+    expect(view?.excerpt).toEqual({ before: 'x + ', marked: 'foo', after: ' = 1' });
+    expect(view?.repairs.map(({ label, declare }) => [label, declare])).toEqual([['Add slider foo', 'foo'], ['Add slider bar', 'bar']]);
+  });
+
+  it('offers a suggestion first, as a change of the marked place', () => {
+    const view = describeFault('x + foo = 1', { ...fault, suggestion: 'floor' });
+    expect(view?.repairs[0]).toEqual({ label: 'Change to floor', replace: { start: 4, end: 7, text: 'floor' } });
+  });
+
+  it('survives offsets beyond the text, as they come from an answer to an older text', () => {
+    const view = describeFault('x', { ...fault, start: 40, end: 50 });
+    expect(view?.excerpt).toEqual({ before: 'x', marked: '', after: '' });
+  });
+
+  it('shortens long formulas on both sides of the place', () => {
+    const text = `${'x+'.repeat(100)}?${'+y'.repeat(100)}`;
+    const { before, marked, after } = excerptOf(text, 200, 201);
+    expect(marked).toBe('?');
+    expect(before.startsWith('…') && after.endsWith('…')).toBe(true);
+    expect(before.length + after.length).toBeLessThan(60);
+    expect(excerptOf('y'.repeat(5000), 0, 5000).marked.length).toBeLessThan(60);
+  });
+});

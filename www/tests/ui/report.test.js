@@ -1,0 +1,86 @@
+import { beforeAll, describe, expect, it } from 'vitest';
+import { setLocale } from '../../src/ui/format.js';
+import { coarsen } from '../../src/ui/report/bins.js';
+import { compare, figuresOf, groupRows, valueAt, writeFigure } from '../../src/ui/report/rows.js';
+import { captionOf } from '../../src/ui/view/caption.js';
+import { wantsSlider } from '../../src/ui/scale.js';
+
+beforeAll(() => setLocale('en'));
+/** @param {Partial<import('../../src/engine/types.js').ReportRow>} [change] */
+const row = (change) => ({ key: 'quality.six', label: 'Valence six', group: 'Order', unit: '%', digits: 1, ideal: '100', better: /** @type {const} */ ('higher'), help: '', ...change });
+
+describe('the report', () => {
+  it('finds figures by their path, and the same before relaxation', () => {
+    const report = /** @type {any} */ ({ count: 5, quality: { six: 0.97 }, quality_before: { six: 0.93 } });
+    expect(valueAt(report, 'quality.six')).toBe(0.97);
+    expect(valueAt(report, 'quality.none.deeper')).toBeUndefined();
+    expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: 0.97, before: 0.93 });
+    expect(figuresOf({ ...report, quality_before: null }, 'quality.six').before).toBeUndefined();
+    expect(figuresOf(report, 'count')).toEqual({ paired: false, now: 5, before: undefined });
+  });
+
+  it('writes shares as per cent, whole numbers grouped, and words as they are', () => {
+    expect(writeFigure(row(), 0.9671)).toBe('96.7');
+    expect(writeFigure(row({ unit: '', digits: 0 }), 55748)).toBe('55,748');
+    expect(writeFigure(row({ unit: 'r', digits: 3 }), 1.2)).toBe('1.200');
+    expect(writeFigure(row(), null)).toBe('–');
+    expect(writeFigure(row(), 'complete')).toBe('complete');
+  });
+
+  it('calls a figure better only when the change can be read', () => {
+    expect(compare(row(), 0.93, 0.97)).toBe('better');
+    expect(compare(row(), 0.93, 0.9301)).toBe('same');
+    expect(compare(row({ better: 'lower' }), 0.93, 0.97)).toBe('worse');
+    expect(compare(row({ better: null }), 0, 1)).toBe('same');
+    expect(compare(row(), undefined, 1)).toBe('same');
+  });
+
+  it('groups rows in the order of their first member', () => {
+    const groups = groupRows([row({ group: 'B' }), row({ group: 'A' }), row({ group: 'B', key: 'x' })]);
+    expect([...groups].map(([name, rows]) => [name, rows.length])).toEqual([['B', 2], ['A', 1]]);
+  });
+});
+
+describe('histogram bins', () => {
+  it('keep every particle when they are made wider', () => {
+    const bins = Array.from({ length: 50 }, (_, i) => (i > 4 && i < 40 ? i : 0));
+    const rows = coarsen({ min: 1, max: 2, bins }, 12);
+    expect(rows.length).toBeLessThanOrEqual(12);
+    expect(rows.reduce((sum, { count }) => sum + count, 0)).toBe(bins.reduce((sum, count) => sum + count, 0));
+    expect(rows[0].from).toBeCloseTo(1 + 5 / 50);
+    expect(rows.at(-1)?.to).toBeCloseTo(1 + 40 / 50);
+  });
+
+  it('are none where nothing was counted', () => {
+    expect(coarsen({ min: 0, max: 1, bins: [0, 0] }, 12)).toEqual([]);
+    expect(coarsen({ min: 0, max: 1, bins: [] }, 12)).toEqual([]);
+  });
+});
+
+describe('the caption', () => {
+  const progress = /** @type {any} */ ({ phase: 'generation', level: 12, particles: 1463, relax_step: 4, relax_steps: 10, stop_reason: null });
+  const facts = { partial: false, empty: false, busy: true, seconds: null };
+
+  it('names the level and the count while the front grows', () => {
+    expect(captionOf(progress, facts)).toBe('Level 12 · 1,463 particles');
+    expect(captionOf({ ...progress, phase: 'relaxation' }, facts)).toBe('Relaxation 4 of 10 · 1,463 particles');
+  });
+
+  it('says so when a run was stopped or met its limit', () => {
+    const done = { ...progress, phase: 'done' };
+    expect(captionOf({ ...done, stop_reason: 'cancelled' }, { ...facts, busy: false, partial: true })).toBe('Stopped · 1,463 particles');
+    expect(captionOf({ ...done, stop_reason: 'cap' }, { ...facts, busy: false, partial: true })).toBe('Stopped at the limit · 1,463 particles');
+    expect(captionOf({ ...done, stop_reason: 'complete' }, { ...facts, busy: false, seconds: 0.05 })).toBe('1,463 particles · 50\u202fms');
+    expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false, empty: true })).toBe('');
+  });
+});
+
+describe('a setting', () => {
+  const info = /** @type {any} */ ({ kind: 'integer', min: 0, max: 200, step: 1, scale: 'linear' });
+  it('gets a slider where it can be aimed', () => {
+    expect(wantsSlider(info)).toBe(true);
+    expect(wantsSlider({ ...info, max: 4294967295 })).toBe(false);
+    expect(wantsSlider({ ...info, max: 1e6, scale: 'log' })).toBe(true);
+    expect(wantsSlider({ ...info, kind: 'choice' })).toBe(false);
+  });
+});
