@@ -1,0 +1,189 @@
+//! The Voronoi cell of the origin among points of a plane.
+
+use glam::DVec2;
+
+/// Most corners of a cell: the 200 nearest points can each give one, the starting square four more.
+const CORNERS: usize = 208;
+/// Label of an edge of the starting square.
+const SQUARE: u32 = u32::MAX;
+/// A bisector that cuts off less than this share of |q| does not touch the cell: far above the rounding of the corners
+/// in double precision (they are cut from a square many times larger), far below that of positions in single
+/// precision. Four exactly cocircular points thus share one corner and no edge.
+const TOUCH: f64 = 1e-10;
+
+/// The cell of the origin, clipped by one bisector after another; counter-clockwise.
+#[derive(Debug)]
+pub(super) struct Cell {
+    corner: [DVec2; CORNERS],
+    /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner `k + 1`.
+    label: [u32; CORNERS],
+    side: [f64; CORNERS],
+    count: usize,
+    reach_sq: f64,
+}
+
+impl Cell {
+    /// Empty; call [`Cell::start`] first.
+    pub(super) fn new() -> Self {
+        Self {
+            corner: [DVec2::ZERO; CORNERS],
+            label: [SQUARE; CORNERS],
+            side: [0.0; CORNERS],
+            count: 0,
+            reach_sq: 0.0,
+        }
+    }
+
+    /// Starts again from the square of half-width `half`.
+    pub(super) fn start(&mut self, half: f64) {
+        self.count = 4;
+        for (k, (x, y)) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate() {
+            self.corner[k] = DVec2::new(x * half, y * half);
+            self.label[k] = SQUARE;
+        }
+        self.reach_sq = 2.0 * half * half;
+    }
+
+    /// Squared distance of the farthest corner. A point farther than twice that cannot change the cell.
+    #[inline]
+    pub(super) fn reach_sq(&self) -> f64 {
+        self.reach_sq
+    }
+
+    /// Cuts off what is nearer to `q` than to the origin; the new edge is labelled `label`.
+    #[inline]
+    pub(super) fn clip(&mut self, q: DVec2, label: u32) {
+        let n = self.count;
+        let offset = 0.5 * q.length_squared() * (1.0 + TOUCH);
+        let mut worst = 0;
+        for k in 0..n {
+            self.side[k] = self.corner[k].dot(q) - offset;
+            if self.side[k] > self.side[worst] {
+                worst = k;
+            }
+        }
+        // A cell with no room left keeps what it has; its other corners then stay uncertified or are right.
+        if self.side[worst] <= 0.0 || n + 1 >= CORNERS {
+            return;
+        }
+        // The corners cut off are one run of a convex polygon, from `first` to `last`.
+        let before = |k: usize| if k == 0 { n - 1 } else { k - 1 };
+        let after = |k: usize| if k + 1 == n { 0 } else { k + 1 };
+        let mut first = worst;
+        while self.side[before(first)] > 0.0 && before(first) != worst {
+            first = before(first);
+        }
+        let mut last = worst;
+        while self.side[after(last)] > 0.0 && after(last) != first {
+            last = after(last);
+        }
+        let (outer, inner) = (before(first), after(last));
+        if self.side[outer] > 0.0 || self.side[inner] > 0.0 {
+            return; // Everything is cut off: q is (numerically) the origin itself.
+        }
+        let cross = |inside: usize, outside: usize| {
+            let (a, b) = (self.side[inside], self.side[outside]);
+            self.corner[inside] + (self.corner[outside] - self.corner[inside]) * (a / (a - b))
+        };
+        let enter = cross(outer, first);
+        let leave = cross(inner, last);
+        let leave_label = self.label[last];
+        // Rebuild as: inner … outer, enter, leave.
+        let kept = if outer >= inner { outer - inner + 1 } else { outer + n - inner + 1 };
+        if inner <= outer {
+            self.corner.copy_within(inner..=outer, 0);
+            self.label.copy_within(inner..=outer, 0);
+        } else {
+            self.corner[..n].rotate_left(inner);
+            self.label[..n].rotate_left(inner);
+        }
+        self.corner[kept] = enter;
+        self.label[kept] = label;
+        self.corner[kept + 1] = leave;
+        self.label[kept + 1] = leave_label;
+        self.count = kept + 2;
+        self.reach_sq =
+            self.corner[..self.count].iter().fold(0.0, |reach: f64, v| reach.max(v.length_squared()));
+    }
+
+    /// Every edge in counter-clockwise order: the point it belongs to, and whether the corner at its end is also a
+    /// corner of the cell among all points, when every point nearer than √`known_sq` was clipped by. Edges of the
+    /// starting square are left out, and so are the corners on them.
+    pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
+        (0..self.count).filter(|&k| self.label[k] != SQUARE).map(move |k| {
+            let next = if k + 1 == self.count { 0 } else { k + 1 };
+            let certain = self.label[next] != SQUARE && 4.0 * self.corner[next].length_squared() <= known_sq;
+            (self.label[k], certain)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(points: &[(f64, f64)]) -> Vec<u32> {
+        let mut cell = Cell::new();
+        cell.start(100.0);
+        for (i, &(x, y)) in points.iter().enumerate() {
+            cell.clip(DVec2::new(x, y), i as u32);
+        }
+        let mut found: Vec<u32> = cell.edges(f64::INFINITY).map(|edge| edge.0).collect();
+        // Start the cycle at its smallest label.
+        let smallest = (0..found.len()).min_by_key(|&k| found[k]).unwrap_or(0);
+        found.rotate_left(smallest);
+        found
+    }
+
+    #[test]
+    fn square_neighbours_are_four_and_diagonals_share_corners_only() {
+        let points = [
+            (1.0, 0.0),
+            (0.0, 1.0),
+            (-1.0, 0.0),
+            (0.0, -1.0),
+            (1.0, 1.0),
+            (-1.0, 1.0),
+            (1.0, -1.0),
+            (-1.0, -1.0),
+        ];
+        assert_eq!(labels(&points), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn neighbours_are_those_of_the_hull_of_the_inverted_points() {
+        // A fixed scatter; the hull of q/|q|² is found by brute force: a and b are consecutive hull vertices when
+        // every other inverted point lies to the left of the line through them.
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 40) as f64 / (1_u64 << 24) as f64 * 2.0 - 1.0
+        };
+        for _ in 0..50 {
+            let points: Vec<(f64, f64)> = (0..40).map(|_| (next(), next())).collect();
+            let inverted: Vec<DVec2> = points
+                .iter()
+                .map(|&(x, y)| {
+                    let q = DVec2::new(x, y);
+                    q / q.length_squared()
+                })
+                .collect();
+            let mut hull = Vec::new();
+            for a in 0..40 {
+                for b in 0..40 {
+                    let line = inverted[b] - inverted[a];
+                    if a != b
+                        && (0..40).all(|c| c == a || c == b || line.perp_dot(inverted[c] - inverted[a]) > 0.0)
+                    {
+                        hull.push((a as u32, b as u32));
+                    }
+                }
+            }
+            let cell = labels(&points);
+            assert_eq!(cell.len(), hull.len());
+            for k in 0..cell.len() {
+                assert!(hull.contains(&(cell[k], cell[(k + 1) % cell.len()])));
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The natural neighbours of every point, counter-clockwise round its normal.
+
+use super::cell::Cell;
+use super::tree::{Tree, key, unkey};
+use crate::math::tangent_frame;
+use glam::{DVec2, DVec3, Vec3};
+
+/// How many of the nearest points are tried in turn when a cell is not proven complete. The first try takes the
+/// points within a ball that holds about 24 of them; a complete cell does not depend on which try completed it.
+const TRIES: [usize; 3] = [24, 64, 200];
+/// Radius of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
+/// so the ball reaches about 2.5 d: 22 points of a perfect lattice.
+const BALL: f32 = 0.6;
+/// Marks, in [`Fans::neighbour`], that the corner between this neighbour and the next one is proven.
+const PROVEN: u32 = 1 << 31;
+
+/// Natural neighbours in tree order, all fans one after the other.
+#[derive(Debug)]
+pub(super) struct Fans {
+    start: Vec<u32>,
+    neighbour: Vec<u32>,
+    /// Whether the cell is closed and proven complete.
+    pub(super) closed: Vec<bool>,
+    /// Distance to the nearest other point of any sheet; infinite when there is none.
+    pub(super) nearest: Vec<f32>,
+}
+
+impl Fans {
+    /// The fans of the points of `tree` with the unit `normal`s (in tree order).
+    pub(super) fn new(tree: &Tree, normal: &[Vec3]) -> Self {
+        let n = tree.len();
+        let mut fans = Self {
+            start: Vec::with_capacity(n + 1),
+            neighbour: Vec::with_capacity(6 * n + n / 4),
+            closed: Vec::with_capacity(n),
+            nearest: Vec::with_capacity(n),
+        };
+        fans.start.push(0);
+        let mut cell = Cell::new();
+        let mut candidates = Vec::new();
+        let mut local: Vec<Vec3> = Vec::new();
+        let mut distance_sq: Vec<f32> = Vec::new();
+        let mut keys = Vec::new();
+        for (range, lo, hi) in tree.leaves() {
+            let reach = BALL * (hi - lo).length();
+            let reach_sq = reach * reach;
+            candidates.clear();
+            tree.within_box(lo - reach, hi + reach, &mut candidates);
+            local.clear();
+            local.extend(candidates.iter().map(|&i| tree.position[i as usize]));
+            for i in range {
+                let p = tree.position[i];
+                distance_sq.clear();
+                distance_sq.extend(local.iter().map(|&other| (other - p).length_squared()));
+                let mut nearest_sq = reach_sq;
+                keys.clear();
+                for (&j, &d) in candidates.iter().zip(&distance_sq) {
+                    if d < reach_sq && j as usize != i {
+                        nearest_sq = nearest_sq.min(d);
+                        if normal[i].dot(normal[j as usize]) > 0.0 {
+                            keys.push(key(d, j));
+                        }
+                    }
+                }
+                if nearest_sq >= reach_sq {
+                    nearest_sq = tree.nearest_sq(p, i as u32, f32::INFINITY);
+                }
+                fans.nearest.push(nearest_sq.sqrt());
+                keys.sort_unstable();
+                let mut known_sq = f64::from(reach_sq);
+                let mut closed = fill(&mut cell, tree, normal[i], i, &keys, known_sq);
+                for count in TRIES {
+                    // The ball may have held more points than this try would take.
+                    if closed || count <= keys.len() {
+                        continue;
+                    }
+                    let accept = |j: u32| j as usize != i && normal[i].dot(normal[j as usize]) > 0.0;
+                    tree.nearest_many(p, count, accept, &mut keys);
+                    known_sq = match keys.last() {
+                        Some(&last) if keys.len() == count => f64::from(unkey(last).0),
+                        _ => f64::INFINITY, // Every point of the set is known.
+                    };
+                    closed = fill(&mut cell, tree, normal[i], i, &keys, known_sq);
+                }
+                fans.neighbour
+                    .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
+                fans.closed.push(closed);
+                fans.start.push(fans.neighbour.len() as u32);
+            }
+        }
+        fans
+    }
+
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.closed.len()
+    }
+
+    fn entries(&self, i: usize) -> &[u32] {
+        &self.neighbour[self.start[i] as usize..self.start[i + 1] as usize]
+    }
+
+    /// Number of natural neighbours of `i`.
+    pub(super) fn valence(&self, i: usize) -> usize {
+        self.entries(i).len()
+    }
+
+    /// Natural neighbours of `i`.
+    pub(super) fn of(&self, i: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+        self.entries(i).iter().map(|&entry| (entry & !PROVEN) as usize)
+    }
+
+    /// Pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair are a triangle.
+    pub(super) fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let entries = self.entries(i);
+        (0..entries.len()).filter(|&k| entries[k] & PROVEN != 0).map(move |k| {
+            let next = entries[if k + 1 == entries.len() { 0 } else { k + 1 }];
+            ((entries[k] & !PROVEN) as usize, (next & !PROVEN) as usize)
+        })
+    }
+
+    /// Whether `i` sees the triangle of itself, `a` and `b`, in either orientation: two sheets seen from either
+    /// side may disagree about which way round it goes.
+    pub(super) fn sees(&self, i: usize, a: usize, b: usize) -> bool {
+        self.pairs(i).any(|pair| pair == (a, b) || pair == (b, a))
+    }
+
+    /// Whether `j` is a natural neighbour of `i`.
+    pub(super) fn adjacent(&self, i: usize, j: usize) -> bool {
+        self.of(i).any(|other| other == j)
+    }
+}
+
+/// The place of `q - p` in the tangent plane spanned by `u` and `v`, at its true distance from the origin.
+#[inline]
+pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
+    let flat = DVec2::new(offset.dot(u), offset.dot(v));
+    let flat_sq = flat.length_squared();
+    // A point straight above has no direction.
+    (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
+}
+
+/// Cuts the cell of point `i` by the sorted `keys`, until no farther point can matter; whether it is closed and proven
+/// complete when every point nearer than √`known_sq` is among them.
+fn fill(cell: &mut Cell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64], known_sq: f64) -> bool {
+    let p = tree.position[i].as_dvec3();
+    let (u, v) = tangent_frame(normal);
+    let (u, v) = (u.as_dvec3(), v.as_dvec3());
+    let farthest_sq = keys.last().map_or(1.0, |&last| f64::from(unkey(last).0));
+    // Any square whose sides lie beyond half of what is known leaves no proven corner on itself.
+    let known = if known_sq.is_finite() { known_sq } else { farthest_sq * 1e6 };
+    cell.start(known.sqrt().max(f64::MIN_POSITIVE));
+    for &candidate in keys {
+        let (distance_sq, j) = unkey(candidate);
+        // Keys are rounded to single precision; the slack only costs a few needless cuts.
+        if f64::from(distance_sq) > 4.001 * cell.reach_sq() {
+            break;
+        }
+        if let Some(q) = unroll(tree.position[j as usize].as_dvec3() - p, u, v) {
+            cell.clip(q, j);
+        }
+    }
+    let mut corners = 0;
+    cell.edges(known_sq).all(|(_, certain)| {
+        corners += 1;
+        certain
+    }) && corners >= 3
+}

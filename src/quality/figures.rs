@@ -1,0 +1,437 @@
+//! The figures themselves.
+
+use super::border;
+use super::fans::unroll;
+use super::triangles::{Triangles, area_vector, topology};
+use super::{Options, Scene, Sizes, cover};
+use crate::field::Field;
+use crate::math::{Bounds, tangent_frame};
+use glam::{DVec2, Vec3};
+use serde::Serialize;
+
+/// Most random places for `quant`: the error falls with their root, the time grows with their number.
+const MOST_SAMPLES: usize = 262_144;
+/// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
+const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units.
+    pub d_hex: f64,
+    /// Area, as given or of the triangles found, in the field's units.
+    pub area: f64,
+    /// Largest first-order distance |f|/|∇f| to the surface.
+    pub err_max: f64,
+    /// Mean first-order distance to the surface.
+    pub err_mean: f64,
+    /// Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`.
+    pub undefined: usize,
+    /// Smallest nearest-neighbour distance.
+    pub nn_min: f64,
+    /// Mean nearest-neighbour distance.
+    pub nn_mean: f64,
+    /// Standard deviation of the nearest-neighbour distance over its mean.
+    pub nn_cv: f64,
+    /// Smallest over mean nearest-neighbour distance.
+    pub nn_ratio: f64,
+    /// Normalised Poisson-disk radius: `nn_min` under its usual name.
+    pub rho: f64,
+    /// First percentile of the nearest-neighbour distance.
+    pub rho_1: f64,
+    /// Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal.
+    pub cover: f64,
+    /// Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal.
+    pub quant: f64,
+    /// Fraction of the points with exactly six natural neighbours.
+    pub six: f64,
+    /// Fraction of the points with five or seven natural neighbours.
+    pub five_seven: f64,
+    /// Standard deviation of the valence.
+    pub val_sd: f64,
+    /// Number of points whose cell is not proven complete among their 200 nearest points.
+    pub open: usize,
+    /// Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice.
+    pub psi6: f64,
+    /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
+    /// points away from the border that a kept triangle fills.
+    pub tri_ok: f64,
+    /// Fraction of the triangles found that all three corners agree on.
+    pub agree: f64,
+    /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
+    pub euler: i64,
+    /// Connected components of the same.
+    pub components: usize,
+    /// Smallest angle of any triangle, in degrees.
+    pub ang_min: f64,
+    /// Mean over the triangles of their smallest angle, in degrees.
+    pub ang_min_mean: f64,
+    /// Fraction of the triangles with an angle below 30°.
+    pub lt30: f64,
+    /// Fraction of the triangles with an angle above 90°.
+    pub gt90: f64,
+    /// Fraction of all angles below 30°.
+    pub a_lt30: f64,
+    /// Fraction of all angles above 90°.
+    pub a_gt90: f64,
+    /// Standard deviation over mean of the length of mutual natural-neighbour edges.
+    pub edge_cv: f64,
+    /// Standard deviation over mean of edge length over the sum of the wanted radii.
+    pub size_cv: f64,
+    /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
+    pub dup: usize,
+    /// Points with a non-finite coordinate; left out of everything.
+    pub not_finite: usize,
+    /// Mean angle between the given normals (either sign) and ∇f, in degrees.
+    pub nrm_mean: f64,
+    /// Largest angle between the given normals (either sign) and ∇f, in degrees.
+    pub nrm_max: f64,
+    /// Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures.
+    pub boundary_excluded: usize,
+}
+
+impl Default for Figures {
+    /// Nothing measured.
+    fn default() -> Self {
+        let undefined = f64::NAN;
+        Self {
+            d_hex: undefined,
+            area: undefined,
+            err_max: undefined,
+            err_mean: undefined,
+            undefined: 0,
+            nn_min: undefined,
+            nn_mean: undefined,
+            nn_cv: undefined,
+            nn_ratio: undefined,
+            rho: undefined,
+            rho_1: undefined,
+            cover: undefined,
+            quant: undefined,
+            six: undefined,
+            five_seven: undefined,
+            val_sd: undefined,
+            open: 0,
+            psi6: undefined,
+            tri_ok: undefined,
+            agree: undefined,
+            euler: 0,
+            components: 0,
+            ang_min: undefined,
+            ang_min_mean: undefined,
+            lt30: undefined,
+            gt90: undefined,
+            a_lt30: undefined,
+            a_gt90: undefined,
+            edge_cv: undefined,
+            size_cv: undefined,
+            dup: 0,
+            not_finite: 0,
+            nrm_mean: undefined,
+            nrm_max: undefined,
+            boundary_excluded: 0,
+        }
+    }
+}
+
+/// Counts of nearest-neighbour distances over d_hex, in equal bins; values outside fall into the outermost bins.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub min: f64,
+    /// Upper end of the last bin.
+    pub max: f64,
+    /// Counts.
+    pub bins: Vec<u32>,
+}
+
+impl Histogram {
+    /// A fixed range, so that two runs can be laid over each other: the perfect lattice has 1.
+    const RANGE: (f64, f64) = (0.0, 1.2);
+    /// Bins of 0.01.
+    const BINS: usize = 120;
+
+    pub(super) fn new(nearest: &[f32], d_hex: f64) -> Self {
+        let (min, max) = Self::RANGE;
+        let mut bins = vec![0; Self::BINS];
+        for &distance in nearest {
+            let place = (f64::from(distance) / d_hex - min) / (max - min) * Self::BINS as f64;
+            if !place.is_nan() {
+                bins[(place as usize).min(Self::BINS - 1)] += 1;
+            }
+        }
+        Self { min, max, bins }
+    }
+}
+
+/// Mean and spread of numbers that arrive one by one (Welford's update).
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    count: f64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Moments {
+    fn add(&mut self, value: f64) {
+        self.count += 1.0;
+        let step = value - self.mean;
+        self.mean += step / self.count;
+        self.squares += step * (value - self.mean);
+    }
+
+    fn mean(&self) -> f64 {
+        if self.count > 0.0 { self.mean } else { f64::NAN }
+    }
+
+    /// Of the population; NaN for none.
+    fn deviation(&self) -> f64 {
+        (self.squares / self.count).sqrt()
+    }
+
+    fn variation(&self) -> f64 {
+        self.deviation() / self.mean()
+    }
+}
+
+/// Share of `count` in `all`; NaN of nothing.
+fn share(count: usize, all: usize) -> f64 {
+    count as f64 / all as f64
+}
+
+pub(super) fn d_hex(area: f64, count: usize) -> f64 {
+    (2.0 * area / (SQRT_3 * count as f64)).sqrt()
+}
+
+/// Area of the triangles.
+pub(super) fn area(scene: &Scene, mesh: &[[u32; 3]]) -> f64 {
+    mesh.iter().map(|&triangle| 0.5 * area_vector(&scene.tree.position, triangle).length()).sum()
+}
+
+pub(super) fn figures(
+    scene: &Scene,
+    triangles: &Triangles,
+    mesh: &[[u32; 3]],
+    field: &mut dyn Field,
+    bounds: Option<&Bounds>,
+    options: &Options,
+    duplicates: usize,
+) -> Figures {
+    let mut figures = Figures { dup: duplicates, ..Figures::default() };
+    let n = scene.tree.len();
+    if n == 0 {
+        return figures;
+    }
+    figures.area = options.area.unwrap_or_else(|| area(scene, mesh));
+    figures.d_hex = d_hex(figures.area, n + duplicates);
+    residuals(scene, &mut figures);
+
+    let inner: Vec<bool> = scene
+        .tree
+        .position
+        .iter()
+        .map(|&p| bounds.is_none_or(|bounds| !border::is_near(p, field, bounds, figures.d_hex)))
+        .collect();
+    figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
+
+    spacing(scene, &inner, &mut figures);
+    order(scene, &inner, &mut figures);
+    edges(scene, &inner, field, options.sizes, &mut figures);
+    let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
+    let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
+    let inner_mesh: Vec<[u32; 3]> = mesh.iter().filter(away).copied().collect();
+    shapes(scene, &kept, &mut figures);
+    (figures.euler, figures.components) = topology(n, mesh);
+    figures.agree = share(triangles.unanimous, triangles.found());
+    figures.tri_ok = if figures.boundary_excluded == 0 {
+        triangles.kept.len() as f64 / (2 * n as i64 - 2 * options.euler.unwrap_or(figures.euler)) as f64
+    } else {
+        filled(scene, triangles, &inner)
+    };
+    if !inner_mesh.is_empty() {
+        let samples = n.max(options.samples).min(MOST_SAMPLES);
+        let gaps = cover::random_gaps(field, &scene.tree, &inner_mesh, samples, options.seed);
+        let largest = gaps.largest.max(cover::largest_gap(field, &scene.tree, &inner_mesh));
+        figures.cover = largest / (figures.d_hex / SQRT_3);
+        figures.quant = gaps.mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
+    }
+    figures
+}
+
+fn residuals(scene: &Scene, figures: &mut Figures) {
+    let mut err = Moments::default();
+    let mut largest = f64::NAN;
+    for &residual in &scene.residual {
+        if residual.is_finite() {
+            err.add(residual);
+            largest = largest.max(residual);
+        } else {
+            figures.undefined += 1;
+        }
+    }
+    figures.err_mean = err.mean() / figures.d_hex;
+    figures.err_max = largest / figures.d_hex;
+}
+
+fn spacing(scene: &Scene, inner: &[bool], figures: &mut Figures) {
+    let mut distances: Vec<f64> =
+        (0..inner.len()).filter(|&i| inner[i]).map(|i| scene.nearest(i)).filter(|d| d.is_finite()).collect();
+    // A dropped duplicate is a point too, at distance 0 from the one it equals.
+    distances.extend(core::iter::repeat_n(0.0, figures.dup));
+    let mut moments = Moments::default();
+    distances.iter().for_each(|&d| moments.add(d));
+    let Some(smallest) = distances.iter().copied().reduce(f64::min) else {
+        return;
+    };
+    figures.nn_min = smallest / figures.d_hex;
+    figures.rho = figures.nn_min;
+    figures.nn_mean = moments.mean() / figures.d_hex;
+    figures.nn_cv = moments.variation();
+    figures.nn_ratio = smallest / moments.mean();
+    figures.rho_1 = percentile(&mut distances, 0.01) / figures.d_hex;
+}
+
+/// The value below which the share `at` of the `values` lies, linear between two of them.
+fn percentile(values: &mut [f64], at: f64) -> f64 {
+    let place = at * (values.len() - 1) as f64;
+    let (_, &mut below, above) = values.select_nth_unstable_by(place as usize, f64::total_cmp);
+    let next = above.iter().copied().fold(f64::INFINITY, f64::min);
+    if next.is_finite() { below + (next - below) * place.fract() } else { below }
+}
+
+fn order(scene: &Scene, inner: &[bool], figures: &mut Figures) {
+    let (mut six, mut five_seven, mut count) = (0, 0, 0);
+    let mut valence = Moments::default();
+    let mut psi6 = Moments::default();
+    for i in (0..inner.len()).filter(|&i| inner[i]) {
+        count += 1;
+        if !scene.fans.closed[i] {
+            figures.open += 1;
+            continue;
+        }
+        let neighbours = scene.fans.valence(i);
+        valence.add(neighbours as f64);
+        six += usize::from(neighbours == 6);
+        five_seven += usize::from(neighbours == 5 || neighbours == 7);
+        let (u, v) = tangent_frame(scene.normal[i]);
+        let (u, v) = (u.as_dvec3(), v.as_dvec3());
+        let p = scene.tree.position[i].as_dvec3();
+        let mut sum = DVec2::ZERO;
+        for j in scene.fans.of(i) {
+            if let Some(q) = unroll(scene.tree.position[j].as_dvec3() - p, u, v) {
+                // exp(iθ) to its sixth power, by products.
+                let unit = q / q.length();
+                let square = unit.rotate(unit);
+                sum += square.rotate(square).rotate(square);
+            }
+        }
+        psi6.add(sum.length() / neighbours as f64);
+    }
+    figures.six = share(six, count);
+    figures.five_seven = share(five_seven, count);
+    figures.val_sd = valence.deviation();
+    figures.psi6 = psi6.mean();
+}
+
+fn edges(scene: &Scene, inner: &[bool], field: &mut dyn Field, sizes: Sizes, figures: &mut Figures) {
+    let n = inner.len();
+    let mutual = |i: usize| {
+        scene.fans.of(i).filter(move |&j| j > i && inner[i] && inner[j] && scene.fans.adjacent(j, i))
+    };
+    let length =
+        |i: usize, j: usize| (scene.tree.position[i].as_dvec3() - scene.tree.position[j].as_dvec3()).length();
+    let mut edge = Moments::default();
+    (0..n).for_each(|i| mutual(i).for_each(|j| edge.add(length(i, j))));
+    figures.edge_cv = edge.variation();
+    let radius: Vec<f64> = match sizes {
+        Sizes::None => return,
+        Sizes::Given(given) => scene
+            .tree
+            .origin
+            .iter()
+            .map(|&i| given.get(i as usize).map_or(f64::NAN, |&r| f64::from(r)))
+            .collect(),
+        Sizes::Local => {
+            let mut own = vec![Moments::default(); n];
+            for i in 0..n {
+                for j in mutual(i) {
+                    own[i].add(0.5 * length(i, j));
+                    own[j].add(0.5 * length(i, j));
+                }
+            }
+            own.iter().map(Moments::mean).collect()
+        }
+        Sizes::Curvature { lowest, highest } => scene
+            .tree
+            .position
+            .iter()
+            .map(|&p| 1.0 / super::largest_curvature(field, p).max(lowest).min(highest))
+            .collect(),
+    };
+    let mut size = Moments::default();
+    for i in 0..n {
+        for j in mutual(i) {
+            let relative = length(i, j) / (radius[i] + radius[j]);
+            if relative.is_finite() {
+                size.add(relative);
+            }
+        }
+    }
+    figures.size_cv = size.variation();
+}
+
+fn shapes(scene: &Scene, kept: &[[u32; 3]], figures: &mut Figures) {
+    let mut smallest = Moments::default();
+    let mut least = f64::NAN;
+    let (mut lt30, mut gt90, mut a_lt30, mut a_gt90) = (0, 0, 0, 0);
+    for &triangle in kept {
+        let corner = triangle.map(|i| scene.tree.position[i as usize].as_dvec3());
+        let twice_area = area_vector(&scene.tree.position, triangle).length();
+        // At each corner the sides' product gives |a||b| cos; |a||b| sin is twice the area.
+        let cosines: [f64; 3] =
+            core::array::from_fn(|k| (corner[(k + 1) % 3] - corner[k]).dot(corner[(k + 2) % 3] - corner[k]));
+        // With one sine, the smallest angle has the largest cosine; below 30° when tan < 1/√3.
+        let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
+        let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
+        a_lt30 += sharp;
+        a_gt90 += blunt;
+        lt30 += usize::from(sharp > 0);
+        gt90 += usize::from(blunt > 0);
+        let largest_cosine = cosines[0].max(cosines[1]).max(cosines[2]);
+        let angle = libm::atan2(twice_area, largest_cosine).to_degrees();
+        smallest.add(angle);
+        least = least.min(angle);
+    }
+    figures.ang_min = least;
+    figures.ang_min_mean = smallest.mean();
+    figures.lt30 = share(lt30, kept.len());
+    figures.gt90 = share(gt90, kept.len());
+    figures.a_lt30 = share(a_lt30, 3 * kept.len());
+    figures.a_gt90 = share(a_gt90, 3 * kept.len());
+}
+
+/// Share of the sectors between consecutive neighbours of inner points that a kept triangle fills.
+fn filled(scene: &Scene, triangles: &Triangles, inner: &[bool]) -> f64 {
+    let corners: usize =
+        triangles.kept.iter().map(|t| t.iter().filter(|&&i| inner[i as usize]).count()).sum();
+    let sectors: usize = (0..inner.len()).filter(|&i| inner[i]).map(|i| scene.fans.valence(i)).sum();
+    share(corners, sectors)
+}
+
+/// Angles between the given normals and the gradient.
+pub(super) fn normals(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field, figures: &mut Figures) {
+    let mut angle = Moments::default();
+    let mut largest = f64::NAN;
+    for (p, n) in position.iter().zip(normal) {
+        let (gradient, n) = (field.jet(p.as_dvec3()).gradient, n.as_dvec3());
+        let (across, along) = (n.cross(gradient).length(), n.dot(gradient).abs());
+        if across + along > 0.0 && across.is_finite() && along.is_finite() {
+            let degrees = libm::atan2(across, along).to_degrees();
+            angle.add(degrees);
+            largest = largest.max(degrees);
+        }
+    }
+    figures.nrm_mean = angle.mean();
+    figures.nrm_max = largest;
+}

@@ -1,0 +1,154 @@
+//! Triangles of natural neighbours that their corners agree on, and what they add up to.
+
+use super::fans::Fans;
+use glam::{DVec3, Vec3};
+use std::collections::BTreeSet;
+
+/// The triangles of a set of points; indices in tree order, counter-clockwise round the normal of the first corner.
+#[derive(Debug)]
+pub(super) struct Triangles {
+    /// Kept triangles: at least two of their three corners see them. All three do for the first `unanimous` ones.
+    pub(super) kept: Vec<[u32; 3]>,
+    /// Number of triangles that all three corners see.
+    pub(super) unanimous: usize,
+    /// Triangles that one corner alone sees.
+    single: Vec<[u32; 3]>,
+}
+
+impl Triangles {
+    /// Counts, for each triangle that a corner sees, how many of its corners do.
+    pub(super) fn new(fans: &Fans) -> Self {
+        let mut kept = Vec::with_capacity(2 * fans.len());
+        let (mut majority, mut single) = (Vec::new(), Vec::new());
+        for i in 0..fans.len() {
+            for (a, b) in fans.pairs(i) {
+                let (by_a, by_b) = (fans.sees(a, b, i), fans.sees(b, i, a));
+                // The smallest corner that sees a triangle accounts for it.
+                if by_a && a < i || by_b && b < i {
+                    continue;
+                }
+                let triangle = [i as u32, a as u32, b as u32];
+                match u8::from(by_a) + u8::from(by_b) {
+                    2 => kept.push(triangle),
+                    1 => majority.push(triangle),
+                    _ => single.push(triangle),
+                }
+            }
+        }
+        let unanimous = kept.len();
+        kept.extend(majority);
+        Self { kept, unanimous, single }
+    }
+
+    /// Number of triangles that any corner sees.
+    pub(super) fn found(&self) -> usize {
+        self.kept.len() + self.single.len()
+    }
+
+    /// The kept triangles with the quarrels settled: no directed edge belongs to two of them.
+    ///
+    /// Four nearly cocircular points may each prefer another diagonal, since each sees the others in its own tangent
+    /// plane. When two stand against two, the kept triangles overlap or leave a gap. Here the undisputed ones stay; the
+    /// others follow, those with short edges first, if their directed edges are free; then those that one
+    /// corner alone sees, if at least two of their sides are still open.
+    pub(super) fn settled(&self, position: &[Vec3]) -> Vec<[u32; 3]> {
+        let majority = &self.kept[self.unanimous..];
+        let mut mesh = self.kept[..self.unanimous].to_vec();
+        if majority.is_empty() && self.single.is_empty() {
+            return mesh;
+        }
+        // Only edges from corners of disputed triangles can matter.
+        let mut hot = vec![false; position.len()];
+        for &i in majority.iter().chain(&self.single).flatten() {
+            hot[i as usize] = true;
+        }
+        let mut taken: Vec<(u32, u32)> = self.kept[..self.unanimous]
+            .iter()
+            .flat_map(|&triangle| sides(triangle))
+            .filter(|&(a, b)| hot[a as usize] && hot[b as usize])
+            .collect();
+        taken.sort_unstable();
+        let mut added = BTreeSet::new();
+        let free = |added: &BTreeSet<(u32, u32)>, side: (u32, u32)| {
+            taken.binary_search(&side).is_err() && !added.contains(&side)
+        };
+        let longest = |triangle: [u32; 3]| {
+            sides(triangle)
+                .map(|(a, b)| (position[a as usize] - position[b as usize]).length_squared().to_bits())
+                .into_iter()
+                .max()
+        };
+        for (disputed, needed) in [(majority, 0), (&self.single[..], 2)] {
+            let mut disputed = disputed.to_vec();
+            disputed.sort_unstable_by_key(|&triangle| (longest(triangle), triangle));
+            for triangle in disputed {
+                let sides = sides(triangle);
+                let open = sides.iter().filter(|&&(a, b)| !free(&added, (b, a))).count();
+                if open >= needed && sides.iter().all(|&side| free(&added, side)) {
+                    added.extend(sides);
+                    mesh.push(triangle);
+                }
+            }
+        }
+        mesh
+    }
+}
+
+/// The directed edges of a triangle.
+fn sides([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
+    [(a, b), (b, c), (c, a)]
+}
+
+/// Twice the area vector of a triangle.
+pub(super) fn area_vector(position: &[Vec3], [a, b, c]: [u32; 3]) -> DVec3 {
+    let a = position[a as usize].as_dvec3();
+    (position[b as usize].as_dvec3() - a).cross(position[c as usize].as_dvec3() - a)
+}
+
+/// Euler number and number of connected components of a set of triangles over `points` points; points in no triangle
+/// do not count.
+pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, usize) {
+    // Each edge is written once, by its smaller end; the lists are short, so a linear look is enough.
+    let mut start = vec![0_u32; points + 1];
+    for triangle in triangles {
+        for k in 0..3 {
+            start[triangle[k].min(triangle[(k + 1) % 3]) as usize + 1] += 1;
+        }
+    }
+    for i in 0..points {
+        start[i + 1] += start[i];
+    }
+    let mut fill: Vec<u32> = start[..points].to_vec();
+    let mut other = vec![0_u32; 3 * triangles.len()];
+    let mut edges = 0_i64;
+    let mut root: Vec<u32> = (0..points as u32).collect();
+    let mut used = vec![false; points];
+    for triangle in triangles {
+        for k in 0..3 {
+            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+            let (a, b) = (a.min(b), a.max(b));
+            let list = start[a as usize] as usize..fill[a as usize] as usize;
+            if !other[list].contains(&b) {
+                other[fill[a as usize] as usize] = b;
+                fill[a as usize] += 1;
+                edges += 1;
+            }
+            used[a as usize] = true;
+            used[b as usize] = true;
+            let (a, b) = (find(&mut root, a), find(&mut root, b));
+            root[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let vertices = used.iter().filter(|&&used| used).count();
+    let components = (0..points).filter(|&i| used[i] && root[i] as usize == i).count();
+    (vertices as i64 - edges + triangles.len() as i64, components)
+}
+
+/// Representative of `i`, halving the path to it.
+fn find(root: &mut [u32], mut i: u32) -> u32 {
+    while root[i as usize] != i {
+        root[i as usize] = root[root[i as usize] as usize];
+        i = root[i as usize];
+    }
+    i
+}

@@ -1,0 +1,508 @@
+//! Every figure of the quality report, on point sets whose figures are known.
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::{Field, Interval, Jet};
+use marching_particles::math::{Bounds, Sym3};
+use marching_particles::quality::{Options, Report, Sizes, measure, triangles};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// A field given by its jet alone.
+struct Analytic<F: Fn(DVec3) -> Jet>(F);
+
+impl<F: Fn(DVec3) -> Jet> Field for Analytic<F> {
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        for (p, value) in points.iter().zip(value) {
+            *value = (self.0)(p.as_dvec3()).value as f32;
+        }
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        for (k, p) in points.iter().enumerate() {
+            let jet = (self.0)(p.as_dvec3());
+            value[k] = jet.value as f32;
+            gradient[k] = jet.gradient.as_vec3();
+        }
+    }
+
+    fn hessians(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3], _: &mut [Sym3<f32>]) {
+        unimplemented!("the report takes curvature in double precision")
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        (self.0)(p)
+    }
+
+    fn interval(&mut self, _: DVec3, _: DVec3) -> Interval {
+        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: false }
+    }
+}
+
+fn plane() -> Analytic<impl Fn(DVec3) -> Jet> {
+    Analytic(|p| Jet { value: p.z, gradient: DVec3::Z, ..Jet::default() })
+}
+
+/// |p|² − 1.
+fn sphere() -> Analytic<impl Fn(DVec3) -> Jet> {
+    Analytic(|p| Jet {
+        value: p.length_squared() - 1.0,
+        gradient: 2.0 * p,
+        hessian: Sym3 { xx: 2.0, yy: 2.0, zz: 2.0, ..Sym3::default() },
+    })
+}
+
+/// (√(x² + y²) − 1)² + z² − 1/4, without its Hessian.
+fn torus() -> Analytic<impl Fn(DVec3) -> Jet> {
+    Analytic(|p| {
+        let ring = p.truncate().length();
+        let out = ring - 1.0;
+        Jet {
+            value: out * out + p.z * p.z - 0.25,
+            gradient: DVec3::new(2.0 * out * p.x / ring, 2.0 * out * p.y / ring, 2.0 * p.z),
+            ..Jet::default()
+        }
+    })
+}
+
+const HEXAGONAL: [f64; 2] = [0.5, 0.866_025_403_784_438_6];
+
+/// The plane lattice spanned by (1, 0) and `second`, times `scale`, inside the square of half-width `half`; and that
+/// square as a clip box.
+fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
+    let steps = (4.0 * half / scale) as i32;
+    let mut points = Vec::new();
+    for j in -steps..=steps {
+        for i in -steps..=steps {
+            let x = scale * (f64::from(i) + f64::from(j) * second[0]);
+            let y = scale * f64::from(j) * second[1];
+            if x.abs() < half && y.abs() < half {
+                points.push(DVec3::new(x, y, 0.0).as_vec3());
+            }
+        }
+    }
+    (points, Bounds::cube(half))
+}
+
+/// Options for `n` points of a lattice with cells of the given area.
+fn with_area<'a>(n: usize, cell: f64) -> Options<'a> {
+    Options { area: Some(n as f64 * cell), ..Options::default() }
+}
+
+/// A spiral of `n` evenly spread points on the unit sphere.
+fn fibonacci(n: usize) -> Vec<Vec3> {
+    let turn = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    (0..n)
+        .map(|i| {
+            let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
+            let (s, c) = (turn * i as f64).sin_cos();
+            let r = (1.0 - z * z).sqrt();
+            DVec3::new(r * c, r * s, z).as_vec3()
+        })
+        .collect()
+}
+
+struct Random(Pcg32);
+
+impl Random {
+    fn new(seed: u64) -> Self {
+        Self(Pcg32::seed_from_u64(seed))
+    }
+
+    fn unit(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / 4_294_967_296.0
+    }
+
+    /// Standard normal (Box–Muller).
+    fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (core::f64::consts::TAU * self.unit()).cos()
+    }
+
+    fn on_sphere(&mut self) -> Vec3 {
+        DVec3::new(self.normal(), self.normal(), self.normal()).normalize().as_vec3()
+    }
+}
+
+#[track_caller]
+fn close(name: &str, value: f64, wanted: f64, tolerance: f64) {
+    assert!((value - wanted).abs() <= tolerance, "{name} = {value}, not {wanted} ± {tolerance}");
+}
+
+const SPHERE_AREA: f64 = 4.0 * core::f64::consts::PI;
+
+#[test]
+fn hexagonal_lattice_is_perfect_in_every_figure() {
+    let scale = 1.0 / 32.0;
+    let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
+    let cell = scale * scale * HEXAGONAL[1];
+    let normals = vec![Vec3::Z; points.len()];
+    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &with_area(points.len(), cell));
+    let f = report.figures;
+    println!("{f:#?}");
+    close("d_hex", f.d_hex, scale, 1e-9);
+    close("area", f.area, cell * points.len() as f64, 1e-9);
+    close("err_max", f.err_max, 0.0, 0.0);
+    close("nn_min", f.nn_min, 1.0, 1e-4);
+    close("rho", f.rho, f.nn_min, 0.0);
+    close("rho_1", f.rho_1, 1.0, 1e-4);
+    close("nn_mean", f.nn_mean, 1.0, 1e-4);
+    close("nn_cv", f.nn_cv, 0.0, 1e-4);
+    close("nn_ratio", f.nn_ratio, 1.0, 1e-4);
+    close("cover", f.cover, 1.0, 1e-4);
+    close("quant", f.quant, 1.0, 3e-3);
+    close("six", f.six, 1.0, 0.0);
+    close("five_seven", f.five_seven, 0.0, 0.0);
+    close("val_sd", f.val_sd, 0.0, 0.0);
+    close("psi6", f.psi6, 1.0, 1e-4);
+    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    close("ang_min", f.ang_min, 60.0, 1e-2);
+    close("ang_min_mean", f.ang_min_mean, 60.0, 1e-2);
+    close("lt30", f.lt30, 0.0, 0.0);
+    close("gt90", f.gt90, 0.0, 0.0);
+    close("edge_cv", f.edge_cv, 0.0, 1e-4);
+    close("nrm_max", f.nrm_max, 0.0, 0.0);
+    assert_eq!((f.open, f.dup, f.undefined, f.not_finite), (0, 0, 0, 0));
+    assert_eq!((f.euler, f.components), (1, 1), "a disc");
+    let inside = |p: &Vec3| f64::from(p.x.abs().max(p.y.abs())) < 1.0 - 4.0 * scale;
+    let excluded = points.iter().filter(|p| !inside(p)).count() as f64;
+    close("boundary_excluded", f.boundary_excluded as f64, excluded, 0.12 * excluded);
+    for (i, p) in points.iter().enumerate().filter(|(_, p)| inside(p)) {
+        assert_eq!(report.valence[i], 6, "valence at {p}");
+        close("nearest", f64::from(report.nearest[i]), scale, 1e-6);
+    }
+}
+
+#[test]
+fn square_lattice_has_valence_four_and_half_right_angles() {
+    // A power of two: every coordinate is exact and every square exactly cocircular.
+    let scale = 1.0 / 32.0;
+    let (points, bounds) = lattice([0.0, 1.0], scale, 1.0);
+    let report = measure(&points, &[], &mut plane(), Some(&bounds), &with_area(points.len(), scale * scale));
+    let f = report.figures;
+    println!("{f:#?}");
+    let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
+    close("nn_min", f.nn_min, 1.0 / d_hex, 1e-9);
+    close("six", f.six, 0.0, 0.0);
+    close("val_sd", f.val_sd, 0.0, 0.0);
+    let centre = points.iter().position(|&p| p == Vec3::ZERO).expect("the origin is a lattice point");
+    assert_eq!(report.valence[centre], 4);
+    // exp(6iθ) is 1, −1, 1, −1.
+    close("psi6", f.psi6, 0.0, 1e-9);
+    // Every square is seen by its corners as four half squares that no two corners agree on.
+    close("agree", f.agree, 0.0, 0.0);
+    assert!(f.ang_min.is_nan());
+}
+
+#[test]
+fn nearly_square_lattice_has_the_figures_of_the_square() {
+    // A shear of 2 % decides every diagonal.
+    let scale = 1.0 / 32.0;
+    let (points, bounds) = lattice([0.02, 1.0], scale, 1.0);
+    let options = with_area(points.len(), scale * scale);
+    let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+    println!("{f:#?}");
+    let d_hex = (2.0 / 3.0_f64.sqrt()).sqrt();
+    close("six", f.six, 1.0, 0.0);
+    close("ang_min", f.ang_min, 45.0, 1.0);
+    close("gt90", f.gt90, 0.0, 0.0);
+    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    // The circumradius of a triangle of area 1/2 is half the product of its sides.
+    let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
+    close("cover", f.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
+    // The mean squared distance to the centre of a unit square is 1/6.
+    close("quant", f.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 4e-3);
+}
+
+#[test]
+fn jittered_lattice_has_the_known_mean_angle() {
+    let scale = 1.0 / 64.0;
+    let (lattice, bounds) = lattice(HEXAGONAL, scale, 1.0);
+    for (jitter, angle) in [(0.02, 58.0), (0.04, 56.0), (0.06, 54.1)] {
+        let mut random = Random::new(7);
+        let points: Vec<Vec3> = lattice
+            .iter()
+            .map(|p| {
+                let step = DVec3::new(random.normal(), random.normal(), 0.0) * (jitter * scale);
+                (p.as_dvec3() + step).as_vec3()
+            })
+            .collect();
+        let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
+        let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+        println!("jitter {jitter}: {f:#?}");
+        close("ang_min_mean", f.ang_min_mean, angle, 0.15);
+        // The length of an edge varies by √2 times the jitter.
+        close("edge_cv", f.edge_cv, jitter * 2.0_f64.sqrt(), 0.12 * jitter);
+    }
+}
+
+#[test]
+fn fibonacci_sphere_is_a_closed_manifold() {
+    let n = 2000;
+    let points = fibonacci(n);
+    let options = Options { area: Some(SPHERE_AREA), euler: Some(2), ..Options::default() };
+    let report = measure(&points, &points, &mut sphere(), None, &options);
+    let f = report.figures;
+    println!("{f:#?}");
+    assert_eq!((f.euler, f.components), (2, 1));
+    close("tri_ok", f.tri_ok, 1.0, 2e-3);
+    close("agree", f.agree, 1.0, 3e-3);
+    assert_eq!((f.open, f.boundary_excluded), (0, 0));
+    // Σ (6 − valence) = 6χ on a closed triangulation; near the poles four points are almost cocircular, and every pair
+    // that holds to both diagonals adds two neighbours and two triangles too many.
+    let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
+    let surplus = (f.tri_ok - 1.0) * (2 * n - 4) as f64;
+    close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
+    // Single precision leaves the points within a rounding of the sphere.
+    assert!(f.err_max * f.d_hex < 2e-7 && f.err_max > 0.0, "err_max = {}", f.err_max);
+    assert!(f.nrm_max < 1e-4, "nrm_max = {}", f.nrm_max);
+    // The flat triangles have a little less area than the sphere.
+    let flat = measure(&points, &points, &mut sphere(), None, &Options::default()).figures;
+    let missing = 1.0 - flat.area / SPHERE_AREA;
+    assert!(missing > 0.0 && missing < 8.0 / n as f64, "missing {missing} of the area");
+    assert!(f.cover > 1.0 && f.cover < 1.4, "cover = {}", f.cover);
+    assert!(f.quant > 1.0 && f.quant < 1.1, "quant = {}", f.quant);
+}
+
+#[test]
+fn triangles_of_a_sphere_are_closed_and_wind_outward() {
+    let points = fibonacci(1234);
+    let found = triangles(&points, &points, &mut sphere());
+    assert_eq!(found.len(), 2 * 1234 - 4);
+    let mut edges: Vec<[u32; 2]> = found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+    edges.sort_unstable();
+    assert!(edges.windows(2).all(|pair| pair[0] != pair[1]), "an edge is used twice in one direction");
+    assert!(edges.iter().all(|&[a, b]| edges.binary_search(&[b, a]).is_ok()), "an edge is open");
+    for triangle in found {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
+        assert!((b - a).cross(c - a).dot(a) > 0.0);
+    }
+}
+
+#[test]
+fn torus_lattice_has_euler_number_zero() {
+    let (around, through) = (160, 60);
+    let mut points = Vec::new();
+    for i in 0..around {
+        for j in 0..through {
+            let u = core::f64::consts::TAU * f64::from(i) / f64::from(around);
+            let v = core::f64::consts::TAU * (f64::from(j) + 0.5 * f64::from(i % 2)) / f64::from(through);
+            let ring = 1.0 + 0.5 * v.cos();
+            points.push(DVec3::new(ring * u.cos(), ring * u.sin(), 0.5 * v.sin()).as_vec3());
+        }
+    }
+    let f = measure(&points, &[], &mut torus(), None, &Options::default()).figures;
+    println!("{f:#?}");
+    assert_eq!((f.euler, f.components, f.open), (0, 1, 0));
+    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    close("area", f.area, 2.0 * core::f64::consts::PI.powi(2), 0.05);
+    assert!(f.nrm_mean.is_nan(), "no normals were given");
+}
+
+#[test]
+fn white_noise_has_its_known_figures() {
+    let mut random = Random::new(1);
+    let n = 40_000;
+    let points: Vec<Vec3> = (0..n).map(|_| random.on_sphere()).collect();
+    let options = Options { area: Some(SPHERE_AREA), euler: Some(2), ..Options::default() };
+    let f = measure(&points, &points, &mut sphere(), None, &options).figures;
+    println!("{f:#?}");
+    close("six", f.six, 0.295, 0.008);
+    close("quant", f.quant, 1.985, 0.03);
+    close("nn_mean", f.nn_mean, 0.465, 0.005);
+    // The nearest-neighbour distance of a Poisson process is Rayleigh distributed.
+    close("nn_cv", f.nn_cv, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
+    assert!(f.rho < 0.02, "rho = {}", f.rho);
+    // The share of the distances below x is 1 − exp(−π N x²/A).
+    let first = (-(1.0_f64 - 0.01).ln() * 3.0_f64.sqrt() / 2.0 / core::f64::consts::PI).sqrt();
+    close("rho_1", f.rho_1, first, 0.1 * first);
+    close("tri_ok", f.tri_ok, 1.0, 0.01);
+    assert_eq!(f.open, 0);
+}
+
+#[test]
+fn hole_is_measured_as_a_hole() {
+    let mut points = fibonacci(3000);
+    let whole = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    let centre = points[1500];
+    let radius = 2.5 * whole.d_hex as f32;
+    points.retain(|p| p.distance(centre) > radius);
+    let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    // The largest empty disc is at least the one that was cut, and at most one spacing larger.
+    let gap = f.cover * f.d_hex / 3.0_f64.sqrt();
+    assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
+    // Cells round the hole are large but closed: it is bridged, and the sphere stays whole.
+    assert_eq!((f.euler, f.open), (2, 0));
+    assert!(f.gt90 > whole.gt90);
+}
+
+#[test]
+fn two_sheets_are_triangulated_apart_but_spaced_together() {
+    // Two hexagonal patches, half a spacing apart, with opposite normals.
+    let scale = 1.0 / 16.0;
+    let gap = 0.25 * scale;
+    let (sheet, bounds) = lattice(HEXAGONAL, scale, 1.0);
+    let mut points: Vec<Vec3> = sheet.iter().map(|&p| p + Vec3::Z * gap as f32).collect();
+    points.extend(sheet.iter().map(|&p| p - Vec3::Z * gap as f32));
+    let mut slab = Analytic(move |p: DVec3| Jet {
+        value: p.z * p.z - gap * gap,
+        gradient: DVec3::Z * (2.0 * p.z),
+        hessian: Sym3 { zz: 2.0, ..Sym3::default() },
+    });
+    let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
+    let f = measure(&points, &[], &mut slab, Some(&bounds), &options).figures;
+    println!("{f:#?}");
+    close("six", f.six, 1.0, 0.0);
+    close("nn_mean", f.nn_mean, 0.5, 1e-4);
+    assert_eq!((f.components, f.euler), (2, 2));
+}
+
+#[test]
+fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
+    let scale = 1.0 / 16.0;
+    let (mut points, bounds) = lattice(HEXAGONAL, scale, 1.0);
+    for (i, p) in points.iter_mut().enumerate() {
+        p.z = if i % 2 == 0 { 0.0 } else { 0.01 * scale as f32 };
+    }
+    let tilt = 5.0_f32.to_radians();
+    let normals = vec![Vec3::new(tilt.sin(), 0.0, -tilt.cos()); points.len()];
+    let options = with_area(points.len(), scale * scale * HEXAGONAL[1]);
+    let report = measure(&points, &normals, &mut plane(), Some(&bounds), &options);
+    let f = report.figures;
+    close("err_max", f.err_max, 0.01, 1e-8);
+    close("err_mean", f.err_mean, 0.005, 1e-5);
+    close("residual", f64::from(report.residual[1]), 0.01 * scale, 1e-9);
+    // Either sign of the normal.
+    close("nrm_mean", f.nrm_mean, 5.0, 1e-4);
+    close("nrm_max", f.nrm_max, 5.0, 1e-4);
+}
+
+#[test]
+fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
+    let points = fibonacci(4000);
+    let touching = Bounds::cube(1.0);
+    let f = measure(&points, &[], &mut sphere(), Some(&touching), &Options::default()).figures;
+    assert_eq!(f.boundary_excluded, 0);
+
+    let cut = Bounds { min: [-2.0, -2.0, -2.0], max: [2.0, 2.0, 0.5] };
+    let points: Vec<Vec3> = points.into_iter().filter(|&p| cut.contains(p)).collect();
+    // The sphere below z = 1/2 has the area 2π · 3/2.
+    let area = 3.0 * core::f64::consts::PI;
+    let options = Options { area: Some(area), ..Options::default() };
+    let f = measure(&points, &[], &mut sphere(), Some(&cut), &options).figures;
+    println!("{f:#?}");
+    // The band of 4 d_hex along the circle of radius √3/2.
+    let band = 4.0 * f.d_hex * core::f64::consts::TAU * 0.75_f64.sqrt();
+    let wanted = band / area * points.len() as f64;
+    close("boundary_excluded", f.boundary_excluded as f64, wanted, 0.15 * wanted);
+    close("tri_ok", f.tri_ok, 1.0, 1e-3);
+    assert_eq!((f.open, f.euler), (0, 1));
+    assert!(f.cover < 1.4, "cover = {}", f.cover);
+    assert!(f.ang_min > 25.0, "ang_min = {}", f.ang_min);
+}
+
+#[test]
+fn edges_are_compared_with_the_wanted_radii() {
+    let scale = 1.0 / 32.0;
+    let (points, bounds) = lattice(HEXAGONAL, scale, 1.0);
+    let measured = |sizes: Sizes| {
+        let options = Options { sizes, ..with_area(points.len(), scale * scale * HEXAGONAL[1]) };
+        measure(&points, &[], &mut plane(), Some(&bounds), &options).figures.size_cv
+    };
+    let equal = vec![0.5 * scale as f32; points.len()];
+    close("equal radii", measured(Sizes::Given(&equal)), 0.0, 1e-4);
+    close("local radii", measured(Sizes::Local), 0.0, 1e-4);
+    assert!(measured(Sizes::None).is_nan());
+    // Sums of radii are 6 in one half and 2 in the other: |P − Q| / sum has the values s/6 and s/2.
+    let unequal: Vec<f32> = points.iter().map(|p| if p.x > 0.0 { 3.0 } else { 1.0 }).collect();
+    close("two sizes", measured(Sizes::Given(&unequal)), 0.5, 0.03);
+    // Constant curvature: the variation of the edges themselves.
+    let points = fibonacci(2000);
+    let curvature = Sizes::Curvature { lowest: 0.1, highest: 10.0 };
+    let options = Options { sizes: curvature, ..Options::default() };
+    let f = measure(&points, &[], &mut sphere(), None, &options).figures;
+    close("size_cv", f.size_cv, f.edge_cv, 1e-6);
+}
+
+#[test]
+fn duplicates_are_counted_and_do_not_break_the_triangulation() {
+    let points = fibonacci(500);
+    let clean = measure(&points, &points, &mut sphere(), None, &Options::default());
+    let mut doubled = points.clone();
+    doubled.extend([points[17], points[17], points[3]]);
+    let report = measure(&doubled, &doubled, &mut sphere(), None, &Options::default());
+    let f = report.figures;
+    assert_eq!((f.dup, f.euler), (3, 2));
+    close("rho", f.rho, 0.0, 0.0);
+    assert_eq!((report.nearest[17], report.nearest[500]), (0.0, 0.0));
+    assert_eq!(report.valence[500], 0);
+    assert_eq!(report.valence[..500], clean.valence[..]);
+}
+
+fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Report {
+    let report = measure(points, normals, &mut sphere(), Some(&Bounds::cube(0.9)), &Options::default());
+    assert_eq!(report.valence.len(), points.len());
+    assert_eq!(report.nearest.len(), points.len());
+    assert_eq!(report.residual.len(), points.len());
+    report
+}
+
+#[test]
+fn degenerate_input_gives_undefined_figures_and_no_panic() {
+    assert!(degenerate(&[], &[]).figures.d_hex.is_nan());
+    let one = degenerate(&[Vec3::X], &[]);
+    assert!(one.figures.nn_min.is_nan() && one.nearest[0] == f32::INFINITY && one.valence[0] == 0);
+    let two = degenerate(&[Vec3::X, Vec3::Y], &[Vec3::NAN, Vec3::ZERO]);
+    assert_eq!(two.nearest, [2.0_f32.sqrt(); 2]);
+    assert!(two.figures.ang_min.is_nan());
+    degenerate(&[Vec3::ZERO, Vec3::ZERO], &[Vec3::NAN]);
+    let same = degenerate(&vec![Vec3::X; 5000], &[]);
+    assert_eq!(same.figures.dup, 4999);
+    let bad = degenerate(&[Vec3::X, Vec3::NAN, Vec3::Y, Vec3::INFINITY, Vec3::MAX, Vec3::Z], &[]);
+    assert_eq!(bad.figures.not_finite, 2);
+    // A row, a plane through the sphere, a solid cube: nothing that samples the surface.
+    degenerate(&(0..300).map(|i| Vec3::X * (i as f32 * 1e-3)).collect::<Vec<_>>(), &[]);
+    let (flat, _) = lattice([0.0, 1.0], 0.125, 1.0);
+    degenerate(&flat, &vec![Vec3::NAN; flat.len()]);
+    let mut random = Random::new(3);
+    let cloud: Vec<Vec3> =
+        (0..3000).map(|_| DVec3::new(random.unit(), random.unit(), random.unit()).as_vec3()).collect();
+    degenerate(&cloud, &cloud);
+    for scale in [1e-30, 1e-20, 1e-8, 1e18, 1e30] {
+        let scaled: Vec<Vec3> = fibonacci(300).iter().map(|&p| p * scale).collect();
+        degenerate(&scaled, &scaled);
+    }
+}
+
+#[test]
+fn undefined_field_is_counted_and_given_normals_take_its_place() {
+    let points = fibonacci(400);
+    let mut nowhere = Analytic(|_| Jet { value: f64::NAN, gradient: DVec3::NAN, ..Jet::default() });
+    let f = measure(&points, &points, &mut nowhere, None, &Options::default()).figures;
+    assert_eq!(f.undefined, 400);
+    assert!(f.err_max.is_nan());
+    assert_eq!((f.euler, f.components), (2, 1));
+}
+
+#[test]
+fn order_of_the_points_does_not_matter() {
+    let points = fibonacci(1000);
+    let reversed: Vec<Vec3> = points.iter().rev().copied().collect();
+    let one = measure(&points, &[], &mut sphere(), None, &Options::default());
+    let mut other = measure(&reversed, &[], &mut sphere(), None, &Options::default());
+    other.valence.reverse();
+    other.nearest.reverse();
+    assert_eq!(one.valence, other.valence);
+    assert_eq!(one.nearest, other.nearest);
+    close("six", one.figures.six, other.figures.six, 0.0);
+    close("cover", one.figures.cover, other.figures.cover, 1e-4);
+}
+
+#[test]
+fn histogram_counts_every_particle_once() {
+    let points = fibonacci(1000);
+    let report = measure(&points, &[], &mut sphere(), None, &Options::default());
+    let h = &report.histogram;
+    assert_eq!(h.bins.iter().sum::<u32>(), 1000);
+    let bin = (report.figures.nn_mean - h.min) / (h.max - h.min) * h.bins.len() as f64;
+    let near: u32 = h.bins[bin as usize - 8..bin as usize + 9].iter().sum();
+    assert!(near > 900, "{near} of 1000 near the mean");
+}
