@@ -1,5 +1,8 @@
 //! Fields f(x, y, z) whose zero set is the surface: values, gradients and Hessians, one point or a batch at a time.
 
+pub mod formula;
+pub mod gallery;
+
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
 

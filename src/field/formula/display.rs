@@ -1,0 +1,103 @@
+//! A formula as plain text that parses back to the same tree, and as MathML.
+
+use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
+
+/// Binding strength, weakest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    /// A sign in front, as strong as a product whose first factor it may be part of.
+    Sign,
+    Product,
+    Power,
+    Atom,
+}
+
+fn level(kind: &Kind) -> Level {
+    match kind {
+        Kind::Sum(_) => Level::Sum,
+        Kind::Negated(_) => Level::Sign,
+        Kind::Product(_) => Level::Product,
+        Kind::Power(_, _) => Level::Power,
+        Kind::Number(_) | Kind::Constant(_) | Kind::Coordinate(_) | Kind::Parameter(_) | Kind::Call(_, _) => {
+            Level::Atom
+        }
+    }
+}
+
+/// The expression as text.
+pub(super) fn plain(expr: &Expr) -> String {
+    let mut out = String::new();
+    write(&mut out, expr);
+    out
+}
+
+/// The equation as text.
+pub(super) fn plain_equation(equation: &Equation) -> String {
+    let mut out = plain(&equation.left);
+    if let Some(right) = &equation.right {
+        out.push_str(" = ");
+        write(&mut out, right);
+    }
+    out
+}
+
+/// `expr`, in brackets if it binds weaker than `least`.
+fn write_at(out: &mut String, expr: &Expr, least: Level) {
+    if level(&expr.kind) < least {
+        out.push('(');
+        write(out, expr);
+        out.push(')');
+    } else {
+        write(out, expr);
+    }
+}
+
+fn write(out: &mut String, expr: &Expr) {
+    match &expr.kind {
+        Kind::Number(value) => out.push_str(&format!("{value:?}").replace(".0e", "e")),
+        Kind::Constant(constant) => out.push_str(constant.name()),
+        Kind::Coordinate(axis) => out.push_str(COORDINATES[usize::from(*axis)]),
+        Kind::Parameter(name) => out.push_str(name),
+        Kind::Negated(inner) => {
+            out.push('-');
+            write_at(out, inner, Level::Sign);
+        }
+        Kind::Sum(terms) => {
+            for (index, (sign, term)) in terms.iter().enumerate() {
+                match (index, sign) {
+                    (0, _) => {}
+                    (_, Sign::Plus) => out.push_str(" + "),
+                    (_, Sign::Minus) => out.push_str(" - "),
+                }
+                write_at(out, term, Level::Sign);
+            }
+        }
+        Kind::Product(factors) => {
+            for (index, (relation, factor)) in factors.iter().enumerate() {
+                match (index, relation) {
+                    (0, _) => {}
+                    (_, Factor::Times) => out.push('*'),
+                    (_, Factor::Over) => out.push('/'),
+                }
+                write_at(out, factor, Level::Power);
+            }
+        }
+        Kind::Power(base, exponent) => {
+            write_at(out, base, Level::Atom);
+            out.push('^');
+            write_at(out, exponent, Level::Power);
+        }
+        Kind::Call(function, arguments) => {
+            out.push_str(function.name());
+            out.push('(');
+            for (index, argument) in arguments.iter().enumerate() {
+                if index > 0 {
+                    out.push_str(", ");
+                }
+                write(out, argument);
+            }
+            out.push(')');
+        }
+    }
+}

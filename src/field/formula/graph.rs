@@ -1,0 +1,419 @@
+//! The SSA form of a formula: a list of operations in which operands precede their uses, every operation occurs
+//! once (hash-consing), and constants are folded.
+
+use super::operations::{Binary, Unary};
+use std::collections::BTreeMap;
+
+/// Index of a node; operands have smaller indices than their uses.
+pub(super) type Id = u32;
+
+/// One operation. Constants are kept by their bits, so that nodes can be compared and ordered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Node {
+    Constant(u64),
+    Parameter(u32),
+    Coordinate(u8),
+    Unary(Unary, Id),
+    Binary(Binary, Id, Id),
+    /// An integer power with an exponent other than 0 and 1.
+    Power(Id, i32),
+    /// The smooth minimum of two values, with its blend width.
+    Smin(Id, Id, Id),
+    /// The third value where the first one is at most the second, and 0 elsewhere.
+    IfLe(Id, Id, Id),
+    /// 0 where the first value is at most the second, and the third one elsewhere.
+    IfGt(Id, Id, Id),
+}
+
+impl Node {
+    pub(super) fn constant(value: f64) -> Self {
+        Self::Constant(value.to_bits())
+    }
+
+    /// Calls `visit` with every operand.
+    pub(super) fn operands(self, mut visit: impl FnMut(Id)) {
+        match self {
+            Self::Constant(_) | Self::Parameter(_) | Self::Coordinate(_) => {}
+            Self::Unary(_, a) | Self::Power(a, _) => visit(a),
+            Self::Binary(_, a, b) => {
+                visit(a);
+                visit(b);
+            }
+            Self::Smin(a, b, c) | Self::IfLe(a, b, c) | Self::IfGt(a, b, c) => {
+                visit(a);
+                visit(b);
+                visit(c);
+            }
+        }
+    }
+
+    /// The same operation on `map`ped operands.
+    pub(super) fn mapped(self, map: impl Fn(Id) -> Id) -> Self {
+        match self {
+            Self::Constant(_) | Self::Parameter(_) | Self::Coordinate(_) => self,
+            Self::Unary(operation, a) => Self::Unary(operation, map(a)),
+            Self::Power(a, n) => Self::Power(map(a), n),
+            Self::Binary(operation, a, b) => Self::Binary(operation, map(a), map(b)),
+            Self::Smin(a, b, c) => Self::Smin(map(a), map(b), map(c)),
+            Self::IfLe(a, b, c) => Self::IfLe(map(a), map(b), map(c)),
+            Self::IfGt(a, b, c) => Self::IfGt(map(a), map(b), map(c)),
+        }
+    }
+
+    /// The value of the node in double precision, its operands' values being `value`.
+    pub(super) fn evaluate(self, parameters: &[f64], point: [f64; 3], value: impl Fn(Id) -> f64) -> f64 {
+        match self {
+            Self::Constant(bits) => f64::from_bits(bits),
+            Self::Parameter(index) => parameters[index as usize],
+            Self::Coordinate(axis) => point[usize::from(axis)],
+            Self::Unary(operation, a) => operation.evaluate(value(a)),
+            Self::Binary(operation, a, b) => operation.evaluate(value(a), value(b)),
+            Self::Power(a, n) => power(value(a), n),
+            Self::Smin(a, b, k) => smin(value(a), value(b), value(k)),
+            Self::IfLe(a, b, v) => if_le(value(a), value(b), value(v), 0.0),
+            Self::IfGt(a, b, v) => if_le(value(a), value(b), 0.0, value(v)),
+        }
+    }
+}
+
+/// x^n by repeated squaring; the reciprocal's power for n < 0.
+pub(super) fn power(x: f64, n: i32) -> f64 {
+    let mut square = if n < 0 { 1.0 / x } else { x };
+    let mut rest = n.unsigned_abs();
+    let mut result = 1.0;
+    while rest > 0 {
+        if rest & 1 == 1 {
+            result *= square;
+        }
+        square *= square;
+        rest >>= 1;
+    }
+    result
+}
+
+/// The least blend width: narrower ones, and negative ones, count as this.
+pub(super) const SMIN_LEAST_WIDTH: f64 = 1e-9;
+
+/// min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k cut to −1 … 1: twice continuously differentiable, and equal to
+/// the minimum where |a − b| ≥ k.
+pub(super) fn smin(a: f64, b: f64, k: f64) -> f64 {
+    let k = Binary::Max.evaluate(k, SMIN_LEAST_WIDTH);
+    let gap = 1.0 - Binary::Min.evaluate(((a - b) / k).abs(), 1.0);
+    Binary::Min.evaluate(a, b) - k * (gap * gap * gap) / 6.0
+}
+
+fn if_le(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+    if a <= b {
+        then
+    } else if a > b {
+        otherwise
+    } else {
+        f64::NAN
+    }
+}
+
+/// The nodes, and what is known of each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Graph {
+    nodes: Vec<Node>,
+    /// Bit k: the node depends on coordinate k.
+    axes: Vec<u8>,
+    index: BTreeMap<Node, Id>,
+    /// Whether a product with the constant 0 is 0. True while derivatives are built, where the 0 means "does not
+    /// depend on it"; false for the formula itself, whose `0*ln(x)` is undefined for negative x.
+    zero_annihilates: bool,
+}
+
+impl Graph {
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub(super) fn node(&self, id: Id) -> Node {
+        self.nodes[id as usize]
+    }
+
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Bit k: the node depends on coordinate k.
+    pub(super) fn axes(&self, id: Id) -> u8 {
+        self.axes[id as usize]
+    }
+
+    pub(super) fn is_uniform(&self, id: Id) -> bool {
+        self.axes(id) == 0
+    }
+
+    pub(super) fn as_constant(&self, id: Id) -> Option<f64> {
+        match self.node(id) {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    pub(super) fn let_zero_annihilate(&mut self) {
+        self.zero_annihilates = true;
+    }
+
+    /// The node itself, as it is; shared if it exists already.
+    pub(super) fn intern(&mut self, node: Node) -> Id {
+        if let Some(&id) = self.index.get(&node) {
+            return id;
+        }
+        let mut axes = if let Node::Coordinate(axis) = node { 1 << axis } else { 0 };
+        node.operands(|operand| axes |= self.axes[operand as usize]);
+        let id = u32::try_from(self.nodes.len()).unwrap_or(u32::MAX);
+        self.nodes.push(node);
+        self.axes.push(axes);
+        self.index.insert(node, id);
+        id
+    }
+
+    /// `node`, or its value if all its operands are constants.
+    fn folded(&mut self, node: Node) -> Id {
+        let mut constant = true;
+        node.operands(|operand| constant &= matches!(self.node(operand), Node::Constant(_)));
+        if constant {
+            let value = node.evaluate(&[], [0.0; 3], |id| self.as_constant(id).unwrap_or(f64::NAN));
+            return self.constant(value);
+        }
+        self.intern(node)
+    }
+
+    pub(super) fn constant(&mut self, value: f64) -> Id {
+        self.intern(Node::constant(value))
+    }
+
+    fn is(&self, id: Id, value: f64) -> bool {
+        self.as_constant(id) == Some(value)
+    }
+
+    /// The operands in an order of their own, so that a + b and b + a are one node; a uniform one comes second.
+    fn ordered(&self, a: Id, b: Id) -> (Id, Id) {
+        let key = |id: Id| (self.is_uniform(id), id);
+        if key(a) <= key(b) { (a, b) } else { (b, a) }
+    }
+
+    pub(super) fn add(&mut self, a: Id, b: Id) -> Id {
+        if self.is(a, 0.0) {
+            return b;
+        }
+        if self.is(b, 0.0) {
+            return a;
+        }
+        if a == b {
+            let two = self.constant(2.0);
+            return self.mul(a, two);
+        }
+        match (self.node(a), self.node(b)) {
+            // Not for a uniform beside a varying operand: there `sub` prefers the sum with the negated uniform.
+            (_, Node::Unary(Unary::Neg, inner)) if !self.is_uniform(inner) || self.is_uniform(a) => {
+                return self.sub(a, inner);
+            }
+            (Node::Unary(Unary::Neg, inner), _) if !self.is_uniform(inner) || self.is_uniform(b) => {
+                return self.sub(b, inner);
+            }
+            _ => {}
+        }
+        let (a, b) = self.ordered(a, b);
+        // (v + u) + w = v + (u + w) for uniform u and w: one operation per point less.
+        if self.is_uniform(b)
+            && let Node::Binary(Binary::Add, v, u) = self.node(a)
+            && self.is_uniform(u)
+            && !self.is_uniform(v)
+        {
+            let sum = self.add(u, b);
+            return self.add(v, sum);
+        }
+        self.folded(Node::Binary(Binary::Add, a, b))
+    }
+
+    pub(super) fn sub(&mut self, a: Id, b: Id) -> Id {
+        if self.is(b, 0.0) {
+            return a;
+        }
+        if self.is(a, 0.0) {
+            return self.neg(b);
+        }
+        if let Node::Unary(Unary::Neg, b) = self.node(b) {
+            return self.add(a, b);
+        }
+        if self.is_uniform(b) && !self.is_uniform(a) {
+            let negated = self.neg(b);
+            return self.add(a, negated);
+        }
+        if let Node::Binary(Binary::Mul, v, u) = self.node(b)
+            && self.is_uniform(u)
+            && !self.is_uniform(v)
+        {
+            let negated = self.neg(b);
+            return self.add(a, negated);
+        }
+        self.folded(Node::Binary(Binary::Sub, a, b))
+    }
+
+    pub(super) fn neg(&mut self, a: Id) -> Id {
+        match self.node(a) {
+            Node::Unary(Unary::Neg, inner) => inner,
+            Node::Binary(Binary::Sub, left, right) => self.sub(right, left),
+            Node::Binary(Binary::Mul, v, u) if self.is_uniform(u) && !self.is_uniform(v) => {
+                let negated = self.neg(u);
+                self.mul(v, negated)
+            }
+            _ => self.folded(Node::Unary(Unary::Neg, a)),
+        }
+    }
+
+    pub(super) fn mul(&mut self, a: Id, b: Id) -> Id {
+        let (a, b) = self.ordered(a, b);
+        if self.zero_annihilates && (self.is(a, 0.0) || self.is(b, 0.0)) {
+            return self.constant(0.0);
+        }
+        for (one, other) in [(b, a), (a, b)] {
+            if self.is(one, 1.0) {
+                return other;
+            }
+            if self.is(one, -1.0) {
+                return self.neg(other);
+            }
+        }
+        if self.is_uniform(b) && !self.is_uniform(a) {
+            match self.node(a) {
+                // (v · u) · w = v · (u · w) for uniform u and w.
+                Node::Binary(Binary::Mul, v, u) if self.is_uniform(u) => {
+                    let product = self.mul(u, b);
+                    return self.mul(v, product);
+                }
+                Node::Unary(Unary::Neg, v) => {
+                    let negated = self.neg(b);
+                    return self.mul(v, negated);
+                }
+                _ => {}
+            }
+        }
+        match (self.node(a), self.node(b)) {
+            (Node::Unary(Unary::Neg, a), _) => {
+                let product = self.mul(a, b);
+                return self.neg(product);
+            }
+            (_, Node::Unary(Unary::Neg, b)) if !self.is_uniform(b) || self.is_uniform(a) => {
+                let product = self.mul(a, b);
+                return self.neg(product);
+            }
+            (Node::Power(p, m), Node::Power(q, n)) if p == q && m > 0 && n > 0 => {
+                if let Some(sum) = m.checked_add(n) {
+                    return self.power(p, sum);
+                }
+            }
+            (Node::Power(p, n), _) if p == b && (1..i32::MAX).contains(&n) => return self.power(p, n + 1),
+            (_, Node::Power(q, n)) if q == a && (1..i32::MAX).contains(&n) => return self.power(q, n + 1),
+            _ if a == b => return self.power(a, 2),
+            _ => {}
+        }
+        self.folded(Node::Binary(Binary::Mul, a, b))
+    }
+
+    pub(super) fn div(&mut self, a: Id, b: Id) -> Id {
+        if self.is(b, 1.0) {
+            return a;
+        }
+        if self.zero_annihilates && self.is(a, 0.0) {
+            return a;
+        }
+        if self.is(a, 1.0) {
+            return self.power(b, -1);
+        }
+        if self.is_uniform(b) && !self.is_uniform(a) {
+            let reciprocal = self.power(b, -1);
+            return self.mul(a, reciprocal);
+        }
+        self.folded(Node::Binary(Binary::Div, a, b))
+    }
+
+    /// a^n for a whole number n.
+    pub(super) fn power(&mut self, a: Id, n: i32) -> Id {
+        match n {
+            0 => return self.constant(1.0),
+            1 => return a,
+            _ => {}
+        }
+        match self.node(a) {
+            Node::Power(inner, m) => {
+                if let Some(product) = m.checked_mul(n) {
+                    return self.power(inner, product);
+                }
+            }
+            Node::Unary(Unary::Neg, inner) => {
+                let result = self.power(inner, n);
+                return if n % 2 == 0 { result } else { self.neg(result) };
+            }
+            _ => {}
+        }
+        self.folded(Node::Power(a, n))
+    }
+
+    /// a^b for any exponent; whole and half-integer constants become products and square roots.
+    pub(super) fn pow(&mut self, a: Id, b: Id) -> Id {
+        // Beyond this a half-integer power is no faster by products.
+        const MOST_HALF_INTEGER: f64 = 32.0;
+        if self.is(a, core::f64::consts::E) {
+            return self.unary(Unary::Exp, b);
+        }
+        if let Some(exponent) = self.as_constant(b) {
+            if exponent == libm::trunc(exponent) && exponent.abs() <= f64::from(i32::MAX) {
+                #[expect(clippy::cast_possible_truncation, reason = "a whole number within the range")]
+                return self.power(a, exponent as i32);
+            }
+            let twice = 2.0 * exponent;
+            if twice == libm::trunc(twice) && exponent.abs() <= MOST_HALF_INTEGER {
+                let root = self.unary(Unary::Sqrt, a);
+                #[expect(clippy::cast_possible_truncation, reason = "a whole number within the range")]
+                return self.power(root, twice as i32);
+            }
+        }
+        self.folded(Node::Binary(Binary::Pow, a, b))
+    }
+
+    pub(super) fn unary(&mut self, operation: Unary, a: Id) -> Id {
+        if operation == Unary::Neg { self.neg(a) } else { self.folded(Node::Unary(operation, a)) }
+    }
+
+    pub(super) fn binary(&mut self, operation: Binary, a: Id, b: Id) -> Id {
+        match operation {
+            Binary::Add => self.add(a, b),
+            Binary::Sub => self.sub(a, b),
+            Binary::Mul => self.mul(a, b),
+            Binary::Div => self.div(a, b),
+            Binary::Pow => self.pow(a, b),
+            Binary::Min | Binary::Max | Binary::Atan2 => self.folded(Node::Binary(operation, a, b)),
+        }
+    }
+
+    pub(super) fn smin(&mut self, a: Id, b: Id, k: Id) -> Id {
+        self.folded(Node::Smin(a, b, k))
+    }
+
+    pub(super) fn if_le(&mut self, a: Id, b: Id, value: Id) -> Id {
+        if self.is(value, 0.0) { value } else { self.folded(Node::IfLe(a, b, value)) }
+    }
+
+    pub(super) fn if_gt(&mut self, a: Id, b: Id, value: Id) -> Id {
+        if self.is(value, 0.0) { value } else { self.folded(Node::IfGt(a, b, value)) }
+    }
+
+    /// For every node, whether `roots` need it.
+    pub(super) fn live(&self, roots: &[Id]) -> Vec<bool> {
+        let mut live = vec![false; self.len()];
+        for &root in roots {
+            live[root as usize] = true;
+        }
+        for id in (0..self.len()).rev() {
+            if live[id] {
+                self.nodes[id].operands(|operand| live[operand as usize] = true);
+            }
+        }
+        live
+    }
+}

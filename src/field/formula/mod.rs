@@ -1,0 +1,387 @@
+//! Fields given by a formula such as `x^2/a^2 + y^2/b^2 + z^2/c^2 = 1`.
+//!
+//! # Language
+//!
+//! The coordinates `x y z`; numbers; the constants `pi`, `e`, `tau` and `phi` (the golden ratio); named parameters;
+//! `+ - * / ^`, brackets, and products written side by side where there is one reading only (`2x`, `x y`, `xyz`,
+//! `3(x + 1)`); the functions of [`FUNCTIONS`]; and one `=`, which stands for the difference of its sides. `^` binds
+//! to the right and stronger than a sign in front: `-x^2` is −(x²). `2e3` is two thousand, `2e` twice Euler's
+//! number. Raised digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width characters are understood.
+//!
+//! A name that is not known becomes a parameter by itself as long as there are at most
+//! [`MAX_AUTOMATIC_PARAMETERS`] of them and it does not look like a slip of the keyboard.
+//!
+//! # From text to particles
+//!
+//! The text is parsed to a syntax tree and that to an SSA graph, in which equal operations are one node. The graph is
+//! read as a second-order jet in double precision, as intervals and, compiled to a straight-line program, over
+//! batches of points in single precision. Gradient and Hessian are graphs too, derived from the first one.
+
+mod ast;
+mod build;
+mod derivative;
+mod display;
+mod error;
+mod eval;
+mod graph;
+mod interval;
+mod lex;
+mod mathml;
+mod operations;
+mod parse;
+mod program;
+mod scalar;
+
+pub use ast::{FUNCTIONS, FunctionInfo};
+pub use error::{FormulaError, FormulaErrorKind, utf16_offset};
+
+use super::{Field, Interval, Jet};
+use crate::math::Sym3;
+use ast::{COORDINATES, Constant, Equation, Function};
+use glam::{DVec3, Vec3};
+use graph::{Graph, Id};
+use program::Program;
+
+/// Longest formula, in bytes of UTF-8; longer text is refused before it is parsed.
+pub const MAX_FORMULA_BYTES: usize = 4096;
+
+/// Deepest nesting of brackets, calls, signs and exponents.
+pub const MAX_DEPTH: usize = 64;
+
+/// Most operations of a formula, integer powers counted by their products.
+pub const MAX_OPERATIONS: usize = 4096;
+
+/// Most unknown names that become parameters by themselves.
+pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
+
+/// A named number of a formula that can be changed without parsing it again.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Parameter {
+    /// The name as it stands in the formula.
+    pub name: String,
+    /// What it is, for a person.
+    pub label: String,
+    /// Present value.
+    pub value: f64,
+    /// Least value that a slider offers.
+    pub min: f64,
+    /// Greatest value that a slider offers.
+    pub max: f64,
+    /// Step of a slider.
+    pub step: f64,
+}
+
+impl Parameter {
+    /// What an unknown name becomes: the value 1 on a range from 0 to 3.
+    #[must_use]
+    pub fn automatic(name: &str) -> Self {
+        Self { name: name.into(), label: name.into(), value: 1.0, min: 0.0, max: 3.0, step: 0.01 }
+    }
+}
+
+/// A field f(x, y, z) given by a formula.
+#[derive(Clone, Debug)]
+pub struct FormulaField {
+    text: String,
+    equation: Equation,
+    parameters: Vec<Parameter>,
+    automatic: Vec<String>,
+    /// Declared names that the formula does not use.
+    unused: Vec<String>,
+    values: Vec<f64>,
+    graph: Graph,
+    root: Id,
+    constant: bool,
+    value_program: Program,
+    gradient_program: Program,
+    /// Compiled when first asked for: uniform sampling does without.
+    hessian_program: Option<Program>,
+    gradient: [Id; 3],
+    scratch: eval::Scratch,
+    jets: scalar::JetScratch,
+    ranges: interval::RangeScratch,
+}
+
+impl FormulaField {
+    /// Reads a formula. Of the `declared` parameters, those that occur in the text become the field's, in their
+    /// order; unknown names follow as automatic parameters, in order of appearance.
+    ///
+    /// # Errors
+    ///
+    /// Whatever [`FormulaErrorKind`] lists, with the span in bytes of `text`. The time and memory to reach an error
+    /// are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
+    pub fn parse(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
+        check_declared(declared)?;
+        let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
+        let parsed = parse::parse(text, &known)?;
+        let automatic = automatic_names(&parsed.names, &known)?;
+        let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);
+        let mut parameters: Vec<Parameter> = declared.iter().filter(used).cloned().collect();
+        let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
+        parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
+
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut graph = Graph::default();
+        let root = build::build(&mut graph, &parsed.equation, &names)?;
+        let value_program = Program::compile(&graph, &[root]);
+        if value_program.operations() > MAX_OPERATIONS {
+            return Err(build::too_complex(&parsed.equation.left));
+        }
+        graph.let_zero_annihilate();
+        let gradient = cheaper_gradient(&mut graph, root);
+        let gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
+        let steps = graph.nodes()[..=root as usize].iter().any(|node| {
+            matches!(node, graph::Node::Unary(operations::Unary::Floor | operations::Unary::Sign, _))
+        });
+        let flat = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
+        let constant = graph.is_uniform(root) || (flat && !steps);
+        let mut field = Self {
+            text: text.to_owned(),
+            equation: parsed.equation,
+            values: parameters.iter().map(|parameter| parameter.value).collect(),
+            parameters,
+            automatic,
+            unused,
+            graph,
+            root,
+            constant,
+            value_program,
+            gradient_program,
+            hessian_program: None,
+            gradient,
+            scratch: eval::Scratch::default(),
+            jets: Vec::new(),
+            ranges: Vec::new(),
+        };
+        field.update();
+        Ok(field)
+    }
+
+    /// The text that was parsed.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The formula in normal form: explicit products, ASCII only where the text was, no superfluous brackets.
+    /// Parsing it gives the same field.
+    #[must_use]
+    pub fn normal_form(&self) -> String {
+        display::plain_equation(&self.equation)
+    }
+
+    /// The formula as a MathML `math` element, display style; names and numbers are escaped.
+    #[must_use]
+    pub fn mathml(&self) -> String {
+        mathml::equation(&self.equation)
+    }
+
+    /// The parameters that the formula uses.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// Names of the parameters that were not declared.
+    #[must_use]
+    pub fn auto(&self) -> &[String] {
+        &self.automatic
+    }
+
+    /// Whether f is the same everywhere, whatever the parameters: then there is no surface, or no inside and
+    /// outside.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.constant
+    }
+
+    /// Changes a parameter; the range of its slider does not bind. A declared parameter that the formula does not
+    /// use is accepted and has no effect.
+    ///
+    /// # Errors
+    ///
+    /// [`FormulaErrorKind::BadParameter`] if there is no such parameter or the value is not finite.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), FormulaError> {
+        if !value.is_finite() {
+            let message = format!("The parameter `{name}` needs a finite value");
+            return Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
+        }
+        let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) else {
+            if self.unused.iter().any(|unused| unused == name) {
+                return Ok(());
+            }
+            let message = format!("The formula has no parameter `{name}`");
+            return Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
+        };
+        self.parameters[index].value = value;
+        self.values[index] = value;
+        self.update();
+        Ok(())
+    }
+
+    fn update(&mut self) {
+        self.value_program.set_parameters(&self.values);
+        self.gradient_program.set_parameters(&self.values);
+        if let Some(program) = &mut self.hessian_program {
+            program.set_parameters(&self.values);
+        }
+    }
+
+    fn compile_hessian(&mut self) {
+        if self.hessian_program.is_none() {
+            let hessian = cheaper_hessian(&mut self.graph, self.gradient);
+            let mut outputs = vec![self.root];
+            outputs.extend(self.gradient);
+            outputs.extend(hessian);
+            let mut program = Program::compile(&self.graph, &outputs);
+            program.set_parameters(&self.values);
+            self.hessian_program = Some(program);
+        }
+    }
+}
+
+/// The gradient of `root`, by the cheaper of a backward and three forward sweeps.
+fn cheaper_gradient(graph: &mut Graph, root: Id) -> [Id; 3] {
+    let backward = derivative::backward(graph, root);
+    let forward = [0, 1, 2].map(|axis| derivative::forward(graph, &[root], axis)[0]);
+    let cost = |graph: &Graph, [x, y, z]: [Id; 3]| program::cost(graph, &[root, x, y, z]);
+    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
+}
+
+/// The Hessian (xx, xy, xz, yy, yz, zz) from the gradient, by the cheaper of forward and backward sweeps.
+fn cheaper_hessian(graph: &mut Graph, gradient: [Id; 3]) -> [Id; 6] {
+    let [gx, gy, gz] = gradient;
+    let columns = [0, 1, 2].map(|axis| derivative::forward(graph, &gradient, axis));
+    let forward = [columns[0][0], columns[1][0], columns[2][0], columns[1][1], columns[2][1], columns[2][2]];
+    let [x, y, z] = [gx, gy, gz].map(|component| derivative::backward(graph, component));
+    let backward = [x[0], x[1], x[2], y[1], y[2], z[2]];
+    let cost = |graph: &Graph, hessian: [Id; 6]| {
+        let mut outputs = gradient.to_vec();
+        outputs.extend(hessian);
+        program::cost(graph, &outputs)
+    };
+    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
+}
+
+/// Refuses declared parameters that could not be used.
+fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
+    let bad = |message: String| Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
+    for (index, Parameter { name, value, min, max, step, .. }) in declared.iter().enumerate() {
+        if !lex::is_name(name) {
+            return bad(format!("`{name}` cannot be the name of a parameter: a letter comes first"));
+        }
+        if COORDINATES.contains(&name.as_str())
+            || Constant::find(name).is_some()
+            || Function::find(name).is_some()
+        {
+            return bad(format!("`{name}` has a meaning of its own and cannot be a parameter"));
+        }
+        if declared[..index].iter().any(|other| other.name == *name) {
+            return bad(format!("The parameter `{name}` is declared twice"));
+        }
+        if ![value, min, max, step].iter().all(|number| number.is_finite()) || min > max || *step < 0.0 {
+            return bad(format!("The parameter `{name}` needs finite numbers, min ≤ max and a step ≥ 0"));
+        }
+    }
+    Ok(())
+}
+
+/// The unknown names, if they may all become parameters by themselves.
+fn automatic_names(
+    names: &[(String, core::ops::Range<usize>)],
+    declared: &[&str],
+) -> Result<Vec<String>, FormulaError> {
+    let unknown: Vec<&(String, core::ops::Range<usize>)> =
+        names.iter().filter(|(name, _)| !declared.contains(&name.as_str())).collect();
+    for (name, span) in &unknown {
+        let Some((meant, message)) = slip(name, declared) else { continue };
+        return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message)
+            .suggest(meant)
+            .names(vec![name.clone()]));
+    }
+    let list: Vec<String> = unknown.iter().map(|(name, _)| name.clone()).collect();
+    if let Some((name, span)) = unknown.get(MAX_AUTOMATIC_PARAMETERS) {
+        let message = format!(
+            "Unknown name `{name}`: only {MAX_AUTOMATIC_PARAMETERS} names become sliders by themselves; add a slider `{name}`"
+        );
+        return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message).names(list));
+    }
+    Ok(list)
+}
+
+/// What `name` is probably a slip of, and the sentence that says so.
+fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
+    // `x2` is far more often a square than a parameter, and `cosx` a cosine.
+    if let Some((axis, digit)) = name.split_at_checked(1)
+        && COORDINATES.contains(&axis)
+        && let Ok(exponent) = digit.parse::<u8>()
+    {
+        let meant = format!("{axis}^{exponent}");
+        let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
+        return Some((meant, message));
+    }
+    for function in Function::ALL {
+        if let Some(rest) = name.strip_prefix(function.name())
+            && !rest.is_empty()
+            && rest.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'))
+        {
+            let meant = format!("{}({rest})", function.name());
+            let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
+            return Some((meant, message));
+        }
+    }
+    if name.chars().count() == 1 && !COORDINATES.iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
+        return None;
+    }
+    let words = COORDINATES
+        .into_iter()
+        .chain(Constant::ALL.map(Constant::name))
+        .chain(Function::ALL.iter().map(|function| function.name()))
+        .chain(declared.iter().copied());
+    // A name that only differs by a digit or an index, such as `phi0` or `r_1`, is meant to differ.
+    let indexed = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains('_');
+    let meant = parse::similar(name, words).filter(|meant| {
+        let long = name.chars().count() >= 3 && meant.chars().count() >= 3;
+        meant.eq_ignore_ascii_case(name) || (long && !indexed)
+    })?;
+    let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
+    Some((meant.to_owned(), message))
+}
+
+impl Field for FormulaField {
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        let value = &mut value[..points.len()];
+        eval::run(&self.value_program, &mut self.scratch, points, &mut eval::Values(value));
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        let mut sink =
+            eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
+        eval::run(&self.gradient_program, &mut self.scratch, points, &mut sink);
+    }
+
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        self.compile_hessian();
+        let program = self.hessian_program.as_ref().expect("just compiled");
+        let mut sink = eval::Hessians {
+            value: &mut value[..points.len()],
+            gradient: &mut gradient[..points.len()],
+            hessian: &mut hessian[..points.len()],
+        };
+        eval::run(program, &mut self.scratch, points, &mut sink);
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        scalar::jet(&self.graph, self.root, &self.values, p, &mut self.jets)
+    }
+
+    fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
+        interval::interval(&self.graph, self.root, &self.values, [lo, hi], &mut self.ranges)
+    }
+}

@@ -1,0 +1,520 @@
+//! A graph compiled for batches: a straight line of instructions over a small file of registers.
+//!
+//! What depends on no coordinate is a *uniform*: it is computed once, in double precision, whenever a parameter
+//! changes, and enters the instructions as a broadcast operand. What is left is lowered (integer powers to products,
+//! smooth minima to their polynomial), a product that is used once is fused with the sum it goes to (two roundings,
+//! one pass over memory), and registers are reused as soon as their value is dead, so that a block of points stays in
+//! the first-level cache.
+
+use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
+use super::operations::{Binary, Unary};
+use std::collections::BTreeSet;
+
+/// What an instruction does. `R` operands are registers, `U` operands are uniforms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Op {
+    /// U[a]
+    Splat,
+    /// f(R[a])
+    Unary(Unary),
+    /// 1 / R[a]
+    Reciprocal,
+    /// R[a] ∘ R[b]
+    Binary(Binary),
+    /// R[a] ∘ U[b]
+    Uniform(Binary),
+    /// U[b] ∘ R[a], for the operations that do not commute.
+    Reversed(Binary),
+    /// R[c] where R[a] ≤ R[b], else 0
+    IfLe,
+    /// 0 where R[a] ≤ R[b], else R[c]
+    IfGt,
+    /// R[a] · R[b] + R[c]
+    MulAdd,
+    /// R[a] · R[b] − R[c]
+    MulSub,
+    /// R[c] − R[a] · R[b]
+    SubMul,
+    /// R[a] · R[b] + U[c]
+    MulAddUniform,
+    /// R[a] · U[b] + R[c]
+    ScaleAdd,
+    /// R[a] · U[b] + U[c]
+    ScaleAddUniform,
+    /// R[a]² + R[c]
+    SquareAdd,
+}
+
+/// One instruction; unused operands are 0. The result may overwrite an operand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Instruction {
+    pub(super) op: Op,
+    pub(super) out: u32,
+    pub(super) a: u32,
+    pub(super) b: u32,
+    pub(super) c: u32,
+}
+
+/// Where a result is found after a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    Register(u32),
+    Uniform(u32),
+}
+
+/// A compiled graph with any number of results.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Program {
+    /// The uniform operations, operands by their index in this list.
+    uniform_nodes: Vec<Node>,
+    pub(super) instructions: Vec<Instruction>,
+    /// Register of each coordinate, if it is used.
+    pub(super) coordinates: [Option<u32>; 3],
+    pub(super) outputs: Vec<Place>,
+    pub(super) registers: usize,
+    /// The uniforms' present values.
+    pub(super) uniforms: Vec<f32>,
+    /// Scratch of `set_parameters`.
+    doubles: Vec<f64>,
+}
+
+impl Program {
+    /// The program that computes `outputs` of `graph`.
+    pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
+        let mut low = graph.clone();
+        let outputs = expand_smooth_minima(&mut low, outputs);
+        let (low, outputs) = expand_powers(&low, &outputs);
+        Compiler::new(&low, &outputs).compile()
+    }
+
+    /// Recomputes the uniforms.
+    #[expect(clippy::cast_possible_truncation, reason = "the rounding to single precision is the point")]
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.doubles.clear();
+        self.uniforms.clear();
+        for node in &self.uniform_nodes {
+            let value = node.evaluate(parameters, [f64::NAN; 3], |id| self.doubles[id as usize]);
+            self.doubles.push(value);
+            self.uniforms.push(value as f32);
+        }
+    }
+
+    /// Operations of the program: the figure that [`MAX_OPERATIONS`](super::MAX_OPERATIONS) bounds.
+    pub(super) fn operations(&self) -> usize {
+        self.instructions.len() + self.uniform_nodes.len()
+    }
+}
+
+/// An estimate of what a block of points costs for the given outputs, in units of one addition: for choosing
+/// between two ways of differentiating.
+pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
+    let live = graph.live(outputs);
+    let mut total: u32 = 0;
+    for (id, node) in graph.nodes().iter().enumerate() {
+        if !live[id] || graph.is_uniform(u32::try_from(id).unwrap_or(u32::MAX)) {
+            continue;
+        }
+        total += match *node {
+            Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => 0,
+            Node::Unary(Unary::Neg | Unary::Abs | Unary::Sign, _) => 1,
+            Node::Unary(Unary::Sqrt, _) => 4,
+            Node::Unary(_, _) => 20,
+            Node::Binary(Binary::Div, _, _) => 4,
+            Node::Binary(Binary::Pow | Binary::Atan2, _, _) => 40,
+            Node::Binary(_, _, _) => 1,
+            Node::Power(_, n) => n.unsigned_abs().ilog2() + if n < 0 { 4 } else { 0 },
+            Node::Smin(_, _, _) => 10,
+            Node::IfLe(_, _, _) | Node::IfGt(_, _, _) => 2,
+        };
+    }
+    total
+}
+
+/// Replaces every smooth minimum by min(a, b) − k (1 − |u|)³/6, u = (a − b)/k cut to −1 … 1; the new outputs.
+fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
+    let live = graph.live(outputs);
+    let mut map: Vec<Id> = (0..u32::try_from(live.len()).unwrap_or(u32::MAX)).collect();
+    for id in 0..live.len() {
+        if !live[id] {
+            continue;
+        }
+        let node = graph.nodes()[id].mapped(|operand| map[operand as usize]);
+        map[id] = if let Node::Smin(a, b, k) = node {
+            let (one, minus_one) = (graph.constant(1.0), graph.constant(-1.0));
+            let least = graph.constant(SMIN_LEAST_WIDTH);
+            let width = graph.binary(Binary::Max, k, least);
+            let difference = graph.sub(a, b);
+            let ratio = graph.div(difference, width);
+            let below = graph.binary(Binary::Min, ratio, one);
+            let u = graph.binary(Binary::Max, below, minus_one);
+            let magnitude = graph.unary(Unary::Abs, u);
+            let gap = graph.sub(one, magnitude);
+            let cube = graph.power(gap, 3);
+            let sixth = graph.constant(1.0 / 6.0);
+            let depth = graph.mul(width, sixth);
+            let blend = graph.mul(cube, depth);
+            let least = graph.binary(Binary::Min, a, b);
+            graph.sub(least, blend)
+        } else {
+            graph.intern(node)
+        };
+    }
+    outputs.iter().map(|&output| map[output as usize]).collect()
+}
+
+/// A copy of what `outputs` need in which varying powers are products, squares and reciprocals (`Power(_, -1)`).
+fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
+    /// x^n for n ≥ 1 by squaring: x^(2m) = (x^m)², x^(2m+1) = x · x^(2m).
+    fn product(low: &mut Graph, x: Id, n: u32) -> Id {
+        if n == 1 {
+            return x;
+        }
+        let half = product(low, x, n / 2);
+        let square = low.intern(Node::Unary(Unary::Square, half));
+        if n % 2 == 0 { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
+    }
+    let live = graph.live(outputs);
+    let mut low = Graph::default();
+    let mut map: Vec<Id> = vec![0; live.len()];
+    for (id, &node) in graph.nodes().iter().enumerate() {
+        if !live[id] {
+            continue;
+        }
+        let node = node.mapped(|operand| map[operand as usize]);
+        map[id] = match node {
+            Node::Power(a, n) if !low.is_uniform(a) => {
+                let base = if n < 0 { low.intern(Node::Power(a, -1)) } else { a };
+                product(&mut low, base, n.unsigned_abs())
+            }
+            _ => low.intern(node),
+        };
+    }
+    (low, outputs.iter().map(|&output| map[output as usize]).collect())
+}
+
+/// Works on a lowered graph.
+struct Compiler<'a> {
+    graph: &'a Graph,
+    outputs: &'a [Id],
+    program: Program,
+    /// Index in `uniform_nodes` of each uniform node that is needed.
+    uniform: Vec<Option<u32>>,
+    /// Instructions over virtual registers, in order; the virtual register of an instruction is its place here.
+    code: Vec<Instruction>,
+    /// Virtual register of each varying node.
+    register: Vec<Option<u32>>,
+    uses: Vec<u32>,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(graph: &'a Graph, outputs: &'a [Id]) -> Self {
+        let mut uses = vec![0; graph.len()];
+        let live = graph.live(outputs);
+        for (id, node) in graph.nodes().iter().enumerate() {
+            if live[id] {
+                node.operands(|operand| uses[operand as usize] += 1);
+            }
+        }
+        for &output in outputs {
+            uses[output as usize] += 1;
+        }
+        Self {
+            graph,
+            outputs,
+            program: Program::default(),
+            uniform: vec![None; graph.len()],
+            code: Vec::new(),
+            register: vec![None; graph.len()],
+            uses,
+        }
+    }
+
+    fn compile(mut self) -> Program {
+        for axis in 0..3 {
+            // Coordinates take the first virtual registers, used or not.
+            self.push(Op::Splat, [axis, 0, 0]);
+        }
+        for index in 0..self.outputs.len() {
+            self.schedule(self.outputs[index]);
+        }
+        for &output in self.outputs {
+            let place = if self.graph.is_uniform(output) {
+                Place::Uniform(self.uniform(output))
+            } else {
+                Place::Register(self.register[output as usize].expect("outputs are scheduled"))
+            };
+            self.program.outputs.push(place);
+        }
+        self.allocate();
+        self.program
+    }
+
+    /// Index of a uniform node in the uniform list, appended with its operands if it is new.
+    fn uniform(&mut self, id: Id) -> u32 {
+        let mut stack = vec![id];
+        while let Some(&top) = stack.last() {
+            if self.uniform[top as usize].is_some() {
+                stack.pop();
+                continue;
+            }
+            let before = stack.len();
+            self.graph.node(top).operands(|operand| {
+                if self.uniform[operand as usize].is_none() {
+                    stack.push(operand);
+                }
+            });
+            if stack.len() == before {
+                let node = self.graph.node(top).mapped(|operand| self.uniform[operand as usize].unwrap_or(0));
+                self.uniform[top as usize] = Some(index(self.program.uniform_nodes.len()));
+                self.program.uniform_nodes.push(node);
+                stack.pop();
+            }
+        }
+        self.uniform[id as usize].unwrap_or(0)
+    }
+
+    /// Emits `root` and what it needs, operands first.
+    fn schedule(&mut self, root: Id) {
+        if self.graph.is_uniform(root) {
+            return;
+        }
+        let mut stack = vec![root];
+        while let Some(&top) = stack.last() {
+            if self.register[top as usize].is_some() {
+                stack.pop();
+                continue;
+            }
+            let before = stack.len();
+            let mut push = |operand: Id| {
+                if !self.graph.is_uniform(operand) && self.register[operand as usize].is_none() {
+                    stack.push(operand);
+                }
+            };
+            // A product that will be fused is not computed by itself: its factors are needed instead.
+            match self.fusion(top) {
+                Some((product, other)) => {
+                    push(other);
+                    self.graph.node(product).operands(&mut push);
+                }
+                None => self.graph.node(top).operands(&mut push),
+            }
+            if stack.len() == before {
+                self.register[top as usize] = Some(self.emit(top));
+                stack.pop();
+            }
+        }
+    }
+
+    /// The product to fuse into the sum or difference `id`, and the other operand.
+    fn fusion(&self, id: Id) -> Option<(Id, Id)> {
+        let Node::Binary(Binary::Add | Binary::Sub, a, b) = self.graph.node(id) else { return None };
+        let subtraction = matches!(self.graph.node(id), Node::Binary(Binary::Sub, _, _));
+        let fusable = |candidate: Id, other: Id| {
+            if self.graph.is_uniform(candidate)
+                || self.uses[candidate as usize] != 1
+                || self.register[candidate as usize].is_some()
+            {
+                return false;
+            }
+            match self.graph.node(candidate) {
+                Node::Unary(Unary::Square, _) => !subtraction && !self.graph.is_uniform(other),
+                Node::Binary(Binary::Mul, _, factor) => {
+                    !subtraction || !(self.graph.is_uniform(factor) || self.graph.is_uniform(other))
+                }
+                _ => false,
+            }
+        };
+        if fusable(b, a) {
+            Some((b, a))
+        } else if fusable(a, b) {
+            Some((a, b))
+        } else {
+            None
+        }
+    }
+
+    fn push(&mut self, op: Op, [a, b, c]: [u32; 3]) -> u32 {
+        let out = index(self.code.len());
+        self.code.push(Instruction { op, out, a, b, c });
+        out
+    }
+
+    /// The virtual register of an operand; a uniform one is broadcast into a register.
+    fn operand(&mut self, id: Id) -> u32 {
+        if self.graph.is_uniform(id) {
+            let uniform = self.uniform(id);
+            self.push(Op::Splat, [uniform, 0, 0])
+        } else {
+            self.register[id as usize].expect("operands are scheduled first")
+        }
+    }
+
+    /// The instruction of a varying node; its virtual register.
+    fn emit(&mut self, id: Id) -> u32 {
+        if let Some((product, other)) = self.fusion(id) {
+            return self.emit_fused(id, product, other);
+        }
+        match self.graph.node(id) {
+            Node::Coordinate(axis) => u32::from(axis),
+            Node::Unary(operation, a) => {
+                let a = self.operand(a);
+                self.push(Op::Unary(operation), [a, 0, 0])
+            }
+            Node::Power(a, _) => {
+                let a = self.operand(a);
+                self.push(Op::Reciprocal, [a, 0, 0])
+            }
+            Node::Binary(operation, a, b) => self.emit_binary(operation, a, b),
+            Node::IfLe(a, b, c) | Node::IfGt(a, b, c) => {
+                let operands = [self.operand(a), self.operand(b), self.operand(c)];
+                let le = matches!(self.graph.node(id), Node::IfLe(_, _, _));
+                self.push(if le { Op::IfLe } else { Op::IfGt }, operands)
+            }
+            Node::Constant(_) | Node::Parameter(_) | Node::Smin(_, _, _) => {
+                unreachable!("uniform nodes are not scheduled, smooth minima were expanded")
+            }
+        }
+    }
+
+    fn emit_binary(&mut self, operation: Binary, a: Id, b: Id) -> u32 {
+        let commutes = matches!(operation, Binary::Add | Binary::Mul | Binary::Min | Binary::Max);
+        match (self.graph.is_uniform(a), self.graph.is_uniform(b)) {
+            (false, true) if commutes || operation == Binary::Pow => {
+                let operands = [self.operand(a), self.uniform(b), 0];
+                self.push(Op::Uniform(operation), operands)
+            }
+            (true, false) if commutes => {
+                let operands = [self.operand(b), self.uniform(a), 0];
+                self.push(Op::Uniform(operation), operands)
+            }
+            (true, false) if matches!(operation, Binary::Sub | Binary::Div) => {
+                let operands = [self.operand(b), self.uniform(a), 0];
+                self.push(Op::Reversed(operation), operands)
+            }
+            _ => {
+                let operands = [self.operand(a), self.operand(b), 0];
+                self.push(Op::Binary(operation), operands)
+            }
+        }
+    }
+
+    fn emit_fused(&mut self, id: Id, product: Id, other: Id) -> u32 {
+        let minuend = matches!(self.graph.node(id), Node::Binary(Binary::Sub, a, _) if a == product);
+        let subtrahend = matches!(self.graph.node(id), Node::Binary(Binary::Sub, _, b) if b == product);
+        match self.graph.node(product) {
+            Node::Unary(_, a) => {
+                let operands = [self.operand(a), 0, self.operand(other)];
+                self.push(Op::SquareAdd, operands)
+            }
+            Node::Binary(_, a, b) if self.graph.is_uniform(b) => {
+                let (a, b) = (self.operand(a), self.uniform(b));
+                if self.graph.is_uniform(other) {
+                    let operands = [a, b, self.uniform(other)];
+                    self.push(Op::ScaleAddUniform, operands)
+                } else {
+                    let operands = [a, b, self.operand(other)];
+                    self.push(Op::ScaleAdd, operands)
+                }
+            }
+            Node::Binary(_, a, b) => {
+                let (a, b) = (self.operand(a), self.operand(b));
+                if self.graph.is_uniform(other) {
+                    let operands = [a, b, self.uniform(other)];
+                    return self.push(Op::MulAddUniform, operands);
+                }
+                let operands = [a, b, self.operand(other)];
+                let op = if minuend {
+                    Op::MulSub
+                } else if subtrahend {
+                    Op::SubMul
+                } else {
+                    Op::MulAdd
+                };
+                self.push(op, operands)
+            }
+            _ => unreachable!("only products and squares are fused"),
+        }
+    }
+
+    /// Virtual to real registers: a register is free again after the last use of its value.
+    fn allocate(&mut self) {
+        const NEVER: usize = usize::MAX;
+        let mut last_use = vec![0; self.code.len()];
+        for (at, instruction) in self.code.iter().enumerate().skip(3) {
+            for operand in registers(instruction) {
+                last_use[operand as usize] = at;
+            }
+        }
+        for output in &self.program.outputs {
+            if let Place::Register(register) = *output {
+                last_use[register as usize] = NEVER;
+            }
+        }
+        let mut real = vec![0; self.code.len()];
+        let mut free: BTreeSet<u32> = BTreeSet::new();
+        let mut count = 0;
+        let mut fresh = |free: &mut BTreeSet<u32>| {
+            free.pop_first().unwrap_or_else(|| {
+                count += 1;
+                count - 1
+            })
+        };
+        for (axis, &last) in last_use.iter().take(3).enumerate() {
+            if last > 0 {
+                real[axis] = fresh(&mut free);
+                self.program.coordinates[axis] = Some(real[axis]);
+            }
+        }
+        for (at, instruction) in self.code.iter().enumerate().skip(3) {
+            let mapped = substituted(instruction, &real);
+            for operand in registers(instruction) {
+                if last_use[operand as usize] == at {
+                    free.insert(real[operand as usize]);
+                }
+            }
+            real[at] = fresh(&mut free);
+            self.program.instructions.push(Instruction { out: real[at], ..mapped });
+        }
+        for output in &mut self.program.outputs {
+            if let Place::Register(register) = output {
+                *register = real[*register as usize];
+            }
+        }
+        self.program.registers = count as usize;
+    }
+}
+
+fn index(length: usize) -> u32 {
+    u32::try_from(length).expect("programs are far shorter than 2^32")
+}
+
+/// Which of the operands a, b and c are registers.
+fn register_operands(op: Op) -> [bool; 3] {
+    match op {
+        Op::Splat => [false; 3],
+        Op::Unary(_) | Op::Reciprocal | Op::Uniform(_) | Op::Reversed(_) | Op::ScaleAddUniform => {
+            [true, false, false]
+        }
+        Op::Binary(_) | Op::MulAddUniform => [true, true, false],
+        Op::IfLe | Op::IfGt | Op::MulAdd | Op::MulSub | Op::SubMul => [true; 3],
+        Op::ScaleAdd | Op::SquareAdd => [true, false, true],
+    }
+}
+
+fn registers(instruction: &Instruction) -> impl Iterator<Item = u32> {
+    let operands = [instruction.a, instruction.b, instruction.c];
+    let used = register_operands(instruction.op);
+    (0..3).filter(move |&k| used[k]).map(move |k| operands[k])
+}
+
+/// The instruction with its register operands replaced through `real`.
+fn substituted(instruction: &Instruction, real: &[u32]) -> Instruction {
+    let [a, b, c] = register_operands(instruction.op);
+    let replaced = |used: bool, operand: u32| if used { real[operand as usize] } else { operand };
+    Instruction {
+        a: replaced(a, instruction.a),
+        b: replaced(b, instruction.b),
+        c: replaced(c, instruction.c),
+        ..*instruction
+    }
+}

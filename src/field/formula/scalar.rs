@@ -1,0 +1,209 @@
+//! Second-order jets in double precision, carried forward through the graph: a derivation of the derivatives that
+//! shares nothing with the transformed graphs, and so can check them.
+
+use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH, power, smin};
+use super::operations::{Binary, Unary, sign};
+use crate::field::Jet;
+use crate::math::Sym3;
+use glam::DVec3;
+
+/// Value, gradient, and Hessian in the order xx, xy, xz, yy, yz, zz.
+#[derive(Clone, Copy, Debug, Default)]
+struct Order2 {
+    value: f64,
+    first: [f64; 3],
+    second: [f64; 6],
+}
+
+/// Axes of the entries of a Hessian.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+impl Order2 {
+    fn uniform(value: f64) -> Self {
+        Self { value, ..Self::default() }
+    }
+
+    /// f(self) by its value and derivatives. Axes outside `axes` stay 0 even where a derivative is infinite.
+    fn apply(&self, [value, d1, d2]: [f64; 3], axes: u8) -> Self {
+        let has = |k: usize| axes >> k & 1 == 1;
+        let mut out = Self::uniform(value);
+        for (k, first) in out.first.iter_mut().enumerate().filter(|(k, _)| has(*k)) {
+            *first = d1 * self.first[k];
+        }
+        for ((i, j), (second, own)) in PAIRS.into_iter().zip(out.second.iter_mut().zip(self.second)) {
+            if has(i) && has(j) {
+                let curve = d2 * (self.first[i] * self.first[j]);
+                *second = d1 * own + curve;
+            }
+        }
+        out
+    }
+
+    fn add(&self, other: &Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            first: core::array::from_fn(|k| self.first[k] + other.first[k]),
+            second: core::array::from_fn(|k| self.second[k] + other.second[k]),
+        }
+    }
+
+    fn scale(&self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            first: self.first.map(|v| v * factor),
+            second: self.second.map(|v| v * factor),
+        }
+    }
+
+    fn mul(&self, other: &Self) -> Self {
+        let mut out = Self::uniform(self.value * other.value);
+        for k in 0..3 {
+            out.first[k] = self.value * other.first[k] + other.value * self.first[k];
+        }
+        for (n, (i, j)) in PAIRS.into_iter().enumerate() {
+            let crossed = self.first[i] * other.first[j] + self.first[j] * other.first[i];
+            out.second[n] = self.value * other.second[n] + other.value * self.second[n] + crossed;
+        }
+        out
+    }
+
+    fn reciprocal(&self, axes: u8) -> Self {
+        let value = 1.0 / self.value;
+        self.apply([value, -value * value, 2.0 * value * value * value], axes)
+    }
+}
+
+/// Scratch for [`jet`].
+pub(super) type JetScratch = Vec<JetCell>;
+
+/// One node's jet.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct JetCell(Order2);
+
+/// f, ∇f and ∇∇f of node `root` at `point`.
+pub(super) fn jet(
+    graph: &Graph,
+    root: Id,
+    parameters: &[f64],
+    point: DVec3,
+    scratch: &mut JetScratch,
+) -> Jet {
+    let point = point.to_array();
+    scratch.clear();
+    for (id, &node) in graph.nodes()[..=root as usize].iter().enumerate() {
+        let axes = graph.axes(u32::try_from(id).unwrap_or(u32::MAX));
+        let result = if axes == 0 {
+            Order2::uniform(node.evaluate(parameters, point, |id| scratch[id as usize].0.value))
+        } else {
+            order2(node, point, axes, |id| (scratch[id as usize].0, graph.axes(id)))
+        };
+        scratch.push(JetCell(result));
+    }
+    let Order2 { value, first, second } = scratch[root as usize].0;
+    let [xx, xy, xz, yy, yz, zz] = second;
+    Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+}
+
+/// The jet of a node that depends on `axes`; `operand` gives an operand's jet and axes.
+fn order2(node: Node, point: [f64; 3], axes: u8, operand: impl Fn(Id) -> (Order2, u8)) -> Order2 {
+    match node {
+        Node::Constant(_) | Node::Parameter(_) => Order2::default(),
+        Node::Coordinate(axis) => {
+            let mut out = Order2::uniform(point[usize::from(axis)]);
+            out.first[usize::from(axis)] = 1.0;
+            out
+        }
+        Node::Unary(operation, a) => {
+            let (a, _) = operand(a);
+            a.apply(operation.jet(a.value), axes)
+        }
+        Node::Power(a, n) => {
+            let (a, _) = operand(a);
+            let degree = f64::from(n);
+            // n − 2 cannot wrap: exponents come from whole numbers of that size, far from the end of the range.
+            let d1 = degree * power(a.value, n.saturating_sub(1));
+            let d2 = degree * (degree - 1.0) * power(a.value, n.saturating_sub(2));
+            a.apply([power(a.value, n), d1, d2], axes)
+        }
+        Node::Binary(operation, a, b) => binary(operation, operand(a), operand(b), axes),
+        Node::Smin(a, b, k) => smooth_minimum(&operand(a).0, &operand(b).0, &operand(k).0, axes),
+        Node::IfLe(a, b, v) | Node::IfGt(a, b, v) => {
+            let (a, b, v) = (operand(a).0.value, operand(b).0.value, operand(v).0);
+            let le = matches!(node, Node::IfLe(_, _, _));
+            if a.is_nan() || b.is_nan() {
+                v.scale(f64::NAN)
+            } else if (a <= b) == le {
+                v
+            } else {
+                Order2::default()
+            }
+        }
+    }
+}
+
+fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), axes: u8) -> Order2 {
+    match operation {
+        Binary::Add => a.add(&b),
+        Binary::Sub => a.add(&b.scale(-1.0)),
+        Binary::Mul => a.mul(&b),
+        Binary::Div => Order2 { value: a.value / b.value, ..a.mul(&b.reciprocal(of_b)) },
+        Binary::Min if a.value <= b.value => a,
+        Binary::Max if a.value >= b.value => a,
+        Binary::Min | Binary::Max if a.value.is_nan() || b.value.is_nan() => a.add(&b).scale(f64::NAN),
+        Binary::Min | Binary::Max => b,
+        Binary::Pow => {
+            let value = operation.evaluate(a.value, b.value);
+            let slope = |n: f64| operation.evaluate(a.value, b.value - n);
+            if of_b == 0 {
+                let d1 = b.value * slope(1.0);
+                let d2 = b.value * (b.value - 1.0) * slope(2.0);
+                return a.apply([value, d1, d2], axes);
+            }
+            // a^b = exp(b ln a)
+            let logarithm = if of_a == 0 {
+                Order2::uniform(libm::log(a.value))
+            } else {
+                a.apply(Unary::Ln.jet(a.value), of_a)
+            };
+            b.mul(&logarithm).apply([value; 3], axes)
+        }
+        Binary::Atan2 => {
+            // The angle of (b, a) has the derivatives of atan(a/b), or of −atan(b/a) where that is the better
+            // conditioned one.
+            let angle = operation.evaluate(a.value, b.value);
+            let jet = if a.value.abs() <= b.value.abs() {
+                let ratio = a.mul(&b.reciprocal(of_b));
+                ratio.apply(Unary::Atan.jet(ratio.value), axes)
+            } else {
+                let ratio = b.mul(&a.reciprocal(of_a));
+                ratio.apply(Unary::Atan.jet(ratio.value), axes).scale(-1.0)
+            };
+            Order2 { value: angle, ..jet }
+        }
+    }
+}
+
+/// (a + b)/2 − max(|d| − k, 0)/2 − k (1/6 + u²/2 − |u|³/6) with d = a − b and u = d/k cut to −1 … 1.
+fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
+    let value = smin(a.value, b.value, k.value);
+    let k = if k.value > SMIN_LEAST_WIDTH { *k } else { Order2::uniform(SMIN_LEAST_WIDTH) };
+    let difference = a.add(&b.scale(-1.0));
+    let ratio = difference.mul(&k.reciprocal(axes));
+    let beyond = ratio.value.abs() >= 1.0;
+    let u = if beyond { Order2::uniform(sign(ratio.value)) } else { ratio };
+    let size = u.value.abs();
+    let bend = u.apply(
+        [
+            1.0 / 6.0 + 0.5 * u.value * u.value - size * size * size / 6.0,
+            u.value - 0.5 * u.value * size,
+            1.0 - size,
+        ],
+        axes,
+    );
+    let mut out = a.add(b).scale(0.5).add(&k.mul(&bend).scale(-1.0));
+    if beyond {
+        let excess = difference.scale(sign(difference.value)).add(&k.scale(-1.0));
+        out = out.add(&excess.scale(-0.5));
+    }
+    Order2 { value, ..out }
+}
