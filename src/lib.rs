@@ -7,6 +7,7 @@
 //!   particle; neighbours sit `2r` apart.
 //! * Single precision in the sampler, double precision in the oracles and the set-up.
 
+pub mod export;
 pub mod field;
 pub mod math;
 pub mod particles;
