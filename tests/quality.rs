@@ -336,6 +336,30 @@ fn hole_is_measured_as_a_hole() {
 }
 
 #[test]
+fn missed_component_and_missed_half_are_holes_too() {
+    // Two unit spheres, the second one without particles; its far pole is 5 from the first sphere.
+    let mut pair = Analytic(|p| {
+        let other = p - DVec3::X * 4.0;
+        let centre = if p.x < 2.0 { p } else { other };
+        Jet { value: centre.length_squared() - 1.0, gradient: 2.0 * centre, ..Jet::default() }
+    });
+    let points = fibonacci(2000);
+    let bounds = Bounds { min: [-1.5, -1.5, -1.5], max: [5.5, 1.5, 1.5] };
+    let options = Options { area: Some(2.0 * SPHERE_AREA), ..Options::default() };
+    let f = measure(&points, &[], &mut pair, Some(&bounds), &options).figures;
+    let hole = f.cover * f.d_hex / 3.0_f64.sqrt();
+    close("hole", hole, 4.0, 0.05);
+    // Half of the area is missing: the mean over it of the squared distance to the first sphere.
+    let mean_sq = f.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
+    assert!(mean_sq > 0.5 * 4.0 && mean_sq < 0.5 * 16.0, "mean square {mean_sq}");
+    // Half a sphere: the far pole is √2 from the equator.
+    let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
+    let bounds = Bounds::cube(1.25);
+    let f = measure(&half, &[], &mut sphere(), Some(&bounds), &Options::default()).figures;
+    close("hole", f.cover * f.d_hex / 3.0_f64.sqrt(), 2.0_f64.sqrt(), 0.05);
+}
+
+#[test]
 fn two_sheets_are_triangulated_apart_but_spaced_together() {
     // Two hexagonal patches, half a spacing apart, with opposite normals.
     let scale = 1.0 / 16.0;

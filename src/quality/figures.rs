@@ -3,7 +3,7 @@
 use super::border;
 use super::fans::unroll;
 use super::triangles::{Triangles, area_vector, topology};
-use super::{Options, Scene, Sizes, cover};
+use super::{Options, Scene, Sizes, cover, probe};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
 use glam::{DVec2, Vec3};
@@ -253,10 +253,55 @@ pub(super) fn figures(
         let samples = n.max(options.samples).min(MOST_SAMPLES);
         let gaps = cover::random_gaps(field, &scene.tree, &inner_mesh, samples, options.seed);
         let largest = gaps.largest.max(cover::largest_gap(field, &scene.tree, &inner_mesh));
-        figures.cover = largest / (figures.d_hex / SQRT_3);
-        figures.quant = gaps.mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
+        let missed = bounds.map_or(Missed::default(), |bounds| {
+            missed(scene, field, bounds, options.seed, figures.d_hex, largest)
+        });
+        figures.cover = largest.max(missed.largest) / (figures.d_hex / SQRT_3);
+        let mean_sq = gaps.mean_sq * (1.0 - missed.share) + missed.sum_sq;
+        figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
     }
     figures
+}
+
+/// Places of the surface farther from every particle than any place that the triangles span.
+#[derive(Clone, Copy, Debug, Default)]
+struct Missed {
+    /// Share of the area.
+    share: f64,
+    /// Sum of the squared distances of such places to the nearest particle, over the number of all places.
+    sum_sq: f64,
+    /// Largest distance.
+    largest: f64,
+}
+
+fn missed(
+    scene: &Scene,
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    seed: u64,
+    d_hex: f64,
+    spanned: f64,
+) -> Missed {
+    let mut missed = Missed::default();
+    let (mut all, mut far) = (0.0, 0.0);
+    for p in probe::crossings(field, bounds, seed) {
+        if border::is_near(p, field, bounds, d_hex) {
+            continue;
+        }
+        all += 1.0;
+        let gap = f64::from(scene.tree.nearest_sq(p, u32::MAX, f32::INFINITY)).sqrt();
+        // A hundredth more for the rounding of the places.
+        if gap > 1.01 * spanned {
+            far += 1.0;
+            missed.sum_sq += gap * gap;
+            missed.largest = missed.largest.max(gap);
+        }
+    }
+    if all > 0.0 {
+        missed.share = far / all;
+        missed.sum_sq /= all;
+    }
+    missed
 }
 
 fn residuals(scene: &Scene, figures: &mut Figures) {

@@ -17,6 +17,7 @@ mod cell;
 mod cover;
 mod fans;
 mod figures;
+mod probe;
 mod tree;
 mod triangles;
 
@@ -132,8 +133,9 @@ impl Scene {
 
 /// Measures the particles at `position` with outward unit normals `normal` on the surface of `field`.
 ///
-/// `bounds` is the clip box, if the surface may continue beyond it: particles within 4 d_hex of where it does are left
-/// out of every figure but the residual, the normals, the area and the topology. Normals are used where the
+/// `bounds` is the box that was sampled. Particles within 4 d_hex of where the surface continues beyond it are left
+/// out of every figure but the residual, the normals, the area and the topology; and random lines through it find what the
+/// particles missed, for `cover` and `quant`. Without it, only what the triangles span is looked at. Normals are used where the
 /// gradient is undefined, and are themselves measured against it; the slice may be shorter than `position`.
 ///
 /// Cost: linear, 2 to 3 µs per particle natively. Any input is met without a panic; what is undefined (spacing of
