@@ -1,55 +1,409 @@
 /**
- * The engine of the page: samples in a worker, draws on a canvas, keeps the state. The interface reads its signals and
- * calls its commands; it needs nothing else of this folder but the types.
+ * The engine of the page: samples in a worker, draws on a canvas, keeps the state. The interface reads its signals and calls
+ * its commands; it needs nothing else of this folder but the types.
  *
  * @module
  */
-import { signal } from '@preact/signals-core';
+import { batch, effect } from '@preact/signals-core';
+import { Columns } from './columns.js';
+import { installConsole } from './console.js';
+import { SamplingClient } from './sampling/client.js';
+import { decode, encode } from './share/codec.js';
+import { csv, LARGEST_PICTURE_PX, ply, png } from './share/exports.js';
+import { completeSettings, defaultState, fieldRequest, sanitize, surfaceOf, validBounds, validSetting, validView } from './share/state.js';
+import { createStore } from './store.js';
+import { BACKENDS } from './view/backends.js';
+import { attachControls } from './view/controls.js';
+import { Viewer } from './view/viewer.js';
 
-/** @typedef {import('./types.js').Engine} Engine */
+/**
+ * @typedef {import('./types.js').Engine} Engine
+ * @typedef {import('./types.js').State} State
+ * @typedef {import('./sampling/client.js').SampleRequest} SampleRequest
+ */
+
+/** After a drag has rested this long the full run is made, also when the control never says that it was let go. */
+const REST_MS = 250;
+/** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
+const ADDRESS_MS = 500;
+const CAMERA_MS = 120;
+/** Ceiling for particles that a person may confirm. */
+const MOST_PARTICLES = 4_000_000;
 
 /**
  * @param {{canvasHost: HTMLElement}} options  `canvasHost` is filled with a canvas of its own size
  * @returns {Engine}
  */
 export function createEngine({ canvasHost }) {
-  void canvasHost;
-  /** @type {import('./types.js').State} */
-  const initial = {
-    v: 1, surface: 'ellipsoid', formula: '', parameters: {}, declared: [], bounds: null, settings: {},
-    view: { colour: 'level', size: 0.92, theme: 'auto', box: false, camera: { target: [0, 0, 0], distance: 4, yaw: 0.6, pitch: 0.4, fit: true } },
+  const store = createStore();
+  const columns = new Columns();
+  const query = new URLSearchParams(location.search);
+  const first = BACKENDS.find((kind) => kind === query.get('backend')) ?? null;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let rest_timer;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let address_timer;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let camera_timer;
+  /** The fragment that we wrote, to tell it from one that somebody typed. */
+  let own_hash = location.hash;
+
+  // ---- picture --------------------------------------------------------------------------------------------------------------
+
+  canvasHost.tabIndex = canvasHost.tabIndex < 0 ? 0 : canvasHost.tabIndex;
+  if (getComputedStyle(canvasHost).position === 'static') canvasHost.style.position = 'relative';
+
+  const viewer = new Viewer({
+    host: canvasHost,
+    columns,
+    look: store.state.value.view,
+    first,
+    onDevice(device) {
+      const name = device.kind === 'canvas2d' ? 'canvas2d' : device.kind;
+      batch(() => {
+        store.backend.value = name;
+        store.adapter.value = device.renderer.adapter();
+        if (store.notice.value?.id === 'device-lost') {
+          store.notice.value = { id: 'device-lost', kind: 'info', text: 'The graphics device was lost and is back.' };
+        }
+      });
+      if (columns.count > device.renderer.max_particles()) {
+        store.notice.value = {
+          id: 'too-many-to-draw', kind: 'warn', text: `The picture shows the first ${device.renderer.max_particles()} particles; the figures and exports hold all of them.`,
+        };
+      }
+    },
+    onLost(kind, message) {
+      store.notice.value = {
+        id: 'device-lost', kind: 'warn', text: 'The graphics device was lost and is being opened again.', details: `${kind}: ${message}`,
+      };
+    },
+    onFallback(kind, message) {
+      // At the start this is the ordinary way down the list of back ends; later on it is news.
+      if (store.backend.value !== 'starting') {
+        store.notice.value = {
+          id: 'fallback', kind: 'warn', text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`, details: `${kind}: ${message}`,
+        };
+      }
+    },
+    onLegend(legend) {
+      store.legend.value = legend;
+    },
+    onReveal(reveal) {
+      store.reveal.value = reveal;
+    },
+    onCamera() {
+      camera_timer ??= setTimeout(() => {
+        camera_timer = undefined;
+        store.state.value = { ...store.state.value, view: { ...store.state.value.view, camera: viewer.camera.state } };
+      }, CAMERA_MS);
+    },
+  });
+
+  const detach = attachControls({
+    host: canvasHost,
+    camera: viewer.camera,
+    currentView: () => viewer.currentView(),
+    moved: () => viewer.moved(),
+    fit: () => viewer.fit(),
+    point(x, y, tapped) {
+      const index = viewer.pick(x, y);
+      if (index !== null || tapped || store.hover.value) showHover(index, x, y);
+    },
+    leave: () => showHover(null, 0, 0),
+  });
+
+  /** @param {number | null} index @param {number} x @param {number} y */
+  function showHover(index, x, y) {
+    if (index === null) {
+      if (store.hover.value) store.hover.value = null;
+    } else {
+      const triple = (/** @type {Float32Array} */ column) => /** @type {[number, number, number]} */ ([...column.subarray(3 * index, 3 * index + 3)]);
+      store.hover.value = {
+        index, x, y,
+        level: columns.levels[index],
+        parent: columns.parents[index] === 0xffffffff ? null : columns.parents[index],
+        position: triple(columns.positions),
+        normal: triple(columns.normals),
+        radius: columns.radii[index],
+        residual: columns.residual?.[index] ?? null,
+        valence: columns.valence?.[index] ?? null,
+        nearest: columns.nearest?.[index] ?? null,
+      };
+    }
+    if (viewer.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
+  }
+
+  // ---- sampling -------------------------------------------------------------------------------------------------------------
+
+  const sampling = new SamplingClient({
+    store,
+    columns,
+    picture: viewer,
+    spawn: () => /** @type {any} */ (new Worker(new URL('./sampling/worker.js', import.meta.url), { type: 'module', name: 'sampler' })),
+    whole: () => request({}),
+    onReady() {
+      void loadUrl(location.hash, true);
+    },
+    onAsk(predicted, asked) {
+      const limit = Number(asked.settings.max_particles);
+      const raised = Math.min(MOST_PARTICLES, Math.ceil(predicted * 1.1));
+      store.notice.value = {
+        id: 'cap',
+        kind: 'warn',
+        text: `About ${predicted.toLocaleString()} particles would be needed; the limit is ${limit.toLocaleString()}.`,
+        action: {
+          label: 'Sample them anyway',
+          run() {
+            commands.dismissNotice();
+            change({ settings: { ...store.state.value.settings, max_particles: validSetting(description(), 'max_particles', raised) ?? limit } });
+            sampling.sample(request({ confirmed: true, grow: true }));
+          },
+        },
+      };
+    },
+  });
+
+  const description = () => {
+    const d = store.description.value;
+    if (!d) throw new Error('The core is not there yet.');
+    return d;
   };
-  return {
-    state: signal(initial),
-    description: signal(null),
-    field: signal(null),
-    fieldError: signal(null),
-    fieldPreview: signal(null),
-    progress: signal({
-      run: 0, live: false, phase: 'idle', particles: 0, level: 0, relax_step: 0, relax_steps: 0, evaluations: 0, fraction: 0,
-      stop_reason: null, message: null, radius: 0, moved: false,
+
+  /** @param {Partial<SampleRequest>} options @returns {SampleRequest} */
+  function request(options) {
+    const d = description();
+    const state = store.state.value;
+    return { kind: 'sample', field: fieldRequest(state, d), settings: completeSettings(d, state.settings), grow: false, live: false, fit: false, ...options };
+  }
+
+  /** @param {Partial<State>} patch */
+  function change(patch) {
+    store.state.value = { ...store.state.value, ...patch };
+  }
+
+  /** Samples the state as it is now: live while a control is dragged, whole once it rests. @param {boolean} live @param {Partial<SampleRequest>} [options] */
+  function resample(live, options = {}) {
+    clearTimeout(rest_timer);
+    if (!store.description.value) return;
+    if (!live) {
+      sampling.sample(request(options));
+      return;
+    }
+    sampling.sampleLive(request({}), diagonal());
+    rest_timer = setTimeout(() => sampling.sample(request({})), REST_MS);
+  }
+
+  /** Diagonal of the clip box in force. */
+  function diagonal() {
+    const bounds = store.state.value.bounds ?? store.field.value?.bounds;
+    return bounds ? Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k])) : 0;
+  }
+
+  // ---- state in the address -------------------------------------------------------------------------------------------------
+
+  /** @param {string} hash @param {boolean} [initial] */
+  async function loadUrl(hash, initial = false) {
+    const d = description();
+    const { state, reset, problem } = await decode(hash, d);
+    if (problem) {
+      store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${initial ? 'This is the standard surface instead.' : 'Nothing was changed.'}` };
+      if (!initial) return;
+    } else if (reset.length) {
+      store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${[...new Set(reset)].join(', ')}.` };
+    }
+    applyState(state);
+  }
+
+  /** @param {State} state  a valid one */
+  function applyState(state) {
+    store.state.value = state;
+    const surface = surfaceOf(store.description.value, state.surface);
+    const bounds = state.bounds ?? surface?.bounds;
+    if (bounds) viewer.setBounds(bounds);
+    viewer.camera.set(state.view.camera);
+    if (state.view.camera.fit) {
+      columns.count = 0;
+      viewer.fit(true);
+    }
+    showLook();
+    clearTimeout(rest_timer);
+    sampling.sample(request({ grow: true, fit: state.view.camera.fit }));
+  }
+
+  function writeAddress() {
+    clearTimeout(address_timer);
+    address_timer = setTimeout(async () => {
+      if (!store.description.value) return;
+      const hash = await encode(store.state.value, store.description.value);
+      if (hash === own_hash) return;
+      own_hash = hash;
+      history.replaceState(history.state, '', hash || location.pathname + location.search);
+    }, ADDRESS_MS);
+  }
+
+  const onHashChange = () => {
+    if (location.hash === own_hash) return;
+    own_hash = location.hash;
+    if (store.description.value) void loadUrl(location.hash);
+  };
+  addEventListener('hashchange', onHashChange);
+
+  // ---- how it looks -----------------------------------------------------------------------------------------------------------
+
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  function showLook() {
+    const { view, bounds } = store.state.value;
+    const theme = view.theme === 'auto' ? (dark.matches ? 'dark' : 'light') : view.theme;
+    store.theme.value = theme;
+    const box = bounds ?? store.field.value?.bounds ?? null;
+    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null });
+  }
+  dark.addEventListener('change', showLook);
+
+  const effects = [
+    effect(() => {
+      // The whole state is worth an address.
+      if (store.state.value) writeAddress();
     }),
-    report: signal(null),
-    timing: signal(null),
-    backend: signal('starting'),
-    adapter: signal(''),
-    notice: signal(null),
-    hover: signal(null),
-    legend: signal(null),
-    busy: signal(false),
-    partial: signal(false),
-    empty: signal(false),
-    lastDrag: signal(null),
-    theme: signal('light'),
-    setSurface() {}, setFormula() {}, setParameter() {}, resetParameter() {}, declareParameter() {}, setBounds() {},
-    setSetting() {}, resetSetting() {}, run() {}, stop() {}, generateOnly() {}, relax() {}, setView() {}, fit() {}, zoom() {},
-    orbit() {},
-    shareUrl: async () => location.href,
-    loadUrl: async () => {},
-    savePng: async () => new Blob(),
-    exportFile: async () => new Blob(),
-    dismissNotice() {},
-    pick: () => null,
-    destroy() {},
+    effect(() => {
+      const field = store.field.value;
+      if (field) viewer.setBounds(field.bounds);
+      if (store.empty.value || field) showLookLater();
+    }),
+    effect(() => {
+      viewer.growing = store.busy.value;
+    }),
+  ];
+  function showLookLater() {
+    queueMicrotask(showLook);
+  }
+
+  // ---- commands ---------------------------------------------------------------------------------------------------------------
+
+  /** @type {import('./types.js').EngineCommands} */
+  const commands = {
+    setSurface(id) {
+      const surface = surfaceOf(store.description.value, id);
+      if (!surface) return;
+      change({ surface: id, formula: surface.formula, parameters: {}, declared: [], bounds: null });
+      resample(false, { grow: true, fit: true });
+    },
+    setFormula(text) {
+      if (text === store.state.value.formula) return;
+      change({ formula: text });
+      resample(false);
+    },
+    setParameter(name, value, { live = false } = {}) {
+      if (!Number.isFinite(value)) return;
+      change({ parameters: { ...store.state.value.parameters, [name]: value } });
+      resample(live);
+    },
+    resetParameter(name) {
+      const { [name]: _, ...parameters } = store.state.value.parameters;
+      change({ parameters });
+      resample(false);
+    },
+    declareParameter(name) {
+      const { declared } = store.state.value;
+      if (declared.some((p) => p.name === name)) return;
+      change({ declared: [...declared, { name, label: name, value: 1, min: -2, max: 2, step: 0.01 }] });
+      resample(false);
+    },
+    setBounds(bounds, { live = false } = {}) {
+      const valid = bounds === null ? null : validBounds(bounds);
+      if (valid === undefined) return;
+      change({ bounds: valid });
+      showLook();
+      resample(live);
+    },
+    setSetting(name, value, { live = false } = {}) {
+      const valid = store.description.value ? validSetting(store.description.value, name, value) : undefined;
+      if (valid === undefined) return;
+      change({ settings: { ...store.state.value.settings, [name]: valid } });
+      resample(live);
+    },
+    resetSetting(name) {
+      const { [name]: _, ...settings } = store.state.value.settings;
+      change({ settings });
+      resample(false);
+    },
+    run() {
+      resample(false, { grow: true });
+    },
+    stop() {
+      clearTimeout(rest_timer);
+      sampling.stop();
+    },
+    generateOnly() {
+      const settings = { ...completeSettings(description(), store.state.value.settings), relax_steps: 0 };
+      resample(false, { grow: true, settings });
+    },
+    relax(steps) {
+      if (steps > 0) sampling.relax(Math.min(1000, Math.round(steps)));
+    },
+    setView(patch) {
+      const view = validView(/** @type {Record<string, unknown>} */ (patch), store.state.value.view);
+      if (patch.camera) viewer.camera.set(view.camera);
+      change({ view });
+      showLook();
+    },
+    fit: () => viewer.fit(),
+    zoom(factor) {
+      viewer.camera.zoom(factor);
+      viewer.moved();
+    },
+    orbit(dx_rad, dy_rad) {
+      viewer.camera.rest();
+      viewer.camera.orbit(dx_rad, dy_rad);
+      viewer.moved();
+    },
+    setInsets: (insets) => viewer.set({ insets }),
+    async shareUrl() {
+      return location.origin + location.pathname + (await encode(store.state.value, description()));
+    },
+    loadUrl: (hash) => loadUrl(hash),
+    async savePng({ width, height, transparent = false } = {}) {
+      const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
+        Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
+      const picture = await viewer.pixels(side(width, viewer.width), side(height, viewer.height), transparent);
+      return png(picture.width, picture.height, picture.pixels);
+    },
+    async exportFile(format) {
+      const state = store.state.value;
+      return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, f = ${state.formula}` });
+    },
+    dismissNotice() {
+      store.notice.value = null;
+    },
+    pick: (x, y) => viewer.pick(x, y),
+    destroy() {
+      for (const timer of [rest_timer, address_timer, camera_timer]) clearTimeout(timer);
+      for (const stop of effects) stop();
+      removeEventListener('hashchange', onHashChange);
+      dark.removeEventListener('change', showLook);
+      detach();
+      viewer.destroy();
+      sampling.supervisor.stop();
+    },
   };
+
+  const engine = { ...store, ...commands };
+  installConsole({
+    engine,
+    viewer,
+    sampling,
+    columns,
+    applyState(patch) {
+      const d = description();
+      const now = store.state.value;
+      const base = typeof patch.surface === 'string' && patch.surface !== now.surface ? { ...defaultState(d), view: now.view, settings: now.settings } : now;
+      const { state, reset } = sanitize({ ...base, formula: undefined, ...(patch.surface ? {} : { formula: now.formula }), ...patch, view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) } }, d);
+      applyState(state);
+      return reset;
+    },
+  });
+  sampling.start();
+  void viewer.start();
+  return engine;
 }

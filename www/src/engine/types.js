@@ -265,6 +265,12 @@
  */
 
 /**
+ * How far the picture of a new run has come: particles appear level by level, at a pace that the eye can follow, however fast
+ * the sampler was.
+ * @typedef {{level: number, levels: number, particles: number}} Reveal
+ */
+
+/**
  * @typedef {object} EngineSignals
  * @property {ReadonlySignal<State>} state
  * @property {ReadonlySignal<Description | null>} description  null until the core has arrived
@@ -279,7 +285,8 @@
  * @property {ReadonlySignal<Notice | null>} notice
  * @property {ReadonlySignal<Hover | null>} hover
  * @property {ReadonlySignal<Legend | null>} legend
- * @property {ReadonlySignal<boolean>} busy
+ * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
+ * @property {ReadonlySignal<boolean>} busy  a run is under way and can be stopped
  * @property {ReadonlySignal<boolean>} partial  the picture is a run that was stopped or capped
  * @property {ReadonlySignal<boolean>} empty  the last run found no surface
  * @property {ReadonlySignal<LastDrag | null>} lastDrag
@@ -303,6 +310,7 @@
  * @property {() => void} fit
  * @property {(factor: number) => void} zoom  > 1 comes nearer
  * @property {(dx_rad: number, dy_rad: number) => void} orbit
+ * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the canvas host covered by panels: the surface is centred in what is left
  * @property {() => Promise<string>} shareUrl
  * @property {(hash: string) => Promise<void>} loadUrl
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng

@@ -1,0 +1,151 @@
+/**
+ * `window.marchingParticles`: the same page, driven from the console or from a test. See www/CONSOLE.md.
+ *
+ * @module
+ */
+import { effect } from '@preact/signals-core';
+
+/**
+ * @typedef {import('./types.js').Engine} Engine
+ * @typedef {import('./types.js').Report} Report
+ * @typedef {import('./types.js').State} State
+ */
+/**
+ * @typedef {object} Console
+ * @property {string} version  of the core; empty until it has arrived
+ * @property {Promise<Report | null>} ready  resolves once the first run is done and on screen
+ * @property {State} state
+ * @property {(patch: object) => Promise<Report | null>} set  changes the state, samples, and resolves with the report
+ * @property {() => Promise<Report | null>} run
+ * @property {() => Promise<Report | null>} stop
+ * @property {(steps?: number) => Promise<Report | null>} relax
+ * @property {() => Report | null} report
+ * @property {() => Particles} particles
+ * @property {() => object} status
+ * @property {(width: number, height: number, transparent?: boolean) => Promise<{width: number, height: number, pixels: Uint8Array}>} pixels
+ * @property {Engine} engine
+ * @property {Debug} debug
+ */
+/**
+ * Copies of the columns: index i of each belongs to particle i.
+ * @typedef {object} Particles
+ * @property {number} count
+ * @property {Float32Array} positions
+ * @property {Float32Array} normals
+ * @property {Float32Array} radii
+ * @property {Uint32Array} levels
+ * @property {Uint32Array} parents
+ * @property {Uint32Array} slots
+ * @property {Uint8Array | null} valence
+ * @property {Float32Array | null} nearest
+ * @property {Float32Array | null} residual
+ */
+/**
+ * Faults on purpose, for the tests.
+ * @typedef {object} Debug
+ * @property {() => void} panic  traps the core in its worker
+ * @property {() => void} overflow  overflows the worker's stack
+ * @property {() => void} hang  sends the worker into an endless loop
+ * @property {(reason?: string) => void} loseDevice
+ * @property {(id: number) => void} stale  hands the page a message of another run
+ * @property {() => {frames: number, opened: number, restarts: number, stale: number}} counts
+ */
+
+/**
+ * @param {object} parts
+ * @param {Engine} parts.engine
+ * @param {import('./view/viewer.js').Viewer} parts.viewer
+ * @param {import('./sampling/client.js').SamplingClient} parts.sampling
+ * @param {import('./columns.js').Columns} parts.columns
+ * @param {(patch: Record<string, unknown>) => string[]} parts.applyState
+ */
+export function installConsole({ engine, viewer, sampling, columns, applyState }) {
+  /** Resolves when nothing runs, the report is there (or there will be none) and the picture is up to date. */
+  const settled = () => new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
+    let over = false;
+    /** @type {() => void} */
+    let stop = () => {};
+    stop = effect(() => {
+      const idle = engine.description.value !== null && !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value === null && engine.backend.value !== 'starting';
+      const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
+      if ((!idle && !failed) || over) return;
+      over = true;
+      const report = engine.report.peek();
+      // Two frames: the one that was asked for, and the one after it is surely on screen.
+      const show = () => requestAnimationFrame(() => requestAnimationFrame(() => resolve(report)));
+      if (document.hidden) resolve(report);
+      else show();
+      queueMicrotask(() => stop());
+    });
+  });
+  /** @param {() => void} act */
+  const after = (act) => {
+    act();
+    return settled();
+  };
+
+  /** @type {Console} */
+  const face = {
+    get version() {
+      return engine.description.value?.version ?? '';
+    },
+    ready: settled(),
+    get state() {
+      return structuredClone(engine.state.value);
+    },
+    set: (patch) => after(() => {
+      const reset = applyState({ ...patch });
+      if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
+    }),
+    run: () => after(() => engine.run()),
+    stop: () => after(() => engine.stop()),
+    relax: (steps = 1) => after(() => engine.relax(steps)),
+    report: () => structuredClone(engine.report.value),
+    particles: () => {
+      const { count } = columns;
+      return {
+        count,
+        positions: columns.positions.slice(0, 3 * count),
+        normals: columns.normals.slice(0, 3 * count),
+        radii: columns.radii.slice(0, count),
+        levels: columns.levels.slice(0, count),
+        parents: columns.parents.slice(0, count),
+        slots: columns.slots.slice(0, count),
+        valence: columns.valence?.slice() ?? null,
+        nearest: columns.nearest?.slice() ?? null,
+        residual: columns.residual?.slice() ?? null,
+      };
+    },
+    status: () => ({
+      backend: engine.backend.value,
+      adapter: engine.adapter.value,
+      busy: engine.busy.value,
+      progress: { ...engine.progress.value },
+      partial: engine.partial.value,
+      empty: engine.empty.value,
+      fieldError: engine.fieldError.value,
+      timing: engine.timing.value,
+      lastDrag: engine.lastDrag.value,
+      notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },
+    }),
+    pixels: (width, height, transparent = false) => viewer.pixels(width, height, transparent),
+    engine,
+    debug: {
+      panic: () => sampling.supervisor.post({ type: 'provoke', fault: 'panic' }),
+      overflow: () => sampling.supervisor.post({ type: 'provoke', fault: 'overflow' }),
+      hang: () => sampling.supervisor.post({ type: 'provoke', fault: 'hang' }),
+      loseDevice(reason = 'unknown') {
+        const { device } = viewer.keeper;
+        if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');
+        else device?.renderer.destroy();
+      },
+      stale(id) {
+        sampling.receive({ type: 'progress', id, progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 } });
+      },
+      counts: () => ({
+        frames: viewer.frames, opened: viewer.keeper.opened, restarts: sampling.supervisor.restarts.length, stale: sampling.stale,
+      }),
+    },
+  };
+  /** @type {any} */ (window).marchingParticles = face;
+}

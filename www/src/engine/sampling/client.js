@@ -1,0 +1,416 @@
+/**
+ * The page's side of the sampler: turns requests into jobs, takes what the worker sends, and keeps the signals true.
+ *
+ * @module
+ */
+import { batch } from '@preact/signals-core';
+import { idleProgress } from '../store.js';
+import { CostModel, planLive, Scheduler } from './scheduler.js';
+import { Supervisor } from './supervisor.js';
+
+/**
+ * @typedef {import('./protocol.js').FromWorker} FromWorker
+ * @typedef {import('./protocol.js').Job} Job
+ * @typedef {import('./supervisor.js').Crash} Crash
+ * @typedef {import('./supervisor.js').WorkerLike} WorkerLike
+ * @typedef {import('../columns.js').Columns} Columns
+ * @typedef {import('../store.js').Store} Store
+ * @typedef {import('../types.js').FieldRequest} FieldRequest
+ * @typedef {import('../types.js').Settings} Settings
+ */
+/**
+ * A wish for a run. `settings` are complete. `fit` lets the camera follow when the run is done; `confirmed` skips the question
+ * whether so many particles are wanted; `restoring` brings back a surface while the formula in the editor has a fault.
+ * @typedef {object} SampleRequest
+ * @property {'sample'} kind
+ * @property {FieldRequest} field
+ * @property {Settings} settings
+ * @property {boolean} grow
+ * @property {boolean} live
+ * @property {boolean} fit
+ * @property {boolean} [confirmed]
+ * @property {boolean} [restoring]
+ * @property {boolean} [coarse]
+ */
+/** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false}} RelaxRequest */
+/** @typedef {SampleRequest | RelaxRequest} RunRequest */
+/**
+ * What the picture does about it all.
+ * @typedef {object} Picture
+ * @property {(options: {grow: boolean}) => void} begin  a new surface takes the place of the old one
+ * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns first … last are new
+ * @property {(from: number, last: number) => void} recolour  colours first … last may be new
+ * @property {() => void} fit
+ * @property {(dim: boolean) => void} dim
+ */
+
+/** The id under which a run's input is compared with another's. @param {RunRequest} request */
+const inputOf = (request) => JSON.stringify(request.kind === 'sample' ? [request.field, request.settings] : ['relax', request.steps]);
+
+export class SamplingClient {
+  /**
+   * @param {object} options
+   * @param {Store} options.store
+   * @param {Columns} options.columns
+   * @param {Picture} options.picture
+   * @param {() => WorkerLike} options.spawn
+   * @param {() => void} options.onReady  the description is there for the first time
+   * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
+   * @param {() => SampleRequest} options.whole  a full run of the state as it is
+   * @param {import('./supervisor.js').Clock} [options.clock]
+   */
+  constructor({ store, columns, picture, spawn, onReady, onAsk, whole, clock }) {
+    this.store = store;
+    this.columns = columns;
+    this.picture = picture;
+    this.onReady = onReady;
+    this.onAsk = onAsk;
+    this.whole = whole;
+    this.cost = new CostModel();
+    this.now_ms = clock ? clock.now : () => performance.now();
+    /** @type {Scheduler<RunRequest>} */
+    this.scheduler = new Scheduler((id, request) => this.dispatch(id, request), this.now_ms);
+    this.supervisor = new Supervisor({
+      spawn,
+      clock,
+      onMessage: (message) => this.receive(message),
+      onRestart: (crash) => this.restarted(crash),
+      onSafeMode: (crash) => this.safeMode(crash),
+      onLoadError: (message) => this.loadFailed(`The sampler did not load: ${message}.`),
+    });
+    /** The job whose messages count. @type {{id: number, request: RunRequest, begun: boolean, ended: boolean, predicted: number, since_ms: number} | null} */
+    this.current = null;
+    /** Job whose particles the worker holds. */
+    this.held = 0;
+    /** The last sampling asked for that was accepted by the core. @type {SampleRequest | null} */
+    this.accepted = null;
+    /** A run that was cut short by one that then failed on its formula. @type {SampleRequest | null} */
+    this.interrupted = null;
+    this.crashed_input = '';
+    /** Messages of runs that are over. */
+    this.stale = 0;
+    /** @type {{requested: number, latencies: number[], coarse: boolean, particles: number, quiet_ms: number} | null} */
+    this.drag = null;
+  }
+
+  start() {
+    this.supervisor.start();
+  }
+
+  // ---- requests -------------------------------------------------------------------------------------------------------
+
+  /** @param {SampleRequest} request */
+  sample(request) {
+    const { current } = this;
+    // A second Run with the same input while the first is under way would only begin again.
+    if (current && !current.ended && !request.live && !current.request.live && inputOf(current.request) === inputOf(request)) return;
+    this.scheduler.submit(request);
+  }
+
+  /**
+   * A run for a control in motion, coarse if it has to be.
+   * @param {SampleRequest} request @param {number} diagonal  of the clip box
+   */
+  sampleLive(request, diagonal) {
+    const now = this.now_ms();
+    if (!this.drag || now - this.drag.quiet_ms > 1000) this.drag = { requested: 0, latencies: [], coarse: false, particles: 0, quiet_ms: now };
+    this.drag.requested += 1;
+    this.drag.quiet_ms = now;
+    const plan = planLive(request.settings, diagonal, this.cost);
+    this.drag.coarse ||= plan.coarse;
+    this.scheduler.submit({ ...request, settings: plan.settings, coarse: plan.coarse, live: true, grow: false });
+  }
+
+  /** Relaxes the particles the worker holds; where they are gone, the whole run is made with so many steps more. @param {number} steps */
+  relax(steps) {
+    const { current } = this;
+    if (current && !current.ended) return;
+    if (this.held > 0 && this.columns.count > 0) {
+      this.scheduler.submit({ kind: 'relax', of: this.held, steps, live: false, grow: true, fit: false });
+    } else {
+      const request = this.whole();
+      const done = this.store.progress.value.relax_steps;
+      this.sample({ ...request, grow: false, settings: { ...request.settings, relax_steps: done + steps } });
+    }
+  }
+
+  stop() {
+    const { current } = this;
+    if (!current || current.ended) return;
+    this.scheduler.waiting = null;
+    this.supervisor.post({ type: 'stop', id: current.id });
+  }
+
+  /** @param {number} id @param {RunRequest} request */
+  dispatch(id, request) {
+    const { store } = this;
+    if (!this.supervisor.worker) {
+      // Safe mode: the wish is in the state, and is met when the sampler is started again.
+      this.scheduler.drop();
+      return;
+    }
+    const before = this.current;
+    if (before && !before.ended && before.request.kind === 'sample' && this.accepted === before.request) this.interrupted = before.request;
+    this.current = { id, request, begun: false, ended: false, predicted: 0, since_ms: this.now_ms() };
+    /** @type {Job} */
+    const job = request.kind === 'relax'
+      ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
+      : {
+        kind: 'sample', id, field: request.field, settings: request.settings, grow: request.grow, live: request.live,
+        // A drag is never asked about: it stops at the limit.
+        ask_above: request.confirmed || request.live || request.restoring ? Number.MAX_SAFE_INTEGER : Number(request.settings.max_particles),
+      };
+    if (request.kind === 'sample') this.held = 0;
+    batch(() => {
+      store.busy.value = true;
+      store.report.value = null;
+      store.progress.value = { ...idleProgress(), run: id, live: request.live, phase: request.kind === 'relax' ? 'relaxation' : 'seeding' };
+    });
+    this.supervisor.post({ type: 'job', job });
+    this.supervisor.setBusy(true);
+  }
+
+  // ---- what the worker sends --------------------------------------------------------------------------------------------
+
+  /** @param {FromWorker} message */
+  receive(message) {
+    const { store } = this;
+    if (message.type === 'ready') {
+      const first = store.description.value === null;
+      store.description.value = message.description;
+      this.supervisor.setBusy(this.current !== null && !this.current.ended);
+      if (first) this.onReady();
+      return;
+    }
+    if (message.type === 'failed') return this.loadFailed(message.message);
+    if (message.type === 'beat' || message.type === 'crashed') return;
+    const { current } = this;
+    if (!current || message.id !== current.id) {
+      this.stale += 1;
+      return;
+    }
+    switch (message.type) {
+      case 'field':
+        this.fieldAnswered(message.answer, current.request);
+        break;
+      case 'started':
+        current.predicted = message.predicted;
+        break;
+      case 'progress':
+        this.showProgress(message.progress);
+        break;
+      case 'columns':
+        this.takeColumns(message, current);
+        break;
+      case 'done':
+        this.ended(message, current);
+        break;
+      case 'report':
+        this.reported(message, current);
+        break;
+      default:
+    }
+  }
+
+  /** @param {import('../types.js').CoreProgress} progress */
+  showProgress(progress) {
+    const { current } = this;
+    if (current) this.store.progress.value = { ...progress, run: current.id, live: current.request.live };
+  }
+
+  /** @param {import('../types.js').FieldAnswer} answer @param {RunRequest} request */
+  fieldAnswered(answer, request) {
+    const { store } = this;
+    const restoring = request.kind === 'sample' && request.restoring;
+    if (answer.ok) {
+      this.accepted = request.kind === 'sample' ? request : this.accepted;
+      if (restoring) return;
+      batch(() => {
+        store.field.value = answer;
+        store.fieldError.value = null;
+        store.fieldPreview.value = answer.mathml;
+      });
+      this.picture.dim(false);
+    } else if (!restoring) {
+      batch(() => {
+        store.fieldError.value = answer.error;
+        store.fieldPreview.value = answer.mathml ?? null;
+      });
+      // An empty editor is no mistake: nothing is dimmed.
+      this.picture.dim(answer.error.kind !== 'empty');
+    }
+  }
+
+  /** @param {import('./protocol.js').ColumnsMessage} message @param {NonNullable<SamplingClient['current']>} current */
+  takeColumns(message, current) {
+    const { columns, picture } = this;
+    if (!current.begun) {
+      current.begun = true;
+      this.interrupted = null;
+      if (current.request.kind === 'sample') {
+        columns.count = 0;
+        picture.begin({ grow: current.request.grow });
+        this.store.hover.value = null;
+      }
+    }
+    const drawn = () => this.supervisor.post({ type: 'drawn', id: message.id });
+    const n = message.radii.length;
+    if (!columns.write(message)) {
+      drawn();
+      return;
+    }
+    columns.writeSlots(message.slots_from, message.slots);
+    if (n > 0) picture.changed(message.first, message.first + n, drawn);
+    else drawn();
+    picture.recolour(message.slots_from, columns.count);
+    this.showProgress(message.progress);
+  }
+
+  /** @param {import('./protocol.js').DoneMessage} message @param {NonNullable<SamplingClient['current']>} current */
+  ended(message, current) {
+    const { store, columns, picture } = this;
+    const { outcome, progress, seconds } = message;
+    const { request } = current;
+    current.ended = true;
+    batch(() => {
+      store.busy.value = false;
+      if (outcome === 'complete' || outcome === 'stopped') {
+        const particles = progress?.particles ?? 0;
+        if (request.kind === 'sample' && particles === 0 && outcome === 'complete') {
+          columns.count = 0;
+          picture.begin({ grow: false });
+          picture.changed(0, 0, () => {});
+        }
+        this.held = particles > 0 ? current.id : 0;
+        store.empty.value = outcome === 'complete' && particles === 0;
+        store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
+        if (progress) store.progress.value = { ...progress, run: current.id, live: request.live, phase: message.report_follows ? 'quality' : 'done' };
+        this.note(seconds, particles, progress?.relax_step ?? 0, progress?.radius ?? 0, current);
+        if (request.fit && particles > 0) picture.fit();
+      } else {
+        store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
+        if (outcome === 'refused') {
+          store.notice.value = { id: 'refused', kind: 'warn', text: message.message };
+          picture.dim(columns.count > 0);
+        }
+      }
+    });
+    if (!message.report_follows) this.supervisor.setBusy(false);
+    this.scheduler.ended(message.id);
+    if (request.kind === 'sample' && outcome === 'ask') this.onAsk(message.predicted, request);
+    if (outcome === 'field_error' && this.interrupted && this.scheduler.running === null) {
+      const { interrupted } = this;
+      this.interrupted = null;
+      this.scheduler.submit({ ...interrupted, live: false, grow: false, restoring: true });
+    }
+  }
+
+  /**
+   * Learns from a run what the next will cost, and keeps the figures of a drag.
+   * @param {import('../types.js').Seconds} seconds @param {number} particles @param {number} relax_steps @param {number} radius
+   * @param {NonNullable<SamplingClient['current']>} current
+   */
+  note(seconds, particles, relax_steps, radius, { request, since_ms }) {
+    const total = seconds.seeding + seconds.generation + seconds.relaxation;
+    if (request.kind === 'sample') this.cost.record({ seconds, particles, relax_steps, radius });
+    this.store.timing.value = { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live: request.live };
+    const { drag } = this;
+    if (request.live && drag) {
+      drag.latencies.push(this.now_ms() - since_ms);
+      drag.particles = particles;
+      const sorted = [...drag.latencies].sort((a, b) => a - b);
+      this.store.lastDrag.value = {
+        requested: drag.requested, shown: drag.latencies.length, latency_ms: sorted[sorted.length >> 1], particles, coarse: drag.coarse,
+      };
+    }
+  }
+
+  /** @param {import('./protocol.js').ReportMessage} message @param {NonNullable<SamplingClient['current']>} current */
+  reported(message, current) {
+    const { store, columns, picture } = this;
+    if (message.valence.length === columns.count) {
+      columns.valence = message.valence;
+      columns.nearest = message.nearest;
+      columns.residual = message.residual;
+    }
+    const { seconds, count } = message.report;
+    const total = seconds.seeding + seconds.generation + seconds.relaxation + seconds.quality;
+    batch(() => {
+      store.report.value = message.report;
+      store.progress.value = { ...store.progress.value, phase: 'done' };
+      store.timing.value = { total, seconds, us_per_particle: ((total - seconds.quality) * 1e6) / Math.max(1, count), particles: count, live: false };
+    });
+    picture.recolour(0, columns.count);
+    if (current.ended && this.scheduler.running === null) this.supervisor.setBusy(false);
+  }
+
+  // ---- when the worker fails ----------------------------------------------------------------------------------------------
+
+  /** @param {Crash} crash @param {RunRequest | null} lost */
+  describeCrash(crash, lost) {
+    return [
+      `Marching Particles ${this.store.description.value?.version ?? ''}: the sampler ${crash.cause === 'hang' ? 'fell silent' : 'stopped on an error'}`,
+      crash.message,
+      crash.stack,
+      `job: ${lost ? JSON.stringify(lost) : 'none'}`,
+      `restarts in the last minute: ${crash.restarts}`,
+      typeof navigator === 'undefined' ? '' : navigator.userAgent,
+    ].filter(Boolean).join('\n');
+  }
+
+  /** @returns {RunRequest | null} */
+  forget() {
+    const lost = this.scheduler.drop();
+    this.current = null;
+    this.held = 0;
+    batch(() => {
+      this.store.busy.value = false;
+      this.store.progress.value = { ...idleProgress(), particles: this.columns.count };
+    });
+    return lost;
+  }
+
+  /** @param {Crash} crash */
+  restarted(crash) {
+    const lost = this.forget();
+    const input = lost ? inputOf(lost) : '';
+    const again = lost !== null && input !== this.crashed_input;
+    this.crashed_input = input;
+    const what = crash.cause === 'hang' ? 'The sampler fell silent and was restarted.' : 'The sampler stopped on an error and was restarted.';
+    this.store.notice.value = {
+      id: crash.cause,
+      kind: again || !lost ? 'warn' : 'error',
+      text: again || !lost ? `${what} Nothing was lost.` : `${what} The same input stopped it twice: change the formula or a setting.`,
+      details: this.describeCrash(crash, lost),
+    };
+    if (!again) return;
+    // Relaxed particles died with their worker: the run that made them is made again.
+    if (lost.kind === 'sample') this.scheduler.submit(lost);
+    else if (this.accepted) this.scheduler.submit({ ...this.accepted, live: false, grow: false });
+  }
+
+  /** @param {Crash} crash */
+  safeMode(crash) {
+    const lost = this.forget();
+    this.store.notice.value = {
+      id: 'safe-mode',
+      kind: 'error',
+      text: 'The sampler failed four times within a minute and is now off. The picture, your formula and the exports stay.',
+      details: this.describeCrash(crash, lost),
+      action: { label: 'Start it again', run: () => this.revive() },
+    };
+  }
+
+  /** @param {string} text */
+  loadFailed(text) {
+    this.forget();
+    this.store.notice.value = { id: 'load', kind: 'error', text, details: text, action: { label: 'Try again', run: () => this.revive() } };
+  }
+
+  revive() {
+    this.store.notice.value = null;
+    this.crashed_input = '';
+    this.supervisor.revive();
+    if (this.store.description.value) this.scheduler.submit({ ...this.whole(), grow: false });
+  }
+}

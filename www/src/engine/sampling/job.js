@@ -1,0 +1,197 @@
+/**
+ * One job in the worker, from the field to the report: the step loop, its pace and what it posts. The clock, the pause
+ * between steps and the way out are handed in, so that the loop can be run in tests on a scripted core.
+ *
+ * @module
+ */
+import { BEAT_MS } from './protocol.js';
+
+/**
+ * @typedef {import('./protocol.js').Job} Job
+ * @typedef {import('./protocol.js').FromWorker} FromWorker
+ * @typedef {import('./protocol.js').DoneMessage} DoneMessage
+ * @typedef {import('../types.js').CoreProgress} CoreProgress
+ * @typedef {import('../types.js').Seconds} Seconds
+ */
+/**
+ * The core's class as the loop uses it.
+ * @typedef {object} CoreLike
+ * @property {(json: string) => string} set_field
+ * @property {(json: string) => string} start
+ * @property {(budget: number) => string} step
+ * @property {(steps: number) => string} relax
+ * @property {() => string} cancel
+ * @property {() => number} count
+ * @property {(from: number) => Float32Array} positions
+ * @property {(from: number) => Float32Array} normals
+ * @property {(from: number) => Float32Array} radii
+ * @property {(from: number) => Uint32Array} levels
+ * @property {(from: number) => Uint32Array} parents
+ * @property {(from: number) => Uint32Array} slots
+ * @property {() => string} report
+ * @property {() => Uint8Array} valence
+ * @property {() => Float32Array} nearest
+ * @property {() => Float32Array} residual
+ */
+/**
+ * @typedef {object} Surroundings
+ * @property {() => number} now_ms
+ * @property {() => Promise<void>} pause  lets messages in
+ * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
+ * @property {() => 'stop' | 'replace' | null} interrupt
+ * @property {() => boolean} room  whether the page has drawn what it was sent
+ */
+
+/** A step of the loop should take about this long: short enough for a Stop, long enough that its overhead is lost in it. */
+const STEP_MS = 6;
+/** The first budget of a job, in work units; the pace then follows the machine. */
+const FIRST_BUDGET = 2048;
+const LARGEST_BUDGET = 1 << 22;
+/** One picture at 60 Hz. */
+const PICTURE_MS = 15;
+/** A report is begun only after this much quiet, so that a drag that follows at once does not wait for it. */
+const QUIET_MS = 40;
+/** Generous bound on the time of a report: a few µs per particle on a fast machine, ten times that on a slow one. */
+const REPORT_MS_PER_PARTICLE = 0.2;
+
+/** Which of the four clocks a phase of the core runs on. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
+function clockOf(phase) {
+  if (phase === 'relaxation') return 'relaxation';
+  return phase === 'generation' ? 'generation' : 'seeding';
+}
+
+/** The budget that would have taken the wanted time, changed by no more than a factor of four down and two up. */
+export function nextBudget(/** @type {number} */ budget, /** @type {number} */ took_ms, target_ms = STEP_MS) {
+  const factor = Math.min(2, Math.max(0.25, target_ms / Math.max(took_ms, 0.05)));
+  return Math.round(Math.min(LARGEST_BUDGET, Math.max(1, budget * factor)));
+}
+
+/**
+ * Runs a job to its end, or until it is interrupted.
+ * @param {CoreLike} core
+ * @param {Job} job
+ * @param {Surroundings} env
+ * @param {{held: number}} memory  id of the job whose particles the core holds, 0 for none
+ * @returns {Promise<void>}
+ */
+export async function runJob(core, job, env, memory) {
+  /** @type {Seconds} */
+  const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+  const { id } = job;
+  /** @type {CoreProgress | null} */
+  let progress = null;
+  let predicted = 0;
+
+  /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [report_follows] */
+  const done = (outcome, message = '', report_follows = false) =>
+    env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, report_follows });
+
+  if (job.kind === 'sample') {
+    const answer = JSON.parse(core.set_field(JSON.stringify(job.field)));
+    env.post({ type: 'field', id, answer });
+    if (!answer.ok) return done('field_error');
+    memory.held = 0;
+    const start = JSON.parse(core.start(JSON.stringify(job.settings)));
+    if (!start.ok) return done('refused', String(start.error?.message ?? start.error));
+    predicted = start.predicted_count ?? 0;
+    env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings ?? [] });
+    if (predicted > job.ask_above) {
+      core.cancel();
+      return done('ask');
+    }
+  } else {
+    if (memory.held !== job.of) return done('lost');
+    core.relax(job.steps);
+  }
+  memory.held = id;
+
+  // What the page has: columns of `count` particles, and whether the fates of all their slots are the latest.
+  const sent = { count: job.kind === 'sample' ? 0 : core.count(), stale: false, slots_from: 0, settled: false, picture_ms: -Infinity };
+  let beat_ms = env.now_ms();
+  /** @type {Record<string, number>} */
+  const budgets = {};
+  /** @type {CoreProgress['phase']} */
+  let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
+
+  let last = /** @type {CoreProgress} */ (/** @type {unknown} */ (null));
+
+  /** Whether the page should see columns now, between two steps. */
+  const due = () => {
+    if (!env.room() || env.now_ms() - sent.picture_ms < PICTURE_MS) return false;
+    if (job.live) return false;
+    if (!job.grow && last.phase !== 'relaxation') return false;
+    return sent.stale || core.count() > sent.count;
+  };
+  const sendColumns = () => {
+    const total = core.count();
+    const first = sent.stale ? 0 : Math.min(sent.count, total);
+    const slots_from = sent.stale ? 0 : Math.min(sent.slots_from, first);
+    const columns = {
+      positions: core.positions(first), normals: core.normals(first), radii: core.radii(first),
+      levels: core.levels(first), parents: core.parents(first), slots: core.slots(slots_from),
+    };
+    env.post({ type: 'columns', id, first, total, slots_from, ...columns, progress: last }, Object.values(columns).map((c) => c.buffer));
+    // The fates of a particle's slots are decided after it was sent: they go along with the next piece.
+    sent.slots_from = first;
+    sent.settled = slots_from === 0;
+    sent.count = total;
+    sent.stale = false;
+    sent.picture_ms = env.now_ms();
+  };
+
+  for (;;) {
+    const why = env.interrupt();
+    if (why === 'replace') {
+      memory.held = 0;
+      return done('replaced');
+    }
+    if (why === 'stop') {
+      last = JSON.parse(core.cancel());
+      progress = last;
+      break;
+    }
+    const budget = budgets[phase] ?? FIRST_BUDGET;
+    const before = env.now_ms();
+    last = JSON.parse(core.step(budget));
+    progress = last;
+    const took = env.now_ms() - before;
+    seconds[clockOf(phase)] += took / 1000;
+    budgets[phase] = nextBudget(budget, took);
+    sent.stale ||= last.moved;
+    if (last.phase === 'done') break;
+    phase = last.phase;
+    if (due()) {
+      sendColumns();
+      beat_ms = env.now_ms();
+    } else if (env.now_ms() - beat_ms > BEAT_MS) {
+      env.post({ type: 'progress', id, progress });
+      beat_ms = env.now_ms();
+    }
+    await env.pause();
+  }
+
+  // At the end the page has every particle, and the final fate of every slot.
+  if (core.count() > sent.count || sent.stale) sendColumns();
+  if (!sent.settled) {
+    const slots = core.slots(0);
+    const total = core.count();
+    const none = { positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0) };
+    env.post({ type: 'columns', id, first: total, total, ...none, slots_from: 0, slots, progress: last }, [slots.buffer]);
+  }
+  const stopped = last.stop_reason === 'cancelled';
+  const reported = !job.live && core.count() > 0;
+  done(stopped ? 'stopped' : 'complete', '', reported);
+  if (!reported) return;
+
+  const quiet_until = env.now_ms() + QUIET_MS;
+  while (env.now_ms() < quiet_until) {
+    await env.pause();
+    if (env.interrupt() === 'replace') return;
+  }
+  env.post({ type: 'beat', allow_ms: 2000 + core.count() * REPORT_MS_PER_PARTICLE });
+  const before = env.now_ms();
+  const report = JSON.parse(core.report());
+  seconds.quality = (env.now_ms() - before) / 1000;
+  const figures = { valence: core.valence(), nearest: core.nearest(), residual: core.residual() };
+  env.post({ type: 'report', id, report: { ...report, seconds: { ...seconds } }, ...figures }, Object.values(figures).map((c) => c.buffer));
+}

@@ -1,0 +1,53 @@
+/**
+ * Brings in the sampler's WebAssembly and names what went wrong when it does not come.
+ *
+ * @module
+ */
+
+/** @typedef {import('./protocol.js').LoadFault} LoadFault */
+
+/** A module with one 128-bit constant: valid exactly where SIMD is. */
+const SIMD_PROBE = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
+
+/** A load that failed, with its cause by name. */
+export class LoadError extends Error {
+  /** @param {LoadFault} fault @param {string} message */
+  constructor(fault, message) {
+    super(message);
+    this.name = 'LoadError';
+    this.fault = fault;
+  }
+}
+
+/**
+ * Fetches and compiles. A host that serves the file under a wrong media type costs only the streaming.
+ * @param {string | URL} url
+ * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
+ * @returns {Promise<WebAssembly.Module>}
+ */
+export async function loadModule(url, env = { fetch: globalThis.fetch, wasm: globalThis.WebAssembly }) {
+  const { wasm } = env;
+  if (!wasm) throw new LoadError('no_wasm', 'This browser has WebAssembly switched off. The sampler needs it.');
+  if (!wasm.validate(SIMD_PROBE)) throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
+  const name = new URL(url, 'http://localhost').pathname.split('/').pop();
+  let response;
+  try {
+    response = await env.fetch(url);
+  } catch (error) {
+    throw new LoadError('blocked', `The sampler (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`);
+  }
+  if (!response.ok) {
+    throw new LoadError('missing', `The sampler (${name}) is not on the server: it answers ${response.status}. The site is incomplete; build it again.`);
+  }
+  const type = response.headers.get('content-type') ?? '';
+  try {
+    if (type.startsWith('application/wasm') && wasm.compileStreaming) return await wasm.compileStreaming(response);
+    return await wasm.compile(await response.arrayBuffer());
+  } catch (error) {
+    const hint = type.startsWith('text/html') ? 'The server sends a page in its place' : 'The file is damaged';
+    throw new LoadError('corrupt', `The sampler (${name}) is no WebAssembly: ${words(error)}. ${hint}; reload, or build the site again.`);
+  }
+}
+
+/** @param {unknown} error */
+export const words = (error) => (error instanceof Error ? error.message : String(error));

@@ -1,0 +1,106 @@
+/**
+ * What the page and the sampler's worker say to each other.
+ *
+ * Every message about a job carries the job's id; the page drops what belongs to an older one. Columns travel as transferred
+ * buffers. A picture's worth of columns is acknowledged once it has been drawn, and the worker sends the next only then, so
+ * that a slow graphics device is never flooded.
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('../types.js').FieldRequest} FieldRequest
+ * @typedef {import('../types.js').FieldAnswer} FieldAnswer
+ * @typedef {import('../types.js').Settings} Settings
+ * @typedef {import('../types.js').CoreProgress} CoreProgress
+ * @typedef {import('../types.js').Report} Report
+ * @typedef {import('../types.js').Seconds} Seconds
+ * @typedef {import('../types.js').Description} Description
+ */
+
+/**
+ * Sample the field from the start. `grow` shows the surface while it grows; otherwise columns come once the front is
+ * complete, so that a picture already there stays until its successor is whole. A `live` job comes from a control that is
+ * being dragged: columns once, at the end, and no report. `ask_above` is the number of particles beyond which the job is
+ * handed back unstarted.
+ * @typedef {object} SampleJob
+ * @property {'sample'} kind
+ * @property {number} id
+ * @property {FieldRequest} field
+ * @property {Settings} settings
+ * @property {boolean} grow
+ * @property {boolean} live
+ * @property {number} ask_above
+ */
+/**
+ * Relax the particles that the worker holds, which must be those of job `of`.
+ * @typedef {{kind: 'relax', id: number, of: number, steps: number, live: false, grow: true}} RelaxJob
+ */
+/** @typedef {SampleJob | RelaxJob} Job */
+
+/**
+ * @typedef {{type: 'job', job: Job}
+ *   | {type: 'stop', id: number}
+ *   | {type: 'drawn', id: number}
+ *   | {type: 'provoke', fault: Fault}} ToWorker
+ */
+/** Faults that tests provoke. @typedef {'panic' | 'hang' | 'overflow'} Fault */
+
+/**
+ * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `ask_above` are expected;
+ * `lost`: the particles to relax are no longer there.
+ * @typedef {'complete' | 'stopped' | 'field_error' | 'refused' | 'ask' | 'replaced' | 'lost'} Outcome
+ */
+/**
+ * @typedef {object} ColumnsMessage
+ * @property {'columns'} type
+ * @property {number} id
+ * @property {number} first
+ * @property {number} total
+ * @property {Float32Array} positions
+ * @property {Float32Array} normals
+ * @property {Float32Array} radii
+ * @property {Uint32Array} levels
+ * @property {Uint32Array} parents
+ * @property {number} slots_from
+ * @property {Uint32Array} slots
+ * @property {CoreProgress} progress
+ */
+/**
+ * @typedef {object} DoneMessage
+ * @property {'done'} type
+ * @property {number} id
+ * @property {Outcome} outcome
+ * @property {CoreProgress | null} progress
+ * @property {Seconds} seconds
+ * @property {number} predicted  particles expected at the start, 0 when unknown
+ * @property {string} message  words for `refused`, else empty
+ * @property {boolean} report_follows
+ */
+/**
+ * @typedef {object} ReportMessage
+ * @property {'report'} type
+ * @property {number} id
+ * @property {Report} report
+ * @property {Uint8Array} valence
+ * @property {Float32Array} nearest
+ * @property {Float32Array} residual
+ */
+/** Why the sampler could not be loaded. @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault */
+/**
+ * @typedef {{type: 'ready', description: Description}
+ *   | {type: 'failed', fault: LoadFault, message: string}
+ *   | {type: 'beat', allow_ms: number}
+ *   | {type: 'field', id: number, answer: FieldAnswer}
+ *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
+ *   | {type: 'progress', id: number, progress: CoreProgress}
+ *   | ColumnsMessage | DoneMessage | ReportMessage
+ *   | {type: 'crashed', id: number, message: string, stack: string}} FromWorker
+ */
+
+/** The worker speaks at least this often while it is busy. */
+export const BEAT_MS = 250;
+/** Silence after which a busy worker counts as hung. */
+export const SILENCE_MS = 2000;
+
+export {};

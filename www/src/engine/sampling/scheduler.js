@@ -1,0 +1,133 @@
+/**
+ * Which job runs next, and how fine it may be while a control is dragged.
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('../types.js').Seconds} Seconds
+ * @typedef {import('../types.js').Settings} Settings
+ */
+
+/** A picture that is this late no longer feels attached to the slider. */
+export const LIVE_MS = 60;
+/** A live job that takes longer than this gives way to the newest values; a shorter one is let finish, or none ever would. */
+const PATIENCE_MS = 150;
+/** Relaxation steps of a coarse run: enough to mend the seams, a third of the price. */
+const COARSE_RELAX_STEPS = 3;
+/** Below this a surface can no longer be made out. */
+const FEWEST = 500;
+
+/**
+ * Latest wins: at most one job at the worker and one waiting, whatever the rate of requests.
+ * @template {{live: boolean}} T
+ */
+export class Scheduler {
+  /** @param {(id: number, request: T) => void} dispatch @param {() => number} now_ms */
+  constructor(dispatch, now_ms = () => performance.now()) {
+    this.dispatch = dispatch;
+    this.now_ms = now_ms;
+    this.last_id = 0;
+    /** @type {{id: number, request: T, since_ms: number} | null} */
+    this.running = null;
+    /** @type {T | null} */
+    this.waiting = null;
+  }
+
+  /** @param {T} request */
+  submit(request) {
+    const { running } = this;
+    if (running && running.request.live && request.live && this.now_ms() - running.since_ms < PATIENCE_MS) {
+      this.waiting = request;
+      return;
+    }
+    this.waiting = null;
+    this.send(request);
+  }
+
+  /** @param {T} request */
+  send(request) {
+    this.last_id += 1;
+    this.running = { id: this.last_id, request, since_ms: this.now_ms() };
+    this.dispatch(this.last_id, request);
+  }
+
+  /** The worker is done with a job. @param {number} id @returns {boolean} false for a job that is no longer the present one */
+  ended(id) {
+    if (this.running?.id !== id) return false;
+    this.running = null;
+    const { waiting } = this;
+    this.waiting = null;
+    if (waiting) this.send(waiting);
+    return true;
+  }
+
+  /** Forgets everything; the worker is gone. @returns {T | null} what it was at, or was to do next */
+  drop() {
+    const lost = this.waiting ?? this.running?.request ?? null;
+    this.running = null;
+    this.waiting = null;
+    return lost;
+  }
+}
+
+/**
+ * What a run costs on this machine, from the runs before: milliseconds to find the surface, microseconds per particle for the
+ * front and for a relaxation step, and the particles that a radius gives on the present surface.
+ */
+export class CostModel {
+  constructor() {
+    // A slow laptop's figures, until the first run tells.
+    this.fixed_ms = 5;
+    this.front_us = 1.5;
+    this.relax_us = 0.25;
+    /** count · radius², nearly constant for one surface; 0 until known. */
+    this.area = 0;
+    this.known = false;
+  }
+
+  /** @param {{seconds: Seconds, particles: number, relax_steps: number, radius: number}} run */
+  record({ seconds, particles, relax_steps, radius }) {
+    if (particles < 1) return;
+    this.area = particles * radius * radius;
+    const share = this.known ? 0.5 : 1;
+    const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
+    this.fixed_ms = blend(this.fixed_ms, seconds.seeding * 1e3);
+    this.front_us = blend(this.front_us, (seconds.generation * 1e6) / particles);
+    if (relax_steps > 0) this.relax_us = blend(this.relax_us, (seconds.relaxation * 1e6) / (particles * relax_steps));
+    this.known = true;
+  }
+
+  /** @param {number} particles @param {number} relax_steps */
+  milliseconds(particles, relax_steps) {
+    return this.fixed_ms + (particles * (this.front_us + relax_steps * this.relax_us)) / 1e3;
+  }
+
+  /** Particles to expect. @param {Settings} settings @param {number} diagonal */
+  expected(settings, diagonal) {
+    const cap = Number(settings.max_particles);
+    const radius = Number(settings.radius_share) * diagonal;
+    const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / (radius * radius);
+    return Math.min(n, cap);
+  }
+}
+
+/**
+ * Settings for a run while a control is dragged: the full ones if they fit {@link LIVE_MS}, else as many particles as do.
+ * @param {Settings} settings  complete, with the defaults filled in
+ * @param {number} diagonal  of the clip box, of which the radius is a share
+ * @param {CostModel} cost
+ * @param {number} [budget_ms]
+ * @returns {{settings: Settings, coarse: boolean}}
+ */
+export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
+  const relax_steps = Number(settings.relax_steps);
+  const expected = cost.expected(settings, diagonal);
+  if (!(cost.area > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
+  const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
+  const per_particle_ms = (cost.front_us + coarse_relax * cost.relax_us) / 1e3;
+  const affordable = Math.max(FEWEST, (budget_ms - cost.fixed_ms) / per_particle_ms);
+  const particles = Math.min(expected, affordable);
+  const radius = Math.sqrt(cost.area / particles);
+  return { settings: { ...settings, size_mode: 'radius', radius_share: radius / diagonal, relax_steps: coarse_relax }, coarse: true };
+}

@@ -1,0 +1,182 @@
+/**
+ * Keeps a sampler's worker alive: starts it, listens, and replaces it after a trap or when it falls silent in the middle of
+ * work. What the page knows lives outside the worker, so nothing but the run under way is lost.
+ *
+ * More than three replacements in a minute mean that a new worker will not help: safe mode, until a person asks for another.
+ *
+ * @module
+ */
+import { SILENCE_MS } from './protocol.js';
+
+/**
+ * @typedef {import('./protocol.js').FromWorker} FromWorker
+ * @typedef {import('./protocol.js').ToWorker} ToWorker
+ */
+/**
+ * What the supervisor needs of a worker, so that tests can hand it a scripted one.
+ * @typedef {object} WorkerLike
+ * @property {(message: ToWorker) => void} postMessage
+ * @property {() => void} terminate
+ * @property {((event: {data: FromWorker}) => void) | null} onmessage
+ * @property {((event: {message?: string}) => void) | null} onerror
+ */
+/**
+ * @typedef {{cause: 'panic' | 'hang', message: string, stack: string, restarts: number}} Crash
+ * @typedef {{now: () => number, setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} Clock
+ */
+
+/** Replacements within this time are counted together. */
+const WINDOW_MS = 60_000;
+/** One more than this within the window is safe mode. */
+const RESTARTS = 3;
+/** After a silence, messages that already wait get this long to be handled: a tab that slept finds them all at once. */
+const GRACE_MS = 120;
+
+/** @type {Clock} */
+const BROWSER_CLOCK = {
+  now: () => performance.now(),
+  setTimeout: (f, ms) => setTimeout(f, ms),
+  clearTimeout: (id) => clearTimeout(id),
+};
+
+export class Supervisor {
+  /**
+   * @param {object} options
+   * @param {() => WorkerLike} options.spawn
+   * @param {(message: FromWorker) => void} options.onMessage
+   * @param {(crash: Crash) => void} options.onRestart  the old worker is gone, the new one is loading
+   * @param {(crash: Crash) => void} options.onSafeMode  no worker until `revive()`
+   * @param {(message: string) => void} options.onLoadError  the worker's script did not load
+   * @param {Clock} [options.clock]
+   */
+  constructor({ spawn, onMessage, onRestart, onSafeMode, onLoadError, clock = BROWSER_CLOCK }) {
+    this.spawn = spawn;
+    this.onMessage = onMessage;
+    this.onRestart = onRestart;
+    this.onSafeMode = onSafeMode;
+    this.onLoadError = onLoadError;
+    this.clock = clock;
+    /** @type {WorkerLike | null} */
+    this.worker = null;
+    /** @type {'off' | 'loading' | 'up' | 'failed' | 'safe'} */
+    this.state = 'off';
+    this.busy = false;
+    this.heard = false;
+    this.deadline = 0;
+    /** @type {any} */
+    this.timer = null;
+    /** @type {number[]} */
+    this.restarts = [];
+  }
+
+  start() {
+    if (this.worker) return;
+    const worker = this.spawn();
+    this.worker = worker;
+    this.state = 'loading';
+    this.busy = false;
+    this.heard = false;
+    worker.onmessage = ({ data }) => {
+      // A terminated worker's last messages may still be on their way.
+      if (this.worker === worker) this.receive(data);
+    };
+    worker.onerror = (event) => {
+      if (this.worker !== worker) return;
+      if (this.state === 'loading') {
+        this.drop();
+        this.state = 'failed';
+        this.onLoadError(event.message || 'its script did not load');
+      } else {
+        this.replace('panic', event.message || 'uncaught error', '');
+      }
+    };
+  }
+
+  /** Another attempt, asked for by a person. */
+  revive() {
+    if (this.worker) return;
+    this.restarts = [];
+    this.start();
+  }
+
+  /** @param {ToWorker} message  dropped while there is no worker */
+  post(message) {
+    this.worker?.postMessage(message);
+  }
+
+  /** Whether the worker has work: only then is its silence watched. @param {boolean} busy */
+  setBusy(busy) {
+    if (busy && !this.busy) this.deadline = this.clock.now() + SILENCE_MS;
+    this.busy = busy;
+    this.watch();
+  }
+
+  /** @param {FromWorker} message */
+  receive(message) {
+    this.heard = true;
+    const allow = message.type === 'beat' ? message.allow_ms : 0;
+    this.deadline = this.clock.now() + Math.max(SILENCE_MS, allow);
+    if (message.type === 'ready') this.state = 'up';
+    if (message.type === 'failed') {
+      this.drop();
+      this.state = 'failed';
+    }
+    if (message.type === 'crashed') {
+      this.replace('panic', message.message, message.stack);
+      return;
+    }
+    this.watch();
+    this.onMessage(message);
+  }
+
+  watch() {
+    const on = this.worker !== null && (this.busy || (this.state === 'loading' && this.heard));
+    if (!on) {
+      this.clock.clearTimeout(this.timer);
+      this.timer = null;
+    } else if (this.timer === null) {
+      this.timer = this.clock.setTimeout(() => this.check(false), Math.max(1, this.deadline - this.clock.now()));
+    }
+  }
+
+  /** @param {boolean} again */
+  check(again) {
+    this.timer = null;
+    if (this.clock.now() < this.deadline) this.watch();
+    else if (!again) this.timer = this.clock.setTimeout(() => this.check(true), GRACE_MS);
+    else this.replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
+  }
+
+  drop() {
+    this.clock.clearTimeout(this.timer);
+    this.timer = null;
+    const { worker } = this;
+    this.worker = null;
+    if (worker) {
+      worker.onmessage = null;
+      worker.onerror = null;
+      worker.terminate();
+    }
+    this.busy = false;
+  }
+
+  /** @param {Crash['cause']} cause @param {string} message @param {string} stack */
+  replace(cause, message, stack) {
+    this.drop();
+    const now = this.clock.now();
+    this.restarts = [...this.restarts.filter((t) => now - t < WINDOW_MS), now];
+    const crash = { cause, message, stack, restarts: this.restarts.length };
+    if (this.restarts.length > RESTARTS) {
+      this.state = 'safe';
+      this.onSafeMode(crash);
+    } else {
+      this.start();
+      this.onRestart(crash);
+    }
+  }
+
+  stop() {
+    this.drop();
+    this.state = 'off';
+  }
+}

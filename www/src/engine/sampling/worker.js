@@ -1,0 +1,165 @@
+/**
+ * The sampler's worker: loads the core, runs one job at a time, the latest one. A trapped core is never called again: the
+ * worker says so and waits to be replaced.
+ *
+ * @module
+ */
+import init, { Core } from '../../wasm/core/core.js';
+import wasmUrl from '../../wasm/core/core_bg.wasm?url';
+import { runJob } from './job.js';
+import { loadModule, LoadError, words } from './load.js';
+import { BEAT_MS } from './protocol.js';
+
+/**
+ * @typedef {import('./protocol.js').FromWorker} FromWorker
+ * @typedef {import('./protocol.js').ToWorker} ToWorker
+ * @typedef {import('./protocol.js').Job} Job
+ */
+
+/** @param {FromWorker} message @param {Transferable[]} [transfer] */
+const post = (message, transfer = []) => self.postMessage(message, { transfer });
+
+/** @type {Job | null} */
+let next = null;
+/** @type {Job | null} */
+let running = null;
+/** @type {'stop' | null} */
+let asked = null;
+/** Pictures under way to the page. */
+let undrawn = 0;
+/** @type {import('./protocol.js').Fault | null} */
+let provoked = null;
+let dead = false;
+/** The last words of the core's panic hook, which writes to the console. */
+let last_words = '';
+
+const say = console.error.bind(console);
+console.error = (...parts) => {
+  last_words = parts.map(String).join(' ').slice(0, 4000);
+  say(...parts);
+};
+
+// A message to oneself ends the task, so that waiting messages are handled; timers would be held back to 4 ms.
+const self_channel = new MessageChannel();
+/** @type {(() => void) | null} */
+let resume = null;
+self_channel.port1.onmessage = () => {
+  const go = resume;
+  resume = null;
+  go?.();
+};
+/** @returns {Promise<void>} */
+const pause = () => new Promise((resolve) => {
+  resume = resolve;
+  self_channel.port2.postMessage(null);
+});
+
+/** @type {Core | null} */
+let core = null;
+/** @type {import('../../wasm/core/core.js').InitOutput | null} */
+let raw = null;
+const memory = { held: 0 };
+
+/** Does what tests ask for: a real trap in the instance, or an endless loop. */
+function provoke() {
+  const fault = provoked;
+  provoked = null;
+  if (fault === 'hang') for (;;);
+  // An object's address far outside the memory traps on its first use, and leaves the instance as a panic does.
+  if (fault === 'panic') /** @type {any} */ (raw).core_count(0x7ffffff0);
+  if (fault === 'overflow') {
+    /** @returns {number} */
+    const deeper = () => 1 + deeper();
+    deeper();
+  }
+}
+
+async function pump() {
+  while (next && core && !dead) {
+    running = next;
+    next = null;
+    asked = null;
+    undrawn = 0;
+    const job = running;
+    try {
+      await runJob(core, job, {
+        now_ms: () => performance.now(),
+        pause,
+        post: (message, transfer) => {
+          if (message.type === 'columns') undrawn += 1;
+          post(message, transfer);
+        },
+        interrupt: () => {
+          if (provoked) provoke();
+          return next ? 'replace' : asked;
+        },
+        room: () => undrawn < 2,
+      }, memory);
+    } catch (error) {
+      crashed(job.id, error);
+    }
+    running = null;
+  }
+}
+
+/** @param {number} id @param {unknown} error */
+function crashed(id, error) {
+  dead = true;
+  const stack = error instanceof Error ? (error.stack ?? '') : '';
+  post({ type: 'crashed', id, message: last_words || words(error), stack: stack.slice(0, 4000) });
+}
+
+self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
+  if (dead) return;
+  switch (data.type) {
+    case 'job':
+      next = data.job;
+      if (!running) void pump();
+      break;
+    case 'stop':
+      if (running && data.id === running.id) asked = 'stop';
+      else if (next && data.id === next.id) {
+        next = null;
+        const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+        post({ type: 'done', id: data.id, outcome: 'replaced', progress: null, seconds, predicted: 0, message: '', report_follows: false });
+      }
+      break;
+    case 'drawn':
+      if (running && data.id === running.id) undrawn = Math.max(0, undrawn - 1);
+      break;
+    case 'provoke':
+      provoked = data.fault;
+      if (!running) {
+        try {
+          provoke();
+        } catch (error) {
+          crashed(0, error);
+        }
+      }
+      break;
+    default:
+  }
+};
+
+async function boot() {
+  const beat = setInterval(() => post({ type: 'beat', allow_ms: 0 }), BEAT_MS);
+  try {
+    const module = await loadModule(wasmUrl);
+    try {
+      raw = await init({ module_or_path: module });
+      core = new Core();
+      post({ type: 'ready', description: JSON.parse(core.describe()) });
+    } catch (error) {
+      throw new LoadError('init', `The sampler did not start: ${last_words || words(error)}`);
+    }
+  } catch (error) {
+    dead = true;
+    const fault = error instanceof LoadError ? error.fault : 'init';
+    post({ type: 'failed', fault, message: words(error) });
+  } finally {
+    clearInterval(beat);
+  }
+  await pump();
+}
+
+void boot();

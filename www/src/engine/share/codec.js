@@ -1,0 +1,136 @@
+/**
+ * The state in the fragment of an address, so that a link is the whole document and no server is asked.
+ *
+ * `#v1.j.…` is base64url of UTF-8 JSON, `#v1.z.…` the same deflated, whichever is shorter. Only what differs from the defaults
+ * is written. Reading is careful: length before decoding, size while inflating, every value afterwards.
+ *
+ * @module
+ */
+import { completeSettings, defaultState, sanitize, surfaceOf } from './state.js';
+
+/**
+ * @typedef {import('../types.js').State} State
+ * @typedef {import('../types.js').Description} Description
+ */
+
+const VERSION = 1;
+/** Longer fragments are not even decoded. */
+export const LONGEST_FRAGMENT = 65_536;
+/** Inflated JSON beyond this is no state of ours. */
+export const LONGEST_JSON = 65_536;
+/** Below this, deflating only adds. */
+const WORTH_DEFLATING = 256;
+
+/** @param {number} v @param {number} digits  significant ones */
+const short = (v, digits = 6) => Number(v.toPrecision(digits));
+
+/**
+ * What differs from the defaults.
+ * @param {State} state
+ * @param {Description} description
+ */
+export function difference(state, description) {
+  const home = defaultState(description);
+  const { view } = state;
+  /** @type {Record<string, unknown>} */
+  const out = {};
+  if (state.surface !== home.surface) out.surface = state.surface;
+  if (state.formula !== surfaceOf(description, state.surface)?.formula) out.formula = state.formula;
+  if (Object.keys(state.parameters).length) out.parameters = state.parameters;
+  if (state.declared.length) out.declared = state.declared;
+  if (state.bounds) out.bounds = state.bounds;
+  const defaults = completeSettings(description, {});
+  const settings = Object.fromEntries(Object.entries(state.settings).filter(([name, value]) => value !== defaults[name]));
+  if (Object.keys(settings).length) out.settings = settings;
+  /** @type {Record<string, unknown>} */
+  const look = {};
+  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box'])) if (view[key] !== home.view[key]) look[key] = view[key];
+  const { camera } = view;
+  const rounded = {
+    target: camera.target.map((v) => short(v)), distance: short(camera.distance), yaw: short(camera.yaw, 5), pitch: short(camera.pitch, 5), fit: camera.fit,
+  };
+  // A camera that fits the surface by itself is written only where it was turned.
+  const turned = Math.abs(camera.yaw - home.view.camera.yaw) > 1e-3 || Math.abs(camera.pitch - home.view.camera.pitch) > 1e-3;
+  if (!camera.fit || turned) look.camera = rounded;
+  if (Object.keys(look).length) out.view = look;
+  return out;
+}
+
+/** @param {Uint8Array} bytes */
+function base64url(bytes) {
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  return btoa(text).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '');
+}
+
+/** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
+function fromBase64url(text) {
+  if (!/^[A-Za-z0-9_-]*$/.test(text)) throw new Error('not base64url');
+  return Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
+}
+
+/** @param {Uint8Array<ArrayBuffer>} bytes @param {CompressionStream | DecompressionStream} stream @param {number} limit */
+async function through(bytes, stream, limit) {
+  const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
+  /** @type {Uint8Array[]} */
+  const parts = [];
+  let size = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    size += value.length;
+    if (size > limit) {
+      reader.cancel().catch(() => {});
+      throw new RangeError('too large');
+    }
+    parts.push(value);
+  }
+  const out = new Uint8Array(size);
+  let at = 0;
+  for (const part of parts) {
+    out.set(part, at);
+    at += part.length;
+  }
+  return out;
+}
+
+/**
+ * The fragment (with `#`) of a state; empty for the default one.
+ * @param {State} state
+ * @param {Description} description
+ */
+export async function encode(state, description) {
+  const changes = difference(state, description);
+  if (Object.keys(changes).length === 0) return '';
+  const bytes = new TextEncoder().encode(JSON.stringify(changes));
+  const plain = `#v${VERSION}.j.${base64url(bytes)}`;
+  if (bytes.length < WORTH_DEFLATING || typeof CompressionStream === 'undefined') return plain;
+  const packed = await through(bytes, new CompressionStream('deflate-raw'), Infinity);
+  const deflated = `#v${VERSION}.z.${base64url(packed)}`;
+  return deflated.length < plain.length ? deflated : plain;
+}
+
+/**
+ * Reads a fragment.
+ * @param {string} fragment  with or without `#`
+ * @param {Description} description
+ * @returns {Promise<{state: State, reset: string[], problem: string | null}>} `problem`: why nothing of it could be used;
+ *   `reset`: what of it could not
+ */
+export async function decode(fragment, description) {
+  const text = fragment.startsWith('#') ? fragment.slice(1) : fragment;
+  const home = { state: defaultState(description), reset: [] };
+  if (text === '') return { ...home, problem: null };
+  if (text.length > LONGEST_FRAGMENT) return { ...home, problem: 'The link is too long to be one of this page.' };
+  const parts = /^v(\d{1,4})\.([jz])\.([^.]*)$/.exec(text);
+  if (!parts) return { ...home, problem: 'The link is damaged.' };
+  if (Number(parts[1]) !== VERSION) return { ...home, problem: 'The link was made by another version of this page.' };
+  try {
+    const bytes = fromBase64url(parts[3]);
+    const plain = parts[2] === 'z' ? await through(bytes, new DecompressionStream('deflate-raw'), LONGEST_JSON) : bytes;
+    const raw = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(plain));
+    return { ...sanitize(raw, description), problem: null };
+  } catch (error) {
+    return { ...home, problem: error instanceof RangeError ? 'The link holds too much to be one of this page.' : 'The link is damaged.' };
+  }
+}

@@ -1,0 +1,216 @@
+/**
+ * The shareable state: what is in it, its defaults, and how anything at all is turned into a valid one.
+ *
+ * @module
+ */
+import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
+
+/**
+ * @typedef {import('../types.js').State} State
+ * @typedef {import('../types.js').Description} Description
+ * @typedef {import('../types.js').SurfaceInfo} SurfaceInfo
+ * @typedef {import('../types.js').Settings} Settings
+ * @typedef {import('../types.js').FieldRequest} FieldRequest
+ * @typedef {import('../types.js').Bounds} Bounds
+ * @typedef {import('../types.js').Vec3} Vec3
+ * @typedef {import('../types.js').Parameter} Parameter
+ */
+
+/** The core refuses longer formulas; a link may not carry one either. */
+export const LONGEST_FORMULA = 4096;
+/** More sliders than a person can move. */
+const MOST_PARAMETERS = 64;
+/** Coordinates beyond this leave single precision no room for a surface. */
+const FARTHEST = 1e6;
+const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
+
+/** @type {readonly import('../types.js').ColourMode[]} */
+export const COLOUR_MODES = ['level', 'fate', 'valence', 'nearest', 'normal', 'plain'];
+export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
+
+/** @returns {import('../types.js').ViewState} */
+const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, camera: homeCamera() });
+
+/** The state before the core has told which surfaces there are. @returns {State} */
+export const emptyState = () => ({
+  v: 1, surface: '', formula: '', parameters: {}, declared: [], bounds: null, settings: {}, view: homeView(),
+});
+
+/** @param {Description} description @returns {State} */
+export function defaultState(description) {
+  const surface = surfaceOf(description, description.default_surface) ?? description.surfaces[0];
+  return { ...emptyState(), surface: surface?.id ?? '', formula: surface?.formula ?? '' };
+}
+
+/** @param {Description | null} description @param {string} id @returns {SurfaceInfo | undefined} */
+export const surfaceOf = (description, id) => description?.surfaces.find((s) => s.id === id);
+
+/** Every setting, with the defaults filled in. @param {Description} description @param {Settings} settings @returns {Settings} */
+export function completeSettings(description, settings) {
+  /** @type {Settings} */
+  const all = {};
+  for (const info of description.settings) all[info.name] = settings[info.name] ?? info.default;
+  return all;
+}
+
+/** What the core is told of the field. @param {State} state @param {Description} description @returns {FieldRequest} */
+export function fieldRequest(state, description) {
+  const surface = surfaceOf(description, state.surface);
+  /** @type {FieldRequest} */
+  const request = { surface: state.surface, parameters: { ...state.parameters } };
+  if (state.formula !== surface?.formula) request.formula = state.formula;
+  if (state.declared.length) request.declare = state.declared;
+  if (state.bounds) request.bounds = state.bounds;
+  return request;
+}
+
+/** A number within its range, or undefined for what is none. @param {unknown} v @param {number} min @param {number} max */
+const within = (v, min, max) => (typeof v === 'number' && Number.isFinite(v) ? Math.min(max, Math.max(min, v)) : undefined);
+
+/** @param {unknown} v @returns {v is Record<string, unknown>} */
+const isRecord = (v) => typeof v === 'object' && v !== null && !Array.isArray(v);
+
+/** @param {unknown} v @param {number} limit @returns {Vec3 | undefined} */
+function vec3(v, limit) {
+  if (!Array.isArray(v) || v.length !== 3) return undefined;
+  const out = v.map((c) => within(c, -limit, limit));
+  return out.every((c) => c !== undefined) ? /** @type {Vec3} */ (out) : undefined;
+}
+
+/** @param {unknown} v @returns {Bounds | undefined} */
+export function validBounds(v) {
+  if (!isRecord(v)) return undefined;
+  const min = vec3(v.min, FARTHEST);
+  const max = vec3(v.max, FARTHEST);
+  if (!min || !max || min.some((m, k) => max[k] - m < 1e-6)) return undefined;
+  return { min, max };
+}
+
+/** @param {unknown} v @returns {Parameter | undefined} */
+function validParameter(v) {
+  if (!isRecord(v) || typeof v.name !== 'string' || !NAME.test(v.name)) return undefined;
+  const min = within(v.min, -FARTHEST, FARTHEST) ?? -2;
+  const max = within(v.max, -FARTHEST, FARTHEST) ?? 2;
+  if (!(max > min)) return undefined;
+  return {
+    name: v.name,
+    label: typeof v.label === 'string' ? v.label.slice(0, 64) : v.name,
+    value: within(v.value, -FARTHEST, FARTHEST) ?? 1,
+    min,
+    max,
+    step: within(v.step, 1e-9, FARTHEST) ?? (max - min) / 200,
+  };
+}
+
+/**
+ * A valid state out of anything: what cannot be used takes its default and is named in `reset`, in words for a person.
+ * @param {unknown} raw
+ * @param {Description} description
+ * @returns {{state: State, reset: string[]}}
+ */
+export function sanitize(raw, description) {
+  /** @type {string[]} */
+  const reset = [];
+  const state = defaultState(description);
+  if (!isRecord(raw)) return { state, reset: ['everything'] };
+
+  if (raw.surface !== undefined) {
+    const surface = typeof raw.surface === 'string' ? surfaceOf(description, raw.surface) : undefined;
+    if (surface) {
+      state.surface = surface.id;
+      state.formula = surface.formula;
+    } else reset.push('surface');
+  }
+  if (raw.formula !== undefined) {
+    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA) state.formula = raw.formula;
+    else reset.push('formula');
+  }
+  if (raw.parameters !== undefined) {
+    if (isRecord(raw.parameters)) {
+      for (const [name, value] of Object.entries(raw.parameters).slice(0, MOST_PARAMETERS)) {
+        const v = NAME.test(name) ? within(value, -FARTHEST, FARTHEST) : undefined;
+        if (v === undefined || v !== value) reset.push(`parameter ${name.slice(0, 32)}`);
+        if (v !== undefined) state.parameters[name] = v;
+      }
+      if (Object.keys(raw.parameters).length > MOST_PARAMETERS) reset.push('parameters beyond the 64th');
+    } else reset.push('parameters');
+  }
+  if (raw.declared !== undefined) {
+    if (Array.isArray(raw.declared)) {
+      for (const item of raw.declared.slice(0, MOST_PARAMETERS)) {
+        const parameter = validParameter(item);
+        if (parameter && !state.declared.some((p) => p.name === parameter.name)) state.declared.push(parameter);
+        else reset.push('a declared parameter');
+      }
+    } else reset.push('declared parameters');
+  }
+  if (raw.bounds !== undefined && raw.bounds !== null) {
+    const bounds = validBounds(raw.bounds);
+    if (bounds) state.bounds = bounds;
+    else reset.push('clip box');
+  }
+  if (raw.settings !== undefined) {
+    if (isRecord(raw.settings)) {
+      for (const [name, value] of Object.entries(raw.settings)) {
+        const valid = validSetting(description, name, value);
+        if (valid === undefined || valid !== value) reset.push(`setting ${name.slice(0, 32)}`);
+        if (valid !== undefined) state.settings[name] = valid;
+      }
+    } else reset.push('settings');
+  }
+  if (raw.view !== undefined) {
+    if (isRecord(raw.view)) state.view = validView(raw.view, state.view, reset);
+    else reset.push('view');
+  }
+  return { state, reset };
+}
+
+/**
+ * The value a setting would take, or undefined when there is no such setting or no way to read the value.
+ * @param {Description} description @param {string} name @param {unknown} value
+ * @returns {number | string | undefined}
+ */
+export function validSetting(description, name, value) {
+  const info = description.settings.find((s) => s.name === name);
+  if (!info) return undefined;
+  if (info.kind === 'choice') return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
+  const v = within(value, info.min, info.max);
+  return v !== undefined && info.kind === 'integer' ? Math.round(v) : v;
+}
+
+/**
+ * @param {Record<string, unknown>} raw
+ * @param {import('../types.js').ViewState} view
+ * @param {string[]} reset
+ */
+export function validView(raw, view, reset = []) {
+  const out = { ...view };
+  if (raw.colour !== undefined) {
+    if (COLOUR_MODES.includes(/** @type {any} */ (raw.colour))) out.colour = /** @type {any} */ (raw.colour);
+    else reset.push('colour');
+  }
+  if (raw.size !== undefined) {
+    const size = within(raw.size, DISC_SIZE.min, DISC_SIZE.max);
+    if (size !== raw.size) reset.push('disc size');
+    out.size = size ?? out.size;
+  }
+  if (raw.theme !== undefined) {
+    if (raw.theme === 'auto' || raw.theme === 'light' || raw.theme === 'dark') out.theme = raw.theme;
+    else reset.push('theme');
+  }
+  if (raw.box !== undefined) {
+    if (typeof raw.box === 'boolean') out.box = raw.box;
+    else reset.push('box');
+  }
+  if (raw.camera !== undefined) {
+    const c = isRecord(raw.camera) ? raw.camera : {};
+    const target = vec3(c.target, FARTHEST);
+    const distance = within(c.distance, 1e-4, FARTHEST);
+    const yaw = within(c.yaw, -2 * Math.PI, 2 * Math.PI);
+    const pitch = within(c.pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
+    if (target && distance !== undefined && yaw !== undefined && pitch !== undefined) {
+      out.camera = { target, distance, yaw, pitch, fit: c.fit === true };
+    } else reset.push('camera');
+  }
+  return out;
+}

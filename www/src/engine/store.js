@@ -1,0 +1,48 @@
+/**
+ * The engine's signals, writable; the interface sees them read-only.
+ *
+ * @module
+ */
+import { signal } from '@preact/signals-core';
+import { emptyState } from './share/state.js';
+
+/** @typedef {import('./types.js').Progress} Progress */
+
+/** @returns {Progress} */
+export const idleProgress = () => ({
+  run: 0, live: false, phase: 'idle', particles: 0, level: 0, relax_step: 0, relax_steps: 0, evaluations: 0, fraction: 0,
+  stop_reason: null, message: null, radius: 0, moved: false,
+});
+
+/**
+ * @template T
+ * @param {T} value
+ * @returns {import('@preact/signals-core').Signal<T>}
+ */
+const cell = (value) => signal(value);
+
+export function createStore() {
+  return {
+    state: cell(emptyState()),
+    description: cell(/** @type {import('./types.js').Description | null} */ (null)),
+    field: cell(/** @type {import('./types.js').FieldOk | null} */ (null)),
+    fieldError: cell(/** @type {import('./types.js').FieldFault | null} */ (null)),
+    fieldPreview: cell(/** @type {string | null} */ (null)),
+    progress: cell(idleProgress()),
+    report: cell(/** @type {import('./types.js').Report | null} */ (null)),
+    timing: cell(/** @type {import('./types.js').Timing | null} */ (null)),
+    backend: cell(/** @type {import('./types.js').BackendName} */ ('starting')),
+    adapter: cell(''),
+    notice: cell(/** @type {import('./types.js').Notice | null} */ (null)),
+    hover: cell(/** @type {import('./types.js').Hover | null} */ (null)),
+    legend: cell(/** @type {import('./types.js').Legend | null} */ (null)),
+    reveal: cell(/** @type {import('./types.js').Reveal | null} */ (null)),
+    busy: cell(false),
+    partial: cell(false),
+    empty: cell(false),
+    lastDrag: cell(/** @type {import('./types.js').LastDrag | null} */ (null)),
+    theme: cell(/** @type {'light' | 'dark'} */ ('light')),
+  };
+}
+
+/** @typedef {ReturnType<typeof createStore>} Store */

@@ -1,0 +1,108 @@
+/**
+ * The ways to draw, best first. Each gets a canvas of its own: a canvas that once had one kind of context gives no other.
+ *
+ * @module
+ */
+import { Painter } from './painter.js';
+
+/** @typedef {import('../../wasm/render-webgpu/render.js').Renderer} Renderer */
+/** @typedef {'webgpu' | 'webgl2' | 'canvas2d'} BackendKind */
+/**
+ * @typedef {object} Device
+ * @property {BackendKind} kind
+ * @property {HTMLCanvasElement} canvas
+ * @property {Renderer | Painter} renderer
+ * @property {() => void} dispose
+ */
+
+/** @type {readonly BackendKind[]} */
+export const BACKENDS = ['webgpu', 'webgl2', 'canvas2d'];
+
+/** An adapter that has not answered by then never will. */
+const ADAPTER_MS = 5000;
+
+/** @template T @param {Promise<T>} promise @param {number} ms @returns {Promise<T | null>} */
+const within = (promise, ms) => Promise.race([promise, new Promise((resolve) => setTimeout(() => resolve(null), ms))]);
+
+/** Whether it is worth fetching the bundle of a back end at all. @param {BackendKind} kind */
+async function available(kind) {
+  if (kind === 'canvas2d') return true;
+  if (kind === 'webgpu') {
+    const gpu = /** @type {any} */ (navigator).gpu;
+    if (!gpu) return false;
+    try {
+      return (await within(gpu.requestAdapter(), ADAPTER_MS)) !== null;
+    } catch {
+      return false;
+    }
+  }
+  const probe = document.createElement('canvas').getContext('webgl2');
+  // Browsers keep few contexts: the probe's is given back at once.
+  probe?.getExtension('WEBGL_lose_context')?.loseContext();
+  return probe !== null;
+}
+
+/** @param {'webgpu' | 'webgl2'} kind */
+const bundle = (kind) => (kind === 'webgpu' ? import('../../wasm/render-webgpu/render.js') : import('../../wasm/render-webgl/render.js'));
+
+/**
+ * Makes a device of this kind on a new canvas in `host`.
+ * @param {BackendKind} kind
+ * @param {HTMLElement} host
+ * @param {{onLost: (reason: string, message: string) => void, onError: (message: string) => void}} events  of this device only
+ * @returns {Promise<Device>}
+ * @throws when the browser does not have it, or its bundle does not start
+ */
+export async function openDevice(kind, host, events) {
+  if (!(await available(kind))) throw new Error(`${kind} is not available`);
+  const canvas = document.createElement('canvas');
+  Object.assign(canvas.style, { position: 'absolute', inset: '0', width: '100%', height: '100%', display: 'block', touchAction: 'none' });
+  canvas.setAttribute('aria-hidden', 'true');
+  let closed = false;
+  const lost = (/** @type {string} */ reason, /** @type {string} */ message) => {
+    // Loss that we caused ourselves needs no mending.
+    // The renderer may be in the middle of a call: it is left to finish that first.
+    queueMicrotask(() => {
+      if (!closed && reason !== 'destroyed') events.onLost(reason, message);
+    });
+  };
+  canvas.addEventListener('webglcontextlost', (event) => {
+    event.preventDefault();
+    lost('unknown', 'The WebGL context was lost.');
+  });
+  host.append(canvas);
+  try {
+    /** @type {Renderer | Painter} */
+    let renderer;
+    if (kind === 'canvas2d') {
+      renderer = await Painter.create(canvas);
+    } else {
+      const { default: init, Renderer: Made } = await bundle(kind);
+      await init();
+      renderer = await Made.create(canvas, lost, (message) => {
+        queueMicrotask(() => {
+          if (!closed) events.onError(message);
+        });
+      });
+    }
+    return {
+      kind,
+      canvas,
+      renderer,
+      dispose() {
+        closed = true;
+        try {
+          renderer.destroy();
+          renderer.free();
+        } catch {
+          // A trapped instance cannot be tidied up; the canvas goes with everything on it.
+        }
+        canvas.remove();
+      },
+    };
+  } catch (error) {
+    closed = true;
+    canvas.remove();
+    throw error;
+  }
+}

@@ -1,0 +1,303 @@
+/**
+ * The last resort: discs painted on a 2-D canvas without any graphics API. Every disc is an ellipse on screen, filled pixel by
+ * pixel with its own plane's depth, so that the picture is the one the graphics card would draw, without smooth edges.
+ *
+ * It has the methods of the WebAssembly renderers, so that the viewer need not know which one it drives.
+ *
+ * @module
+ */
+import { encoded, linear } from './oklab.js';
+
+/** Byte → linear light, and linear light in 1/1023 steps → byte. */
+const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
+const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
+
+/** Discs smaller than this on screen are drawn as single pixels. */
+const POINT_PX = 0.7;
+
+/**
+ * @typedef {object} Style
+ * @property {[number, number, number, number]} background  sRGB 0 … 1
+ * @property {number} disc_scale
+ * @property {[number, number, number]} key_light_view
+ * @property {number} dim
+ * @property {boolean | number} [dim_backfaces]
+ * @property {number} [fade_s]
+ * @property {number} outline  index of the highlighted particle, −1 for none
+ * @property {{min: number[], max: number[], colour: number[]} | null} box
+ */
+
+export class Painter {
+  /** @param {HTMLCanvasElement} canvas */
+  static async create(canvas) {
+    const context = canvas.getContext('2d', { alpha: false });
+    if (!context) throw new Error('The browser gives no 2-D canvas.');
+    return new Painter(canvas, context);
+  }
+
+  /** @param {HTMLCanvasElement} canvas @param {CanvasRenderingContext2D} context */
+  constructor(canvas, context) {
+    this.canvas = canvas;
+    this.context = context;
+    this.count = 0;
+    this.positions = new Float32Array(0);
+    this.normals = new Float32Array(0);
+    this.radii = new Float32Array(0);
+    this.colours = new Uint32Array(0);
+    /** Second at which a particle appears. */
+    this.births = new Float64Array(0);
+    this.view = new Float32Array(23);
+    /** @type {Style} */
+    this.style = { background: [1, 1, 1, 1], disc_scale: 0.92, key_light_view: [-0.45, 0.65, 0.62], dim: 0, outline: -1, box: null };
+    this.image = new ImageData(1, 1);
+    this.depth = new Float32Array(1);
+    this.width = 0;
+    this.height = 0;
+  }
+
+  backend() {
+    return 'canvas2d';
+  }
+
+  adapter() {
+    return '2-D canvas';
+  }
+
+  max_particles() {
+    return Infinity;
+  }
+
+  /** @param {number} width_px @param {number} height_px */
+  resize(width_px, height_px) {
+    this.width = Math.max(0, Math.floor(width_px));
+    this.height = Math.max(0, Math.floor(height_px));
+    this.canvas.width = this.width;
+    this.canvas.height = this.height;
+  }
+
+  /**
+   * @param {number} first @param {Float32Array} positions @param {Float32Array} normals @param {Float32Array} radii
+   * @param {Uint32Array} colours @param {number} birth_s
+   */
+  write(first, positions, normals, radii, colours, birth_s) {
+    const last = first + radii.length;
+    if (last > this.radii.length) {
+      const room = Math.max(last, 2 * this.radii.length);
+      const grow = (/** @type {Float32Array} */ old, /** @type {number} */ n) => {
+        const next = new Float32Array(n);
+        next.set(old);
+        return next;
+      };
+      this.positions = grow(this.positions, 3 * room);
+      this.normals = grow(this.normals, 3 * room);
+      this.radii = grow(this.radii, room);
+      const next = new Uint32Array(room);
+      next.set(this.colours);
+      this.colours = next;
+      const births = new Float64Array(room);
+      births.set(this.births);
+      this.births = births;
+    }
+    this.positions.set(positions, 3 * first);
+    this.normals.set(normals, 3 * first);
+    this.radii.set(radii, first);
+    this.colours.set(colours, first);
+    this.births.fill(birth_s, first, last);
+  }
+
+  /** @param {number} first @param {Uint32Array} colours */
+  write_colours(first, colours) {
+    this.colours.set(colours.subarray(0, Math.max(0, this.colours.length - first)), first);
+  }
+
+  /** @param {number} n */
+  set_count(n) {
+    this.count = Math.min(n, this.radii.length);
+  }
+
+  /** @param {Float32Array} view */
+  set_view(view) {
+    this.view.set(view);
+  }
+
+  /** @param {string} json */
+  set_style(json) {
+    this.style = { ...this.style, ...JSON.parse(json) };
+  }
+
+  /** @param {number} time_s */
+  draw(time_s) {
+    if (this.width === 0 || this.height === 0) return 'skipped';
+    if (this.image.width !== this.width || this.image.height !== this.height) {
+      this.image = new ImageData(this.width, this.height);
+      this.depth = new Float32Array(this.width * this.height);
+    }
+    this.paint(this.image, this.depth, false, time_s);
+    this.context.putImageData(this.image, 0, 0);
+    return 'drawn';
+  }
+
+  /** @param {number} width_px @param {number} height_px */
+  picture_size(width_px, height_px) {
+    return Uint32Array.of(width_px, height_px);
+  }
+
+  /** @param {number} width_px @param {number} height_px @param {boolean} transparent */
+  async read_pixels(width_px, height_px, transparent) {
+    const image = new ImageData(width_px, height_px);
+    const onScreen = this.view.slice();
+    // All that the canvas shows stays in a picture of another shape, and circles stay round.
+    const wider = width_px / height_px / (Math.max(1, this.width) / Math.max(1, this.height));
+    for (let k = 0; k < 4; k += 1) {
+      if (wider > 1) this.view[4 * k] /= wider;
+      else this.view[4 * k + 1] *= wider;
+    }
+    this.paint(image, new Float32Array(width_px * height_px), transparent, Infinity);
+    this.view = onScreen;
+    return new Uint8Array(image.data.buffer);
+  }
+
+  destroy() {
+    this.count = 0;
+    this.image = new ImageData(1, 1);
+    this.depth = new Float32Array(1);
+  }
+
+  free() {}
+
+  /** @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} time_s */
+  paint(image, depth, transparent, time_s) {
+    const { width, height } = image;
+    const out = new Uint32Array(image.data.buffer);
+    const { background, dim, disc_scale, outline, box, key_light_view } = this.style;
+    const ground = background.slice(0, 3).map((v) => linear(v));
+    const packed = (/** @type {number} */ r, /** @type {number} */ g, /** @type {number} */ b) =>
+      (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
+    out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
+    // Depth is kept as 1/w, which is linear across a plane on screen: larger is nearer.
+    depth.fill(0);
+    const m = this.view;
+    const [ex, ey, ez] = [m[16], m[17], m[18]];
+    const light = Math.hypot(key_light_view[0], key_light_view[1], key_light_view[2]) || 1;
+    const forward = [m[19], m[20], m[21]];
+    // Rows of clip_from_world give the axes of the eye up to their lengths, and up to the share along the view that moves
+    // the picture aside.
+    const axis = (/** @type {number} */ k) => {
+      const v = [m[k], m[4 + k], m[8 + k]];
+      const along = v[0] * forward[0] + v[1] * forward[1] + v[2] * forward[2];
+      const u = v.map((c, i) => c - along * forward[i]);
+      const length = Math.hypot(u[0], u[1], u[2]) || 1;
+      return { length, unit: u.map((c) => c / length) };
+    };
+    const { unit: right, length: clip_x_per_world } = axis(0);
+    const { unit: up } = axis(1);
+    const key = [0, 1, 2].map((k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light);
+    const { positions, normals, radii, colours, births } = this;
+    for (let i = 0; i < this.count; i += 1) {
+      if (births[i] > time_s) continue;
+      const x = positions[3 * i];
+      const y = positions[3 * i + 1];
+      const z = positions[3 * i + 2];
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      if (!(w > 1e-9)) continue;
+      const inv = 1 / w;
+      const cx = (m[0] * x + m[4] * y + m[8] * z + m[12]) * inv;
+      const cy = (m[1] * x + m[5] * y + m[9] * z + m[13]) * inv;
+      const sx = (0.5 + 0.5 * cx) * width;
+      const sy = (0.5 - 0.5 * cy) * height;
+      const r = radii[i] * disc_scale;
+      const px = clip_x_per_world * r * inv * 0.5 * width;
+      if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) continue;
+      let nx = normals[3 * i];
+      let ny = normals[3 * i + 1];
+      let nz = normals[3 * i + 2];
+      const facing = (ex - x) * nx + (ey - y) * ny + (ez - z) * nz;
+      const back = facing < 0;
+      if (back) {
+        nx = -nx;
+        ny = -ny;
+        nz = -nz;
+      }
+      const lambert = Math.max(0, nx * key[0] + ny * key[1] + nz * key[2]);
+      const shade = (0.42 + 0.16 * (nx * up[0] + ny * up[1] + nz * up[2]) + 0.5 * lambert) * (back ? 0.55 : 1);
+      const mix = (/** @type {number} */ byte, /** @type {number} */ k) => Math.min(1, LINEAR[byte] * shade) * (1 - dim) + ground[k] * dim;
+      const colour = colours[i];
+      const value = i === outline
+        ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2])
+        : packed(mix(colour & 255, 0), mix((colour >> 8) & 255, 1), mix((colour >> 16) & 255, 2));
+      if (px < POINT_PX) {
+        const at = (sy | 0) * width + (sx | 0);
+        if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
+          depth[at] = inv;
+          out[at] = value;
+        }
+        continue;
+      }
+      // The disc in view axes: its plane a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first order
+      // in the disc's size, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
+      const a = nx * right[0] + ny * right[1] + nz * right[2];
+      const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
+      // Edge on, a disc is kept at least a twelfth as wide as it is long: it never vanishes.
+      const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
+      const ka = a / c;
+      const kb = b / c;
+      const depth_per_px = (r / px) * inv * inv;
+      const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
+      const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
+      const qa = 1 + ka * ka;
+      for (let iy = y0; iy <= y1; iy += 1) {
+        const dy = iy + 0.5 - sy;
+        // (1 + ka²) dx² + 2 ka kb dy dx + (1 + kb²) dy² − px² ≤ 0
+        const half = ka * kb * dy;
+        const root = half * half - qa * ((1 + kb * kb) * dy * dy - px * px);
+        if (root < 0) continue;
+        const s = Math.sqrt(root);
+        const x0 = Math.max(0, Math.ceil(sx + (-half - s) / qa - 0.5));
+        const x1 = Math.min(width - 1, Math.floor(sx + (-half + s) / qa - 0.5));
+        for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
+          const near = inv - (ka * (ix + 0.5 - sx) + kb * dy) * depth_per_px;
+          if (near > depth[at]) {
+            depth[at] = near;
+            out[at] = value;
+          }
+        }
+      }
+    }
+    if (box) this.paintBox(out, depth, width, height, box);
+  }
+
+  /**
+   * The twelve edges of the clip box, one pixel wide, hidden behind discs.
+   * @param {Uint32Array} out @param {Float32Array} depth @param {number} width @param {number} height
+   * @param {{min: number[], max: number[], colour: number[]}} box
+   */
+  paintBox(out, depth, width, height, box) {
+    const m = this.view;
+    const value = ((255 << 24) | (Math.round(box.colour[2] * 255) << 16) | (Math.round(box.colour[1] * 255) << 8) | Math.round(box.colour[0] * 255)) >>> 0;
+    const corner = (/** @type {number} */ k) => {
+      const p = [k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1], k & 4 ? box.max[2] : box.min[2]];
+      return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+    };
+    for (let k = 0; k < 8; k += 1) {
+      for (const bit of [1, 2, 4]) {
+        if (k & bit) continue;
+        const p = corner(k);
+        const q = corner(k | bit);
+        const steps = 2 * Math.max(width, height);
+        for (let i = 0; i <= steps; i += 1) {
+          const t = i / steps;
+          const w = p[2] + (q[2] - p[2]) * t;
+          if (!(w > 1e-9)) continue;
+          const x = Math.floor((0.5 + (0.5 * (p[0] + (q[0] - p[0]) * t)) / w) * width);
+          const y = Math.floor((0.5 - (0.5 * (p[1] + (q[1] - p[1]) * t)) / w) * height);
+          if (x < 0 || y < 0 || x >= width || y >= height) continue;
+          const at = y * width + x;
+          if (1 / w > depth[at]) {
+            depth[at] = 1 / w;
+            out[at] = value;
+          }
+        }
+      }
+    }
+  }
+}

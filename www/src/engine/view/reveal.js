@@ -1,0 +1,63 @@
+/**
+ * The pace at which a new surface appears. A sampler that is done in a blink shows nothing of how it works, so the picture
+ * lets the generation levels appear one after another, in their true order, within a little more than a second. A slow run is
+ * shown as it comes.
+ *
+ * @module
+ */
+
+/** Time for a whole surface, whatever its number of levels. */
+const WHOLE_S = 1.1;
+/** Bounds on the time between two levels: below one frame nothing is gained, above the eye waits. */
+const FASTEST_S = 1 / 120;
+const SLOWEST_S = 0.06;
+/** Levels assumed while the front is still running: a surface at the paper's usual radius has about so many. */
+const USUAL_LEVELS = 90;
+
+export class Reveal {
+  constructor() {
+    this.active = false;
+    this.start_s = 0;
+    this.step_s = 0;
+    /** Second at which each level appears. @type {number[]} */
+    this.births = [];
+  }
+
+  /** @param {number} now_s */
+  begin(now_s) {
+    this.active = true;
+    this.start_s = now_s;
+    this.step_s = Math.min(SLOWEST_S, Math.max(FASTEST_S, WHOLE_S / USUAL_LEVELS));
+    this.births = [];
+  }
+
+  end() {
+    this.active = false;
+    this.births = [];
+  }
+
+  /**
+   * Second at which a level appears; fixed the first time it is asked for. Levels come in order.
+   * @param {number} level @param {number} now_s
+   */
+  birthOf(level, now_s) {
+    if (!this.active) return -Infinity;
+    for (let k = this.births.length; k <= level; k += 1) {
+      const after = k === 0 ? now_s : this.births[k - 1] + this.step_s;
+      this.births.push(Math.max(after, now_s));
+    }
+    return this.births[level];
+  }
+
+  /** The last level that has begun to appear, −1 before the first. @param {number} now_s */
+  levelAt(now_s) {
+    let k = this.births.length - 1;
+    while (k >= 0 && this.births[k] > now_s) k -= 1;
+    return k;
+  }
+
+  /** Second at which everything known so far is there. */
+  end_s() {
+    return this.births.length ? this.births[this.births.length - 1] : this.start_s;
+  }
+}
