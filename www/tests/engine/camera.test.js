@@ -1,0 +1,155 @@
+import { describe, expect, test } from 'vitest';
+import { ballOf, Camera, fitDistance, PITCH_LIMIT_RAD, rayThrough, viewOf } from '../../src/engine/view/camera.js';
+
+/** @typedef {import('../../src/engine/types.js').Vec3} Vec3 */
+/** @typedef {import('../../src/engine/view/camera.js').View} View */
+
+const scene = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 2 };
+const size = /** @type {const} */ ([800, 600]);
+const state = { target: /** @type {Vec3} */ ([0.3, -0.2, 0.1]), distance: 6, yaw: 0.7, pitch: 0.3, fit: false };
+
+/** Pixel and depth of a world point. @param {View} view @param {readonly number[]} p @param {number} w @param {number} h */
+function project(view, p, w = size[0], h = size[1]) {
+  const m = view.clip_from_world;
+  const c = [0, 1, 2, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
+  return { x: (0.5 + c[0] / c[3] / 2) * w, y: (0.5 - c[1] / c[3] / 2) * h, depth: c[2] / c[3] };
+}
+
+describe('the view', () => {
+  test('shows the target in the middle, upright, nearer things at smaller depth', () => {
+    const view = viewOf(state, ...size, scene);
+    const centre = project(view, state.target);
+    expect(centre.x).toBeCloseTo(400, 3);
+    expect(centre.y).toBeCloseTo(300, 3);
+    expect(project(view, [0.3, -0.2, 0.6]).y).toBeLessThan(centre.y);
+    const nearer = state.target.map((t, k) => t - view.forward[k]);
+    expect(project(view, nearer).depth).toBeLessThan(centre.depth);
+  });
+
+  test('has the whole scene between near and far', () => {
+    for (const yaw of [0, 1, 2.5, -2]) {
+      const view = viewOf({ ...state, target: [0, 0, 0], yaw }, ...size, scene);
+      for (const sign of [-2, 2]) {
+        const depth = project(view, view.forward.map((f) => f * sign)).depth;
+        expect(depth).toBeGreaterThanOrEqual(0);
+        expect(depth).toBeLessThanOrEqual(1);
+      }
+    }
+  });
+
+  test('keeps circles round in any shape of picture', () => {
+    for (const [w, h] of /** @type {[number, number][]} */ ([[800, 600], [390, 844], [3840, 1000]])) {
+      const view = viewOf(state, w, h, scene);
+      const c = project(view, state.target, w, h);
+      const right = project(view, state.target.map((t, k) => t + 0.1 * view.right[k]), w, h);
+      const up = project(view, state.target.map((t, k) => t + 0.1 * view.up[k]), w, h);
+      expect(right.x - c.x).toBeCloseTo(c.y - up.y, 2);
+    }
+  });
+
+  test('centres the target in what panels leave free', () => {
+    const insets = { left: 300, right: 100, top: 0, bottom: 80 };
+    const view = viewOf(state, ...size, scene, insets);
+    const c = project(view, state.target);
+    expect(c.x).toBeCloseTo(500, 2);
+    expect(c.y).toBeCloseTo(260, 2);
+    const ray = rayThrough(view, 500, 260, ...size);
+    for (let k = 0; k < 3; k += 1) expect(ray[k]).toBeCloseTo(view.forward[k], 6);
+  });
+
+  test('rays go through what is drawn at their pixel', () => {
+    const view = viewOf(state, ...size, scene, { left: 120, right: 0, top: 10, bottom: 50 });
+    const p = [1.1, -0.4, 0.8];
+    const at = project(view, p);
+    const ray = rayThrough(view, at.x, at.y, ...size);
+    const way = p.map((c, k) => c - view.eye[k]);
+    const length = Math.hypot(...way);
+    for (let k = 0; k < 3; k += 1) expect(ray[k]).toBeCloseTo(way[k] / length, 5);
+  });
+});
+
+describe('the camera', () => {
+  test('keeps the point under the cursor while zooming', () => {
+    const camera = new Camera(state);
+    const before = viewOf(camera.state, ...size, scene);
+    const at = { view: before, x_px: 650, y_px: 120, width_px: 800, height_px: 600 };
+    const ray = rayThrough(before, 650, 120, ...size);
+    const along = state.distance / (ray[0] * before.forward[0] + ray[1] * before.forward[1] + ray[2] * before.forward[2]);
+    const point = before.eye.map((e, k) => e + along * ray[k]);
+    camera.zoom(1.7, at);
+    const after = project(viewOf(camera.state, ...size, scene), point);
+    expect(after.x).toBeCloseTo(650, 2);
+    expect(after.y).toBeCloseTo(120, 2);
+    expect(camera.state.distance).toBeCloseTo(6 / 1.7, 9);
+    expect(camera.state.fit).toBe(false);
+  });
+
+  test('moves the surface with the hand when panning', () => {
+    const camera = new Camera(state);
+    const before = viewOf(camera.state, ...size, scene);
+    camera.pan(37, -21, before);
+    const moved = project(viewOf(camera.state, ...size, scene), state.target);
+    expect(moved.x).toBeCloseTo(437, 1);
+    expect(moved.y).toBeCloseTo(279, 1);
+  });
+
+  test('turns the near side with the hand, and never over the pole', () => {
+    const camera = new Camera({ ...state, target: [0, 0, 0] });
+    const near = () => viewOf(camera.state, ...size, scene).forward.map((f) => -f);
+    const point = near();
+    camera.orbit(0.2, 0);
+    expect(project(viewOf(camera.state, ...size, scene), point).x).toBeGreaterThan(400);
+    camera.orbit(-0.2, 0.2);
+    expect(project(viewOf(camera.state, ...size, scene), point).y).toBeGreaterThan(300);
+    camera.orbit(0, 50);
+    expect(camera.state.pitch).toBe(PITCH_LIMIT_RAD);
+  });
+
+  test('comes to rest after a throw, and covers the same way at any frame rate', () => {
+    const ways = [30, 60, 144].map((hz) => {
+      const camera = new Camera({ ...state, yaw: 0 });
+      camera.fling(2, 0);
+      let frames = 0;
+      while (camera.step(1 / hz)) frames += 1;
+      expect(frames / hz).toBeLessThan(1.5);
+      return camera.state.yaw;
+    });
+    expect(ways[1]).toBeCloseTo(ways[0], 3);
+    expect(ways[2]).toBeCloseTo(ways[0], 3);
+  });
+
+  test('is still at once where motion is reduced', () => {
+    const camera = new Camera(state);
+    camera.calm = true;
+    camera.fling(5, 5);
+    expect(camera.step(1 / 60)).toBe(false);
+    camera.fit({ centre: [1, 1, 1], radius: 3 });
+    expect(camera.step(1 / 60)).toBe(false);
+    expect(camera.state).toMatchObject({ target: [1, 1, 1], distance: fitDistance(3), fit: true });
+  });
+
+  test('a fit shows the whole ball and nothing less', () => {
+    const camera = new Camera(state);
+    const ball = ballOf({ min: [-1, -2, -3], max: [3, 2, 1] });
+    camera.fit(ball);
+    while (camera.step(1 / 60));
+    const view = viewOf(camera.state, ...size, ball);
+    const c = project(view, ball.centre);
+    // A ball's outline is seen under asin(radius / distance).
+    const outline_px = Math.tan(Math.asin(ball.radius / camera.state.distance)) / view.world_per_px;
+    expect(c.x).toBeCloseTo(400, 3);
+    expect(outline_px).toBeLessThan(300);
+    expect(outline_px).toBeGreaterThan(270);
+  });
+
+  test('refuses to zoom to nothing, through the target or away for ever', () => {
+    const camera = new Camera(state);
+    camera.limits(2);
+    for (const factor of [0, -1, Number.NaN, Infinity]) camera.zoom(factor);
+    expect(camera.state.distance).toBe(6);
+    camera.zoom(1e9);
+    expect(camera.state.distance).toBeCloseTo(0.04, 9);
+    camera.zoom(1e-9);
+    expect(camera.state.distance).toBe(120);
+  });
+});

@@ -1,0 +1,297 @@
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { Columns } from '../../src/engine/columns.js';
+import { SamplingClient } from '../../src/engine/sampling/client.js';
+import { createStore } from '../../src/engine/store.js';
+import { description } from './description.js';
+
+/** @typedef {import('../../src/engine/sampling/client.js').SampleRequest} SampleRequest */
+
+/** @type {any[]} */
+let workers = [];
+/** What the picture was told. @type {string[]} */
+let told = [];
+/** @type {number[]} */
+let asked = [];
+
+const seconds = { seeding: 0.001, generation: 0.002, relaxation: 0.003, quality: 0 };
+const progress = (/** @type {number} */ particles, /** @type {any} */ more = {}) => ({
+  phase: 'generation', particles, level: 1, relax_step: 0, relax_steps: 10, evaluations: 0, fraction: 0.5, stop_reason: null, message: null, radius: 0.1, moved: false, ...more,
+});
+const answer = (/** @type {string} */ formula) => ({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
+const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
+  type: 'columns', id, first: 0, total: n, positions: new Float32Array(3 * n), normals: new Float32Array(3 * n), radii: new Float32Array(n),
+  levels: new Uint32Array(n), parents: new Uint32Array(n), slots_from: 0, slots: new Uint32Array(n), progress: progress(n),
+});
+const done = (/** @type {number} */ id, /** @type {string} */ outcome, /** @type {number} */ n = 0, more = {}) => ({
+  type: 'done', id, outcome, progress: progress(n, { phase: 'done', stop_reason: outcome === 'stopped' ? 'cancelled' : 'complete' }), seconds, predicted: n, message: '', report_follows: false, ...more,
+});
+
+/** @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, jobs: () => any[]}} */
+function page() {
+  const store = createStore();
+  const columns = new Columns();
+  const client = new SamplingClient({
+    store,
+    columns,
+    picture: {
+      begin: ({ grow }) => told.push(grow ? 'grow' : 'swap'),
+      changed: (first, last, drawn) => {
+        told.push(`changed ${first}..${last}`);
+        drawn();
+      },
+      recolour: () => {},
+      fit: () => told.push('fit'),
+      dim: (dim) => told.push(dim ? 'dim' : 'clear'),
+    },
+    spawn: () => {
+      const worker = { posted: /** @type {any[]} */ ([]), postMessage: (/** @type {any} */ m) => worker.posted.push(m), terminate() {}, onmessage: null, onerror: null };
+      workers.push(worker);
+      return worker;
+    },
+    whole: () => request('whole'),
+    onReady: () => told.push('ready'),
+    onAsk: (predicted) => asked.push(predicted),
+    clock: { now: () => Date.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout },
+  });
+  client.start();
+  const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
+  say({ type: 'ready', description });
+  return { client, store, columns, say, jobs: () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'job').map((/** @type {any} */ m) => m.job) };
+}
+/** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
+const request = (formula, more = {}) => ({
+  kind: 'sample', field: { formula }, settings: { max_particles: 1000, relax_steps: 10 }, grow: true, live: false, fit: false, ...more,
+});
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  workers = [];
+  told = [];
+  asked = [];
+});
+afterEach(() => vi.useRealTimers());
+
+describe('a run', () => {
+  test('goes from the wish to the figures', () => {
+    const { client, store, columns, say, jobs } = page();
+    client.sample(request('x', { fit: true }));
+    expect(store.busy.value).toBe(true);
+    expect(jobs()).toHaveLength(1);
+    say({ type: 'field', id: 1, answer: answer('x') });
+    say(columnsMessage(1, 5));
+    expect(columns.count).toBe(5);
+    expect(workers[0].posted.at(-1)).toEqual({ type: 'drawn', id: 1 });
+    say(done(1, 'complete', 5, { report_follows: true }));
+    expect(store.busy.value).toBe(false);
+    expect(store.progress.value.phase).toBe('quality');
+    expect(store.report.value).toBe(null);
+    say({ type: 'report', id: 1, report: { count: 5, seconds }, valence: new Uint8Array(5), nearest: new Float32Array(5), residual: new Float32Array(5) });
+    expect(store.report.value?.count).toBe(5);
+    expect(store.progress.value.phase).toBe('done');
+    expect(columns.valence).toHaveLength(5);
+    expect(told).toEqual(['ready', 'clear', 'grow', 'changed 0..5', 'fit']);
+  });
+
+  test('asked for twice is made once', () => {
+    const { client, jobs } = page();
+    client.sample(request('x'));
+    client.sample(request('x'));
+    expect(jobs()).toHaveLength(1);
+    client.sample(request('y'));
+    expect(jobs()).toHaveLength(2);
+  });
+
+  test('that was overtaken is not listened to any more', () => {
+    const { client, store, columns, say } = page();
+    client.sample(request('x'));
+    client.sample(request('y'));
+    say({ type: 'field', id: 1, answer: answer('x') });
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7));
+    expect(columns.count).toBe(0);
+    expect(store.field.value).toBe(null);
+    expect(store.busy.value).toBe(true);
+    expect(client.stale).toBe(3);
+  });
+
+  test('that was stopped keeps its particles and is labelled', () => {
+    const { client, store, columns, say } = page();
+    client.sample(request('x'));
+    say(columnsMessage(1, 7));
+    client.stop();
+    expect(workers[0].posted.at(-1)).toEqual({ type: 'stop', id: 1 });
+    say(done(1, 'stopped', 7));
+    expect(columns.count).toBe(7);
+    expect(store.partial.value).toBe(true);
+    client.sample(request('x'));
+    say(columnsMessage(2, 9));
+    say(done(2, 'complete', 9));
+    expect(store.partial.value).toBe(false);
+  });
+
+  test('without a surface empties the picture, and the next brings it back', () => {
+    const { client, store, columns, say } = page();
+    client.sample(request('x'));
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7));
+    client.sample(request('y'));
+    say({ ...done(2, 'complete', 0), progress: progress(0, { phase: 'done', stop_reason: 'no_surface' }) });
+    expect(columns.count).toBe(0);
+    expect(store.empty.value).toBe(true);
+    client.sample(request('x'));
+    say(columnsMessage(3, 7));
+    say(done(3, 'complete', 7));
+    expect(store.empty.value).toBe(false);
+    expect(columns.count).toBe(7);
+  });
+
+  test('that needs more particles than agreed is asked about, once', () => {
+    const { client, say, jobs } = page();
+    client.sample(request('x'));
+    expect(jobs()[0].ask_above).toBe(1000);
+    say(done(1, 'ask', 0, { predicted: 50_000 }));
+    expect(asked).toEqual([50_000]);
+    client.sample(request('x', { confirmed: true }));
+    expect(jobs()[1].ask_above).toBeGreaterThan(1e9);
+  });
+});
+
+describe('a formula with a fault', () => {
+  const fault = { ok: false, error: { kind: 'syntax', message: 'no', start: 0, end: 1, suggestion: null, names: [] } };
+
+  test('leaves the last surface, dimmed', () => {
+    const { client, store, columns, say } = page();
+    client.sample(request('x'));
+    say({ type: 'field', id: 1, answer: answer('x') });
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7));
+    told = [];
+    client.sample(request('x+'));
+    say({ type: 'field', id: 2, answer: fault });
+    say({ ...done(2, 'field_error'), progress: null });
+    expect(columns.count).toBe(7);
+    expect(store.field.value?.formula).toBe('x');
+    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
+    expect(told).toEqual(['dim']);
+    expect(store.busy.value).toBe(false);
+  });
+
+  test('that is just an empty editor dims nothing', () => {
+    const { client, say } = page();
+    client.sample(request(''));
+    told = [];
+    say({ type: 'field', id: 1, answer: { ok: false, error: { ...fault.error, kind: 'empty' } } });
+    expect(told).toEqual(['clear']);
+  });
+
+  test('typed during a run lets that run be made again, and stays reported', () => {
+    const { client, store, say, jobs } = page();
+    client.sample(request('x'));
+    say({ type: 'field', id: 1, answer: answer('x') });
+    client.sample(request('x+'));
+    say({ type: 'field', id: 2, answer: fault });
+    say({ ...done(2, 'field_error'), progress: null });
+    expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
+    say({ type: 'field', id: 3, answer: answer('x') });
+    expect(store.fieldError.value).not.toBe(null);
+    say(columnsMessage(3, 7));
+    say(done(3, 'complete', 7));
+    expect(jobs()).toHaveLength(3);
+  });
+});
+
+describe('a worker that fails', () => {
+  const crash = { type: 'crashed', id: 1, message: 'panicked at src/x.rs', stack: 'at f' };
+
+  test('is replaced, and its run made again', () => {
+    const { client, store, say, jobs } = page();
+    client.sample(request('x'));
+    say(crash);
+    expect(workers).toHaveLength(2);
+    expect(jobs()).toHaveLength(1);
+    expect(jobs()[0].field).toEqual({ formula: 'x' });
+    expect(store.notice.value).toMatchObject({ id: 'panic', kind: 'warn' });
+    expect(store.notice.value?.details).toContain('panicked at src/x.rs');
+    expect(told.filter((t) => t === 'ready')).toHaveLength(1);
+  });
+
+  test('twice on the same input is not sent it a third time', () => {
+    const { client, store, say, jobs } = page();
+    client.sample(request('x'));
+    say(crash);
+    say(crash);
+    expect(workers).toHaveLength(3);
+    expect(jobs()).toHaveLength(0);
+    expect(store.notice.value?.kind).toBe('error');
+    expect(store.busy.value).toBe(false);
+    client.sample(request('y'));
+    expect(jobs()).toHaveLength(1);
+  });
+
+  test('by silence is replaced too', () => {
+    const { client, store, jobs } = page();
+    client.sample(request('x'));
+    vi.advanceTimersByTime(2500);
+    expect(workers).toHaveLength(2);
+    expect(jobs()).toHaveLength(1);
+    expect(store.notice.value?.id).toBe('hang');
+  });
+
+  test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
+    const { client, store, columns, say, jobs } = page();
+    client.sample(request('kept'));
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7));
+    for (let k = 0; k < 4; k += 1) {
+      client.sample(request(`formula ${k}`));
+      say({ ...crash, id: 0 });
+    }
+    expect(store.notice.value?.id).toBe('safe-mode');
+    expect(store.busy.value).toBe(false);
+    expect(columns.count).toBe(7);
+    client.sample(request('later'));
+    expect(store.busy.value).toBe(false);
+    store.notice.value?.action?.run();
+    expect(store.notice.value).toBe(null);
+    expect(jobs()[0].field).toEqual({ formula: 'whole' });
+  });
+
+  test('after it, relaxing makes the whole run again with the steps added', () => {
+    const { client, say, jobs } = page();
+    client.sample(request('x'));
+    say(columnsMessage(1, 7));
+    say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
+    client.relax(5);
+    expect(jobs()[1]).toMatchObject({ kind: 'relax', of: 1, steps: 5 });
+    say({ ...done(2, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 15, relax_steps: 15 }) });
+    client.relax(1);
+    expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
+    say(crash);
+    // The relaxation that was lost cannot be made again on its own.
+    expect(jobs()).toHaveLength(0);
+    client.relax(2);
+    expect(jobs()[0]).toMatchObject({ kind: 'sample', field: { formula: 'whole' } });
+  });
+
+  test('to load says why, and tries again when asked', () => {
+    const { client, store } = page();
+    client.supervisor.receive({ type: 'failed', fault: 'missing', message: 'The sampler is not on the server.' });
+    expect(store.notice.value).toMatchObject({ id: 'load', kind: 'error', text: 'The sampler is not on the server.' });
+    store.notice.value?.action?.run();
+    expect(workers).toHaveLength(2);
+  });
+});
+
+test('a drag is counted: what was asked for, what was shown, how late', () => {
+  const { client, store, say } = page();
+  client.sampleLive(request('x'), 3);
+  client.sampleLive(request('y'), 3);
+  client.sampleLive(request('z'), 3);
+  vi.advanceTimersByTime(20);
+  say(columnsMessage(1, 7));
+  say(done(1, 'complete', 7));
+  vi.advanceTimersByTime(30);
+  say(columnsMessage(2, 7));
+  say(done(2, 'complete', 7));
+  expect(store.lastDrag.value).toMatchObject({ requested: 3, shown: 2, latency_ms: 30, particles: 7 });
+});

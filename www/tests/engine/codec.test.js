@@ -1,0 +1,132 @@
+import { describe, expect, test } from 'vitest';
+import { decode, encode, LONGEST_FRAGMENT } from '../../src/engine/share/codec.js';
+import { defaultState, fieldRequest, sanitize } from '../../src/engine/share/state.js';
+import { description } from './description.js';
+
+/** @typedef {import('../../src/engine/types.js').State} State */
+
+/** @returns {State} */
+const elaborate = () => ({
+  v: 1,
+  surface: 'torus',
+  formula: 'x^2 + y^2 + sin(k z)^2 − 1',
+  parameters: { k: 2.5, R: 1.25 },
+  declared: [{ name: 'k', label: 'k', value: 1, min: -3, max: 3, step: 0.01 }],
+  bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
+  settings: { radius_share: 0.012, relax_steps: 20 },
+  view: { colour: 'valence', size: 0.8, theme: 'dark', box: true, camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false } },
+});
+
+const inLink = (/** @type {unknown} */ value, kind = 'j') =>
+  `#v1.${kind}.${Buffer.from(typeof value === 'string' ? value : JSON.stringify(value)).toString('base64url')}`;
+
+async function deflated(/** @type {string} */ text) {
+  const stream = new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw'));
+  return `#v1.z.${Buffer.from(await new Response(stream).arrayBuffer()).toString('base64url')}`;
+}
+
+describe('a link', () => {
+  test('brings back the whole state', async () => {
+    const state = elaborate();
+    const link = await encode(state, description);
+    const back = await decode(link, description);
+    expect(back.problem).toBe(null);
+    expect(back.reset).toEqual([]);
+    expect(back.state).toEqual(state);
+  });
+
+  test('of the default state is empty', async () => {
+    expect(await encode(defaultState(description), description)).toBe('');
+    expect((await decode('', description)).state).toEqual(defaultState(description));
+    expect((await decode('#', description)).problem).toBe(null);
+  });
+
+  test('deflates a long formula, and brings it back', async () => {
+    const state = { ...elaborate(), formula: Array.from({ length: 200 }, (_, k) => `x^2 y z + ${k % 7}`).join(' + ') };
+    const link = await encode(state, description);
+    expect(link).toMatch(/^#v1\.z\./);
+    expect(link.length).toBeLessThan(state.formula.length);
+    expect((await decode(link, description)).state).toEqual(state);
+  });
+
+  test('is made of characters that survive any messenger', async () => {
+    expect(await encode(elaborate(), description)).toMatch(/^#[A-Za-z0-9._-]+$/);
+  });
+
+  test('that is damaged, cut off, of the future or far too long changes nothing, and says which', async () => {
+    const link = await encode(elaborate(), description);
+    const cases = /** @type {const} */ ([
+      ['#hello', 'damaged'],
+      [link.slice(0, -9), 'damaged'],
+      [`${link}*`, 'damaged'],
+      [link.replace('v1', 'v99'), 'another version'],
+      [`#v1.j.${'A'.repeat(200_000)}`, 'too long'],
+      [inLink('{"surface":'), 'damaged'],
+      [inLink('\u0000'), 'damaged'],
+      ['#v1.z.AAAA', 'damaged'],
+      ['#v1.q.AAAA', 'damaged'],
+    ]);
+    for (const [text, words] of cases) {
+      const back = await decode(text, description);
+      expect(back.problem, text.slice(0, 60)).toContain(words);
+      expect(back.state).toEqual(defaultState(description));
+    }
+  });
+
+  test('that inflates beyond 64 kB is let go of before it is whole', async () => {
+    const bomb = await deflated(`{"formula":"${'x'.repeat(30_000_000)}"}`);
+    expect(bomb.length).toBeLessThan(LONGEST_FRAGMENT);
+    expect((await decode(bomb, description)).problem).toContain('too much');
+  });
+
+  test('carries markup as text only', async () => {
+    const formula = '<img src=x onerror=alert(1)>';
+    const back = await decode(inLink({ formula }), description);
+    expect(back.state.formula).toBe(formula);
+    expect(back.reset).toEqual([]);
+  });
+});
+
+describe('a state from anywhere', () => {
+  test('is clamped, and what was reset is named', () => {
+    const { state, reset } = sanitize({
+      surface: 'no such surface',
+      formula: 'x'.repeat(5000),
+      parameters: { a: Infinity, 'bad name': 1, b: 1e9, c: 2 },
+      declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
+      bounds: { min: [0, 0, 0], max: [1, 0, 1] },
+      settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
+      view: { colour: 'pink', size: 99, theme: 'blue', box: 'yes', camera: { distance: Number.NaN } },
+    }, description);
+    expect(state.surface).toBe('ellipsoid');
+    expect(state.formula).toBe(description.surfaces[0].formula);
+    expect(state.parameters).toEqual({ b: 1e6, c: 2 });
+    expect(state.declared).toEqual([{ name: 'm', label: 'm', value: 1, min: -2, max: 2, step: 0.02 }]);
+    expect(state.bounds).toBe(null);
+    expect(state.settings).toEqual({ radius_share: 0.1, relax_steps: 2 });
+    expect(state.view).toEqual({ ...defaultState(description).view, size: 1.5 });
+    for (const name of ['surface', 'formula', 'parameter a', 'parameter bad name', 'parameter b', 'a declared parameter', 'clip box', 'setting radius_share', 'setting relax_steps', 'setting size_mode', 'setting nothing', 'setting count', 'colour', 'disc size', 'theme', 'box', 'camera']) {
+      expect(reset).toContain(name);
+    }
+    expect(reset).not.toContain('parameter c');
+  });
+
+  test.each([null, 7, 'text', [], [[]], { view: 3, settings: [], parameters: 'x', declared: {} }])('%j is turned into a valid one', (raw) => {
+    const { state } = sanitize(raw, description);
+    expect(state).toEqual(defaultState(description));
+  });
+
+  test('a prototype is not to be had through it', () => {
+    const { state } = sanitize(JSON.parse('{"parameters":{"__proto__":1,"constructor":2},"settings":{"__proto__":{"a":1}}}'), description);
+    expect(Object.getPrototypeOf(state.parameters)).toBe(Object.prototype);
+    expect(/** @type {any} */ ({}).a).toBe(undefined);
+  });
+});
+
+test('the core is told the formula only where it differs from the gallery’s', () => {
+  const state = defaultState(description);
+  expect(fieldRequest(state, description)).toEqual({ surface: 'ellipsoid', parameters: {} });
+  expect(fieldRequest(elaborate(), description)).toEqual({
+    surface: 'torus', formula: 'x^2 + y^2 + sin(k z)^2 − 1', parameters: { k: 2.5, R: 1.25 }, declare: elaborate().declared, bounds: elaborate().bounds,
+  });
+});

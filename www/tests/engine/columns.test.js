@@ -1,0 +1,158 @@
+import { describe, expect, test } from 'vitest';
+import { Columns } from '../../src/engine/columns.js';
+import { csv, ply } from '../../src/engine/share/exports.js';
+import { pick } from '../../src/engine/view/picking.js';
+
+/** `n` particles on a sphere of radius 1, discs facing outward. @param {number} n */
+function sphere(n) {
+  const positions = new Float32Array(3 * n);
+  for (let i = 0; i < n; i += 1) {
+    const z = 1 - (2 * i + 1) / n;
+    const angle = i * Math.PI * (3 - Math.sqrt(5));
+    const s = Math.sqrt(1 - z * z);
+    positions.set([s * Math.cos(angle), s * Math.sin(angle), z], 3 * i);
+  }
+  const columns = new Columns();
+  columns.write({
+    first: 0, total: n, positions, normals: positions.slice(), radii: new Float32Array(n).fill(1.6 / Math.sqrt(n)),
+    levels: Uint32Array.from({ length: n }, (_, i) => Math.floor(Math.sqrt(i))), parents: Uint32Array.from({ length: n }, (_, i) => (i === 0 ? 0xffffffff : i >> 1)),
+  });
+  return columns;
+}
+
+describe('columns', () => {
+  test('grow piece by piece and are overwritten in place', () => {
+    const whole = sphere(5000);
+    const columns = new Columns();
+    const piece = (/** @type {number} */ a, /** @type {number} */ b, total = b) => ({
+      first: a, total, positions: whole.positions.slice(3 * a, 3 * b), normals: whole.normals.slice(3 * a, 3 * b), radii: whole.radii.slice(a, b),
+      levels: whole.levels.slice(a, b), parents: whole.parents.slice(a, b),
+    });
+    for (let a = 0; a < 5000; a += 700) expect(columns.write(piece(a, Math.min(5000, a + 700)))).toBe(true);
+    expect(columns.count).toBe(5000);
+    expect(columns.positions.subarray(0, 15_000)).toEqual(whole.positions.subarray(0, 15_000));
+    expect(columns.levels.subarray(0, 5000)).toEqual(whole.levels.subarray(0, 5000));
+    expect(columns.write(piece(0, 100, 100))).toBe(true);
+    expect(columns.count).toBe(100);
+  });
+
+  test('a piece that does not fit is refused whole', () => {
+    const columns = sphere(10);
+    const before = columns.positions.slice();
+    const three = new Float32Array(3).fill(9);
+    const one = { positions: three, normals: three, radii: new Float32Array(1), levels: new Uint32Array(1), parents: new Uint32Array(1) };
+    expect(columns.write({ first: 11, total: 12, ...one })).toBe(false);
+    expect(columns.write({ first: 9, total: 9, ...one })).toBe(false);
+    expect(columns.write({ first: 0, total: 1, ...one, normals: new Float32Array(6) })).toBe(false);
+    expect(columns.count).toBe(10);
+    expect(columns.positions).toEqual(before);
+  });
+
+  test('new positions make the figures of the report stale', () => {
+    const columns = sphere(10);
+    columns.valence = new Uint8Array(10);
+    const three = new Float32Array(3);
+    columns.write({ first: 0, total: 10, positions: three, normals: three, radii: new Float32Array(1), levels: new Uint32Array(1), parents: new Uint32Array(1) });
+    expect(columns.valence).toBe(null);
+  });
+});
+
+describe('picking', () => {
+  const columns = sphere(2000);
+  /** The definition: every disc, one by one. @param {number[]} eye @param {number[]} ray */
+  function oracle(eye, ray) {
+    let best = null;
+    let best_t = Infinity;
+    for (let i = 0; i < columns.count; i += 1) {
+      const p = [...columns.positions.subarray(3 * i, 3 * i + 3)];
+      const n = [...columns.normals.subarray(3 * i, 3 * i + 3)];
+      const dot = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+      const t = dot(p.map((c, k) => c - eye[k]), n) / dot(ray, n);
+      const hit = eye.map((e, k) => e + t * ray[k] - p[k]);
+      if (t > 0 && t < best_t && dot(hit, hit) <= (columns.radii[i] * 0.92) ** 2) {
+        best_t = t;
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  test('finds the disc that the definition finds, from anywhere', () => {
+    let hits = 0;
+    for (let k = 0; k < 200; k += 1) {
+      const eye = /** @type {[number, number, number]} */ ([4 * Math.cos(k), 4 * Math.sin(k), Math.sin(3 * k)]);
+      const aim = [0.9 * Math.sin(7 * k), 0.9 * Math.cos(5 * k), 0.9 * Math.sin(11 * k)];
+      const way = aim.map((a, i) => a - eye[i]);
+      const length = Math.hypot(...way);
+      const ray = /** @type {[number, number, number]} */ (way.map((w) => w / length));
+      const expected = oracle(eye, ray);
+      if (expected !== null) hits += 1;
+      expect(pick(columns, eye, ray, 0.92, 0), `ray ${k}`).toBe(expected);
+    }
+    expect(hits).toBeGreaterThan(100);
+  });
+
+  test('takes the nearest particle where discs are too small to hit, and nothing behind the eye', () => {
+    const i = 700;
+    const p = [...columns.positions.subarray(3 * i, 3 * i + 3)];
+    const eye = /** @type {[number, number, number]} */ (p.map((c) => 3 * c));
+    const ray = /** @type {[number, number, number]} */ (p.map((c) => -c));
+    const length = Math.hypot(...ray);
+    const unit = /** @type {[number, number, number]} */ (ray.map((c) => c / length));
+    expect(pick(columns, eye, unit, 1e-6, 0.002)).toBe(i);
+    expect(pick(columns, eye, /** @type {[number, number, number]} */ (unit.map((c) => -c)), 0.92, 0.01)).toBe(null);
+  });
+});
+
+describe('exports', () => {
+  test('PLY: header and body agree, to the byte', async () => {
+    const columns = sphere(50);
+    columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));
+    const bytes = await ply(columns, { comment: 'x^2\nend_header\nevil' }).arrayBuffer();
+    const text = Buffer.from(bytes).toString('latin1');
+    const end = text.indexOf('end_header\n', text.indexOf('element vertex')) + 'end_header\n'.length;
+    const header = text.slice(0, end).trimEnd().split('\n');
+    expect(header.filter((line) => line === 'end_header')).toHaveLength(1);
+    expect(header.slice(0, 2)).toEqual(['ply', 'format binary_little_endian 1.0']);
+    expect(header).toContain('element vertex 50');
+    const properties = header.filter((line) => line.startsWith('property')).map((line) => line.split(' '));
+    const width = /** @type {Record<string, number>} */ ({ float: 4, uint: 4, int: 4, uchar: 1 });
+    const stride = properties.reduce((sum, [, type]) => sum + width[type], 0);
+    expect(bytes.byteLength).toBe(end + 50 * stride);
+    const view = new DataView(bytes, end);
+    for (const i of [0, 1, 17, 49]) {
+      let at = i * stride;
+      /** @type {Record<string, number>} */
+      const row = {};
+      for (const [, type, name] of properties) {
+        if (type === 'float') row[name] = view.getFloat32(at, true);
+        else if (type === 'uint') row[name] = view.getUint32(at, true);
+        else if (type === 'int') row[name] = view.getInt32(at, true);
+        else row[name] = view.getUint8(at);
+        at += width[type];
+      }
+      expect(row).toEqual({
+        x: columns.positions[3 * i], y: columns.positions[3 * i + 1], z: columns.positions[3 * i + 2],
+        nx: columns.normals[3 * i], ny: columns.normals[3 * i + 1], nz: columns.normals[3 * i + 2],
+        radius: columns.radii[i], level: columns.levels[i], parent: i === 0 ? -1 : i >> 1, valence: 4 + (i % 4),
+      });
+    }
+  });
+
+  test('PLY without a report has no valence column', async () => {
+    const text = await ply(sphere(3), { comment: '' }).text();
+    expect(text).not.toContain('valence');
+  });
+
+  test('CSV: reading it gives the same single-precision values, on both sides of a block', async () => {
+    const columns = sphere(9000);
+    const lines = (await csv(columns).text()).trimEnd().split('\n');
+    expect(lines).toHaveLength(9001);
+    expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent');
+    for (const i of [0, 8191, 8192, 8999]) {
+      const row = lines[i + 1].split(',').map(Number);
+      expect(row.slice(0, 3).map(Math.fround)).toEqual([...columns.positions.subarray(3 * i, 3 * i + 3)]);
+      expect(row.slice(7)).toEqual([columns.levels[i], i === 0 ? -1 : i >> 1]);
+    }
+  });
+});

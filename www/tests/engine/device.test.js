@@ -1,0 +1,103 @@
+import { describe, expect, test } from 'vitest';
+import { DeviceKeeper } from '../../src/engine/view/device.js';
+
+/**
+ * A keeper over scripted devices. `broken` kinds cannot be opened.
+ * @param {string[]} [broken]
+ */
+function kept(broken = []) {
+  /** @type {string[]} */
+  const log = [];
+  /** @type {any[]} */
+  const events = [];
+  const clock = { ms: 0 };
+  const keeper = new DeviceKeeper({
+    host: /** @type {any} */ (null),
+    onOpen: (device) => log.push(`open ${device.kind}`),
+    onLost: (kind) => log.push(`lost ${kind}`),
+    onFallback: (kind) => log.push(`gave up ${kind}`),
+    open: async (kind, _host, on) => {
+      if (broken.includes(kind)) throw new Error(`${kind} is not available`);
+      events.push(on);
+      return /** @type {any} */ ({ kind, renderer: {}, dispose: () => log.push(`close ${kind}`) });
+    },
+    clock: {
+      now: () => clock.ms,
+      wait: async () => {},
+    },
+  });
+  const settle = async () => {
+    for (let k = 0; k < 10; k += 1) await Promise.resolve();
+  };
+  return { keeper, log, events, clock, settle };
+}
+
+describe('the keeper of devices', () => {
+  test('takes the first kind that works', async () => {
+    const { keeper, log } = kept(['webgpu']);
+    await keeper.start();
+    expect(log).toEqual(['gave up webgpu', 'open webgl2']);
+  });
+
+  test('goes down to the painter', async () => {
+    const { keeper, log } = kept(['webgpu', 'webgl2']);
+    await keeper.start();
+    expect(log.at(-1)).toBe('open canvas2d');
+  });
+
+  test('mends a loss with the same kind three times in a minute, then takes the next', async () => {
+    const { keeper, log, events, clock, settle } = kept();
+    await keeper.start();
+    for (let k = 0; k < 4; k += 1) {
+      clock.ms += 1000;
+      events.at(-1).onLost('unknown', 'gone');
+      await settle();
+    }
+    expect(log.filter((l) => l === 'open webgpu')).toHaveLength(4);
+    expect(log.slice(-2)).toEqual(['gave up webgpu', 'open webgl2']);
+    expect(keeper.opened).toBe(5);
+  });
+
+  test('mends losses far apart without end', async () => {
+    const { keeper, log, events, clock, settle } = kept();
+    await keeper.start();
+    for (let k = 0; k < 9; k += 1) {
+      clock.ms += 30_000;
+      events.at(-1).onLost('unknown', 'gone');
+      await settle();
+    }
+    expect(log).not.toContain('gave up webgpu');
+    expect(keeper.device?.kind).toBe('webgpu');
+  });
+
+  test('hears nothing of a device that it has closed', async () => {
+    const { keeper, log, events, settle } = kept();
+    await keeper.start();
+    const old = events[0];
+    old.onLost('unknown', 'gone');
+    await settle();
+    const length = log.length;
+    old.onLost('unknown', 'gone again');
+    old.onError('late');
+    await settle();
+    expect(log).toHaveLength(length);
+  });
+
+  test('leaves a kind at once that refuses what it is told', async () => {
+    const { keeper, log, events, settle } = kept();
+    await keeper.start();
+    events[0].onError('validation');
+    await settle();
+    expect(log).toEqual(['open webgpu', 'close webgpu', 'gave up webgpu', 'open webgl2']);
+  });
+
+  test('throws away a device that arrives after the page is gone', async () => {
+    const { keeper, log, settle } = kept();
+    const opening = keeper.start();
+    keeper.close();
+    await opening;
+    await settle();
+    expect(log).toEqual(['close webgpu']);
+    expect(keeper.device).toBe(null);
+  });
+});

@@ -1,0 +1,92 @@
+/**
+ * A core of a few lines for the tests of the job loop: a surface whose front grows by one particle per work unit and whose
+ * relaxation moves every particle once per step. Time passes only through `clock`.
+ */
+
+/**
+ * @param {object} [options]
+ * @param {number} [options.particles]
+ * @param {number} [options.relax_steps]
+ * @param {number} [options.us_per_unit]
+ */
+export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 } = {}) {
+  const clock = { ms: 0 };
+  const calls = /** @type {string[]} */ ([]);
+  let count = 0;
+  let step = 0;
+  let steps = relax_steps;
+  let target = particles;
+  /** @type {import('../../src/engine/types.js').StopReason} */
+  let stop = null;
+  let moves = 0;
+  const progress = (moved = false) => JSON.stringify({
+    phase: stop ? 'done' : count < target ? 'generation' : 'relaxation', particles: count, level: Math.floor(Math.sqrt(count)), relax_step: step,
+    relax_steps: steps, evaluations: 2 * count, fraction: 0, stop_reason: stop, message: null, radius: 0.01, moved,
+  });
+  const column = (/** @type {number} */ from, /** @type {number} */ width, /** @type {any} */ Type) =>
+    Type.from({ length: (count - from) * width }, (/** @type {unknown} */ _, /** @type {number} */ i) => from * width + i + moves * 0.5);
+  return {
+    clock,
+    calls,
+    /** @param {string} json */
+    set_field(json) {
+      calls.push('set_field');
+      const { formula } = JSON.parse(json);
+      if (formula === 'x^2+') return JSON.stringify({ ok: false, error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] } });
+      return JSON.stringify({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
+    },
+    /** @param {string} json */
+    start(json) {
+      calls.push('start');
+      const settings = JSON.parse(json);
+      if (settings.count) target = settings.count;
+      steps = settings.relax_steps ?? relax_steps;
+      count = 0;
+      step = 0;
+      stop = null;
+      return JSON.stringify({ ok: true, radius: 0.01, predicted_count: target, warnings: [] });
+    },
+    /** @param {number} budget */
+    step(budget) {
+      calls.push('step');
+      if (count < target) {
+        const n = Math.min(budget, target - count);
+        count += n;
+        clock.ms += (n * us_per_unit) / 1000;
+        if (count === target && steps === 0) stop = 'complete';
+        return progress();
+      }
+      step += 1;
+      moves += 1;
+      clock.ms += (count * us_per_unit) / 1000;
+      if (step >= steps) stop = 'complete';
+      return progress(true);
+    },
+    /** @param {number} more */
+    relax(more) {
+      steps = step + more;
+      stop = null;
+      return '{"ok":true}';
+    },
+    cancel() {
+      calls.push('cancel');
+      stop = 'cancelled';
+      return progress();
+    },
+    count: () => count,
+    positions: (/** @type {number} */ from) => column(from, 3, Float32Array),
+    normals: (/** @type {number} */ from) => column(from, 3, Float32Array),
+    radii: (/** @type {number} */ from) => column(from, 1, Float32Array),
+    levels: (/** @type {number} */ from) => column(from, 1, Uint32Array),
+    parents: (/** @type {number} */ from) => column(from, 1, Uint32Array),
+    slots: (/** @type {number} */ from) => column(from, 1, Uint32Array),
+    report() {
+      calls.push('report');
+      clock.ms += 50;
+      return JSON.stringify({ count, digest: 'd' });
+    },
+    valence: () => new Uint8Array(count).fill(6),
+    nearest: () => new Float32Array(count),
+    residual: () => new Float32Array(count),
+  };
+}

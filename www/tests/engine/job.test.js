@@ -1,0 +1,171 @@
+import { describe, expect, test } from 'vitest';
+import { nextBudget, runJob } from '../../src/engine/sampling/job.js';
+import { fakeCore } from './fake-core.js';
+
+/** @typedef {import('../../src/engine/sampling/protocol.js').FromWorker} FromWorker */
+/** @typedef {import('../../src/engine/sampling/protocol.js').SampleJob} SampleJob */
+
+/** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
+const sampleJob = (part = {}) => ({
+  kind: 'sample', id: 7, field: { formula: 'x' }, settings: {}, grow: true, live: false, ask_above: Infinity, ...part,
+});
+
+/**
+ * Runs a job on a scripted core, and returns what it posted.
+ * @param {ReturnType<typeof fakeCore>} core
+ * @param {import('../../src/engine/sampling/protocol.js').Job} job
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
+ */
+async function run(core, job, { interrupt = () => null, room = () => true, memory = { held: 0 } } = {}) {
+  /** @type {FromWorker[]} */
+  const posted = [];
+  await runJob(core, job, {
+    now_ms: () => core.clock.ms,
+    pause: async () => {
+      core.clock.ms += 1;
+    },
+    post: (message) => posted.push(structuredClone(message)),
+    interrupt: () => interrupt(posted),
+    room: () => room(posted),
+  }, memory);
+  return { posted, memory };
+}
+
+/** @template {FromWorker['type']} T @param {FromWorker[]} posted @param {T} type @returns {Extract<FromWorker, {type: T}>[]} */
+const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type === type));
+
+describe('a job', () => {
+  test('pieces join up to the core’s own columns, in order and without a gap', async () => {
+    const core = fakeCore({ particles: 20_000, relax_steps: 3, us_per_unit: 5 });
+    const { posted } = await run(core, sampleJob());
+    const pieces = of(posted, 'columns');
+    expect(pieces.length).toBeGreaterThan(4);
+    const positions = new Float32Array(60_000);
+    let have = 0;
+    for (const piece of pieces) {
+      expect(piece.first).toBeLessThanOrEqual(have);
+      positions.set(piece.positions, 3 * piece.first);
+      have = piece.total;
+    }
+    expect(positions).toEqual(core.positions(0));
+    const done = of(posted, 'done');
+    expect(done).toHaveLength(1);
+    expect(done[0].outcome).toBe('complete');
+    expect(of(posted, 'report')).toHaveLength(1);
+    expect(posted.at(-1)?.type).toBe('report');
+  });
+
+  test('the last word on the slots covers every particle', async () => {
+    const core = fakeCore({ particles: 5000, relax_steps: 0 });
+    const { posted } = await run(core, sampleJob({ settings: { relax_steps: 0 } }));
+    const last = of(posted, 'columns').at(-1);
+    expect(last?.slots_from).toBe(0);
+    expect(last?.slots).toHaveLength(5000);
+  });
+
+  test('time is booked on the phase that spent it', async () => {
+    const core = fakeCore({ particles: 10_000, relax_steps: 2, us_per_unit: 10 });
+    const { posted } = await run(core, sampleJob());
+    const [report] = of(posted, 'report');
+    // The first step runs on the seeding clock: until it returns, nothing else is known.
+    expect(report.report.seconds.seeding + report.report.seconds.generation).toBeCloseTo(0.1, 3);
+    expect(report.report.seconds.relaxation).toBeCloseTo(0.2, 3);
+    expect(report.report.seconds.quality).toBeCloseTo(0.05, 3);
+  });
+
+  test('a stop keeps what there is and says so', async () => {
+    const core = fakeCore({ particles: 1_000_000 });
+    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'columns').length >= 2 ? 'stop' : null) });
+    const [done] = of(posted, 'done');
+    expect(done.outcome).toBe('stopped');
+    expect(done.progress?.stop_reason).toBe('cancelled');
+    const total = of(posted, 'columns').at(-1)?.total ?? 0;
+    expect(total).toBeGreaterThan(0);
+    expect(total).toBeLessThan(1_000_000);
+    expect(total).toBe(core.count());
+    expect(memory.held).toBe(7);
+  });
+
+  test('no single step outlasts a stop by more than 50 ms, on a fast machine and on a slow one', async () => {
+    for (const us_per_unit of [0.05, 1, 20]) {
+      const core = fakeCore({ particles: 200_000, relax_steps: 0, us_per_unit });
+      let longest = 0;
+      const step = core.step.bind(core);
+      core.step = (budget) => {
+        const before = core.clock.ms;
+        const out = step(budget);
+        longest = Math.max(longest, core.clock.ms - before);
+        return out;
+      };
+      await run(core, sampleJob({ settings: { relax_steps: 0 }, live: true }));
+      expect(longest, `at ${us_per_unit} µs per unit`).toBeLessThan(50);
+    }
+  });
+
+  test('a newer job takes over at once, without a report of the old one', async () => {
+    const core = fakeCore({ particles: 1_000_000 });
+    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'columns').length >= 1 ? 'replace' : null) });
+    expect(of(posted, 'done')[0].outcome).toBe('replaced');
+    expect(of(posted, 'report')).toHaveLength(0);
+    expect(memory.held).toBe(0);
+  });
+
+  test('a page that does not draw is not flooded', async () => {
+    const core = fakeCore({ particles: 200_000, relax_steps: 5, us_per_unit: 5 });
+    const { posted } = await run(core, sampleJob(), { room: (p) => of(p, 'columns').length < 2 });
+    // Two while it runs, and the final state.
+    expect(of(posted, 'columns')).toHaveLength(3);
+    expect(of(posted, 'columns').at(-1)?.total).toBe(200_000);
+    expect(of(posted, 'progress').length).toBeGreaterThan(2);
+  });
+
+  test('a live job posts one whole picture and no report', async () => {
+    const core = fakeCore({ particles: 20_000, relax_steps: 3 });
+    const { posted } = await run(core, sampleJob({ live: true, grow: false }));
+    expect(of(posted, 'columns')).toHaveLength(1);
+    expect(of(posted, 'columns')[0]).toMatchObject({ first: 0, total: 20_000 });
+    expect(of(posted, 'report')).toHaveLength(0);
+    expect(of(posted, 'done')[0].report_follows).toBe(false);
+  });
+
+  test('without growth, the picture waits until the front is complete', async () => {
+    const core = fakeCore({ particles: 20_000, relax_steps: 3 });
+    const { posted } = await run(core, sampleJob({ grow: false }));
+    for (const piece of of(posted, 'columns')) expect(piece.total).toBe(20_000);
+  });
+
+  test('a formula with a fault starts nothing', async () => {
+    const core = fakeCore();
+    const { posted } = await run(core, sampleJob({ field: { formula: 'x^2+' } }), { memory: { held: 3 } });
+    expect(posted.map((m) => m.type)).toEqual(['field', 'done']);
+    expect(of(posted, 'done')[0].outcome).toBe('field_error');
+    expect(core.calls).not.toContain('start');
+  });
+
+  test('more particles than agreed are asked about first', async () => {
+    const core = fakeCore({ particles: 500_000 });
+    const { posted } = await run(core, sampleJob({ ask_above: 200_000 }));
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'ask', predicted: 500_000 });
+    expect(core.calls).not.toContain('step');
+  });
+
+  test('relaxing goes on from the particles at hand, and only from those', async () => {
+    const core = fakeCore({ particles: 3000, relax_steps: 1 });
+    const { memory } = await run(core, sampleJob());
+    const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true }, { memory });
+    expect(of(again.posted, 'done')[0].outcome).toBe('complete');
+    expect(of(again.posted, 'columns').at(-1)?.progress.relax_step).toBe(5);
+    for (const piece of of(again.posted, 'columns')) expect(piece.first).toBe(0);
+    const lost = await run(core, { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true }, { memory: { held: 0 } });
+    expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
+  });
+});
+
+test('the budget follows the machine, gently', () => {
+  expect(nextBudget(1000, 6)).toBe(1000);
+  expect(nextBudget(1000, 3)).toBe(2000);
+  expect(nextBudget(1000, 0)).toBe(2000);
+  expect(nextBudget(1000, 12)).toBe(500);
+  expect(nextBudget(1000, 600)).toBe(250);
+  expect(nextBudget(1, 600)).toBe(1);
+});

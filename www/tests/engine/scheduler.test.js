@@ -1,0 +1,107 @@
+import { describe, expect, test } from 'vitest';
+import { CostModel, LIVE_MS, planLive, Scheduler } from '../../src/engine/sampling/scheduler.js';
+
+function scripted() {
+  const clock = { ms: 0 };
+  /** @type {{id: number, request: {live: boolean, value: number}}[]} */
+  const sent = [];
+  const scheduler = new Scheduler((id, request) => sent.push({ id, request: /** @type {any} */ (request) }), () => clock.ms);
+  return { clock, sent, scheduler };
+}
+const live = (/** @type {number} */ value) => ({ live: true, value });
+const full = (/** @type {number} */ value) => ({ live: false, value });
+
+describe('latest wins', () => {
+  test('a slider at 120 Hz never has more than one job waiting, and the last value is always run', () => {
+    const { clock, sent, scheduler } = scripted();
+    let most = 0;
+    for (let k = 0; k < 1200; k += 1) {
+      clock.ms = (k * 1000) / 120;
+      scheduler.submit(live(k));
+      // The worker takes 40 ms for each job.
+      if (scheduler.running && clock.ms - scheduler.running.since_ms >= 40) scheduler.ended(scheduler.running.id);
+      most = Math.max(most, sent.length);
+    }
+    while (scheduler.running) scheduler.ended(scheduler.running.id);
+    expect(sent.at(-1)?.request.value).toBe(1199);
+    // 10 s of dragging at one job per 40 ms or so: nothing was run in vain, nothing starved.
+    expect(sent.length).toBeGreaterThan(150);
+    expect(sent.length).toBeLessThan(260);
+    const values = sent.map((s) => s.request.value);
+    expect(values).toEqual([...values].sort((a, b) => a - b));
+  });
+
+  test('a drag replaces a full run at once', () => {
+    const { sent, scheduler } = scripted();
+    scheduler.submit(full(1));
+    scheduler.submit(live(2));
+    expect(sent.map((s) => s.request.value)).toEqual([1, 2]);
+    expect(scheduler.ended(1)).toBe(false);
+    expect(scheduler.ended(2)).toBe(true);
+  });
+
+  test('a live job that takes too long gives way', () => {
+    const { clock, sent, scheduler } = scripted();
+    scheduler.submit(live(1));
+    clock.ms = 100;
+    scheduler.submit(live(2));
+    expect(sent).toHaveLength(1);
+    clock.ms = 200;
+    scheduler.submit(live(3));
+    expect(sent.map((s) => s.request.value)).toEqual([1, 3]);
+    scheduler.ended(2);
+    expect(sent).toHaveLength(2);
+  });
+
+  test('a dead worker’s newest wish is handed back once', () => {
+    const { scheduler } = scripted();
+    scheduler.submit(live(1));
+    scheduler.submit(live(2));
+    expect(scheduler.drop()).toEqual(live(2));
+    expect(scheduler.drop()).toBe(null);
+  });
+});
+
+describe('coarse to fine', () => {
+  const settings = { size_mode: 'radius', radius_share: 0.006, count: 10_000, relax_steps: 10, max_particles: 200_000 };
+  const seconds = (/** @type {number} */ n) => ({ seeding: 0.004, generation: n * 1.2e-6, relaxation: n * 10 * 0.3e-6, quality: 0 });
+  const diagonal = 4;
+  const radius = 0.006 * diagonal;
+
+  test('a run that fits is made whole', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: seconds(8000), particles: 8000, relax_steps: 10, radius });
+    expect(cost.milliseconds(8000, 10)).toBeCloseTo(4 + 8000 * 4.2e-3, 6);
+    expect(planLive(settings, diagonal, cost)).toEqual({ settings, coarse: false });
+  });
+
+  test('a run that does not fit is made with as many particles as do', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: seconds(100_000), particles: 100_000, relax_steps: 10, radius });
+    const plan = planLive(settings, diagonal, cost);
+    expect(plan.coarse).toBe(true);
+    const n = cost.expected(plan.settings, diagonal);
+    expect(cost.milliseconds(n, Number(plan.settings.relax_steps))).toBeCloseTo(LIVE_MS, 3);
+    expect(n).toBeGreaterThan(10_000);
+    expect(Number(plan.settings.relax_steps)).toBeLessThan(10);
+  });
+
+  test('a wanted count is turned into a radius while dragging', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: seconds(100_000), particles: 100_000, relax_steps: 10, radius });
+    const plan = planLive({ ...settings, size_mode: 'count', count: 150_000 }, diagonal, cost);
+    expect(plan.settings.size_mode).toBe('radius');
+    expect(cost.expected(plan.settings, diagonal)).toBeLessThan(60_000);
+  });
+
+  test('before the first run nothing is assumed', () => {
+    expect(planLive(settings, diagonal, new CostModel())).toEqual({ settings, coarse: false });
+  });
+
+  test('even a very slow machine keeps the shape visible', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: { seeding: 0.5, generation: 10, relaxation: 30, quality: 0 }, particles: 50_000, relax_steps: 10, radius });
+    const plan = planLive(settings, diagonal, cost);
+    expect(Math.round(cost.expected(plan.settings, diagonal))).toBe(500);
+  });
+});
