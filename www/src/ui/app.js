@@ -68,9 +68,20 @@ export function mountInterface(engine) {
   });
 }
 
+/** A second press so soon after the first is a double click, not a wish to stop. */
+const DOUBLE_CLICK_MS = 500;
+
 /** Run or stop, always in reach on a phone. @param {Engine} engine */
 function goButton(engine) {
-  const button = h('button', { type: 'button', class: 'button primary go', on: { click: () => (engine.busy.peek() ? engine.stop() : engine.run()) } });
+  let last = -Infinity;
+  const press = () => {
+    const now = performance.now();
+    if (now - last < DOUBLE_CLICK_MS) return;
+    last = now;
+    if (engine.busy.peek()) engine.stop();
+    else engine.run();
+  };
+  const button = h('button', { type: 'button', class: 'button primary go', on: { click: press } });
   effect(() => { button.textContent = engine.busy.value ? 'Stop' : 'Run'; });
   return button;
 }

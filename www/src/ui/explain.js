@@ -48,8 +48,8 @@ function hide() {
   if (popover?.matches(':popover-open')) popover.hidePopover();
 }
 
-/** @param {Element} anchor @param {Explanation} explanation */
-function show(anchor, explanation) {
+/** @param {Element} anchor @param {Explanation} explanation @param {'below' | 'left'} [side] */
+function show(anchor, explanation, side) {
   clearTimeout(timer);
   const element = ensure();
   if (owner !== anchor) hide();
@@ -63,28 +63,36 @@ function show(anchor, explanation) {
   if (!anchor.hasAttribute('aria-describedby')) anchor.setAttribute('aria-describedby', 'explain');
   // Open it where the anchor is: a popover inside a modal dialog's top layer must come after the dialog.
   if (!element.matches(':popover-open')) element.showPopover();
-  place(element, anchor.getBoundingClientRect());
+  place(element, anchor.getBoundingClientRect(), side);
 }
 
-/** Below the anchor, or above where there is no room. @param {HTMLElement} element @param {DOMRect} anchor */
-export function place(element, anchor) {
+/**
+ * Places a popover below its anchor, or above where there is no room; on the left of it where that is asked for and fits.
+ * @param {HTMLElement} element
+ * @param {DOMRect} anchor
+ * @param {'below' | 'left'} [side]
+ */
+export function place(element, anchor, side = 'below') {
   const { width, height } = element.getBoundingClientRect();
+  const beside = anchor.left - width - MARGIN_PX;
+  const left = side === 'left' && beside >= MARGIN_PX;
   const below = anchor.bottom + MARGIN_PX / 2;
-  const top = below + height <= innerHeight - MARGIN_PX ? below : anchor.top - height - MARGIN_PX / 2;
-  element.style.left = `${clamp(anchor.left, MARGIN_PX, Math.max(MARGIN_PX, innerWidth - width - MARGIN_PX))}px`;
-  element.style.top = `${clamp(top, MARGIN_PX, Math.max(MARGIN_PX, innerHeight - height - MARGIN_PX))}px`;
+  const y = left ? anchor.top : below + height <= innerHeight - MARGIN_PX ? below : anchor.top - height - MARGIN_PX / 2;
+  const x = left ? beside : anchor.left;
+  element.style.left = `${clamp(x, MARGIN_PX, Math.max(MARGIN_PX, innerWidth - width - MARGIN_PX))}px`;
+  element.style.top = `${clamp(y, MARGIN_PX, Math.max(MARGIN_PX, innerHeight - height - MARGIN_PX))}px`;
 }
 
 /**
  * Gives `target` an explanation.
  * @param {Element} target hovered or focused
  * @param {() => Explanation | null} read
- * @param {{ tap?: boolean }} [options] with `tap`, a press toggles it (for elements that do nothing else)
+ * @param {{ tap?: boolean, side?: 'below' | 'left' }} [options] with `tap`, a press toggles it (for elements that do nothing else)
  */
 export function explain(target, read, options = {}) {
   const open = () => {
     const explanation = read();
-    if (explanation?.text && target.isConnected) show(target, explanation);
+    if (explanation?.text && target.isConnected) show(target, explanation, options.side);
   };
   target.addEventListener('pointerenter', (event) => {
     if (/** @type {PointerEvent} */ (event).pointerType === 'mouse') later(open, owner ? 60 : HOVER_DELAY_MS);

@@ -17,7 +17,7 @@ export function attachMenu(button, items, { label }) {
     const open = /** @type {ToggleEvent} */ (event).newState === 'open';
     button.setAttribute('aria-expanded', String(open));
     if (!open) return;
-    place(menu, button.getBoundingClientRect());
+    place(menu, button.getBoundingClientRect(), 'left');
     /** @type {HTMLElement | null} */ (menu.querySelector('button, input, select'))?.focus();
   });
   menu.addEventListener('click', (event) => {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { describeFault, excerptOf } from '../../src/ui/field/fault.js';
+import { describeFault, excerptOf, piecesOf } from '../../src/ui/field/fault.js';
 
 const fault = { kind: 'unknown_name', message: 'Unknown name foo.', start: 4, end: 7, suggestion: null, names: ['foo'] };
 
@@ -22,6 +22,17 @@ describe('a fault in a formula', () => {
   it('offers a suggestion first, as a change of the marked place', () => {
     const view = describeFault('x + foo = 1', { ...fault, suggestion: 'floor' });
     expect(view?.repairs[0]).toEqual({ label: 'Change to floor', replace: { start: 4, end: 7, text: 'floor' } });
+  });
+
+  it('says insert where something is missing and remove where something is too much', () => {
+    expect(describeFault('(x', { ...fault, start: 2, end: 2, names: [], suggestion: ')' })?.repairs[0].label).toBe('Insert )');
+    expect(describeFault('x ?', { ...fault, start: 2, end: 3, names: [], suggestion: '' })?.repairs[0].label).toBe('Remove ?');
+    expect(describeFault('sin', { ...fault, start: 0, end: 3, names: [], suggestion: 'sin(…)' })?.repairs[0].replace?.text).toBe('sin()');
+  });
+
+  it('shows what stands between backticks as code', () => {
+    expect(piecesOf('No `foo` here')).toEqual([{ text: 'No ', code: false }, { text: 'foo', code: true }, { text: ' here', code: false }]);
+    expect(piecesOf('A ` alone')).toEqual([{ text: 'A ` alone', code: false }]);
   });
 
   it('survives offsets beyond the text, as they come from an answer to an older text', () => {

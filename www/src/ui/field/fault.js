@@ -27,8 +27,12 @@ export function describeFault(formula, fault) {
   const end = Math.min(Math.max(start, fault.end), formula.length);
   /** @type {Repair[]} */
   const repairs = fault.names.map((name) => ({ label: `Add slider ${name}`, declare: name }));
-  if (fault.suggestion) {
-    repairs.unshift({ label: `Change to ${shorten(fault.suggestion)}`, replace: { start, end, text: fault.suggestion } });
+  const mending = fault.suggestion;
+  if (mending !== null) {
+    const marked = formula.slice(start, end);
+    const label = marked === '' ? `Insert ${shorten(mending)}` : mending === '' ? `Remove ${shorten(marked)}` : `Change to ${shorten(mending)}`;
+    // An ellipsis stands for what the reader has to fill in.
+    repairs.unshift({ label, replace: { start, end, text: mending.replace('…', '') } });
   }
   return { tone: 'fault', message: fault.message, excerpt: excerptOf(formula, start, end), repairs };
 }
@@ -52,3 +56,15 @@ export function excerptOf(formula, start, end) {
 
 /** @param {string} text */
 const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
+
+/**
+ * A message in pieces: what stands between backticks is code.
+ * @param {string} message
+ * @returns {{ text: string, code: boolean }[]}
+ */
+export function piecesOf(message) {
+  const parts = message.split('`');
+  // An unpaired backtick is one of the formula's own characters.
+  if (parts.length % 2 === 0) return [{ text: message, code: false }];
+  return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
+}

@@ -2,7 +2,7 @@
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { mathElement } from '../mathml.js';
-import { describeFault } from './fault.js';
+import { describeFault, piecesOf } from './fault.js';
 import { createTextarea } from './textarea.js';
 import { openFunctions } from './functions.js';
 
@@ -72,7 +72,7 @@ export function createFormula(engine, description) {
       excerpt && !editor.marks
         ? h('code', { class: 'excerpt' }, excerpt.before, h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked), excerpt.after)
         : null,
-      h('p', null, view.message),
+      h('p', null, piecesOf(view.message).map(({ text: piece, code }) => (code ? h('code', null, piece) : piece))),
       view.repairs.length
         ? h('div', { class: 'repairs' }, view.repairs.map((repair) => h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label)))
         : null,

@@ -46,7 +46,7 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  */
 function createRow(report, row) {
   const term = h('button', { type: 'button', class: 'term' }, row.label);
-  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row) }), { tap: true });
+  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row) }), { tap: true, side: 'left' });
   const before = h('td');
   const now = h('td', { class: 'now' });
   effect(() => {

@@ -23,7 +23,7 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
   const save = tool('save', 'Export', 'The particles as a file.');
   const bar = h(
     'div',
-    { class: 'toolbar', role: 'toolbar', 'aria-label': 'View tools', 'aria-orientation': 'vertical' },
+    { class: 'toolbar', role: 'group', 'aria-label': 'View tools' },
     tool('plus', 'Zoom in', 'Key +', () => engine.zoom(ZOOM)),
     tool('minus', 'Zoom out', 'Key −', () => engine.zoom(1 / ZOOM)),
     tool('fit', 'Fit', 'Brings the whole surface into view. Key F.', () => engine.fit()),
@@ -51,7 +51,7 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
  */
 function tool(name, label, help, act) {
   const button = h('button', { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} }, icon(name));
-  explain(button, () => ({ title: label, text: help }));
+  explain(button, () => ({ title: label, text: help }), { side: 'left' });
   return button;
 }
 
