@@ -29,7 +29,7 @@ export function mountInterface(engine) {
       { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools },
       { id: 'report', title: 'Report', panel: report, head: head(report) },
     ],
-    inset: (insets) => { /** @type {any} */ (engine).setInsets?.(insets); },
+    inset: (insets) => engine.setInsets(insets),
   });
   const shortcuts = mountShortcuts([
     { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },

@@ -15,6 +15,8 @@ const MARGIN_PX = 8;
 let popover = null;
 /** @type {Element | null} */
 let owner = null;
+/** The element that assistive technology reads the explanation with: the anchor, or the control inside it. @type {Element | null} */
+let described = null;
 let timer = 0;
 
 function ensure() {
@@ -43,8 +45,9 @@ function later(act, delay_ms) {
 
 function hide() {
   clearTimeout(timer);
-  if (owner?.getAttribute('aria-describedby') === 'explain') owner.removeAttribute('aria-describedby');
+  if (described?.getAttribute('aria-describedby') === 'explain') described.removeAttribute('aria-describedby');
   owner = null;
+  described = null;
   if (popover?.matches(':popover-open')) popover.hidePopover();
 }
 
@@ -60,8 +63,8 @@ function show(anchor, explanation, side) {
     explanation.text,
     explanation.ideal ? h('span', { class: 'ideal' }, explanation.ideal) : null,
   );
-  if (!anchor.hasAttribute('aria-describedby')) anchor.setAttribute('aria-describedby', 'explain');
-  // Open it where the anchor is: a popover inside a modal dialog's top layer must come after the dialog.
+  described = document.activeElement !== null && anchor.contains(document.activeElement) ? document.activeElement : anchor;
+  if (!described.hasAttribute('aria-describedby')) described.setAttribute('aria-describedby', 'explain');
   if (!element.matches(':popover-open')) element.showPopover();
   place(element, anchor.getBoundingClientRect(), side);
 }

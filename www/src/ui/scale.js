@@ -5,7 +5,7 @@ import { decimalsOf } from './format.js';
  * @typedef {object} Scale
  * @property {number} min
  * @property {number} max
- * @property {number} step the grid of values; 0 for none
+ * @property {number} step the grid of values, 0 for none; on a logarithmic scale the factor of one key press, minus one
  * @property {'linear' | 'log'} [scale]
  * @property {boolean} [integer]
  */
@@ -37,41 +37,42 @@ export function toValue(scale, place, fineness = 1) {
   return snap(scale, value, fineness);
 }
 
+/** Significant digits that a logarithmic scale keeps. */
+const LOG_DIGITS = 3;
+
 /**
- * The nearest grid value within the range. On a logarithmic scale the grid gets coarser with the value: three
- * significant digits are kept beyond it.
+ * The nearest grid value within the range: multiples of the step, or on a logarithmic scale three significant digits.
+ * `fineness` divides the grid; whole numbers stay whole.
  * @param {Scale} scale
  * @param {number} value
  * @param {number} [fineness]
  */
 export function snap(scale, value, fineness = 1) {
-  const { min, max } = scale;
-  let step = scale.step / (scale.integer ? 1 : fineness);
-  if (isLog(scale) && value > 0) {
-    const digits = 10 ** (Math.floor(Math.log10(value)) - 2) / (scale.integer ? 1 : fineness);
-    step = Math.max(step, digits);
-  }
-  if (scale.integer) step = Math.max(1, Math.round(step));
+  const { min, max, integer } = scale;
+  let step = scale.step / fineness;
+  if (isLog(scale)) step = value > 0 ? 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS + 1) / fineness : 0;
+  if (integer) step = Math.max(1, Math.round(step));
   if (!(step > 0)) return clamp(value, min, max);
-  // The grid starts at `min` only where `min` lies on it anyway: 0.05 to 3 by 0.1 should still give 0.1, 0.2 …
-  const snapped = Math.round(value / step) * step;
-  return clamp(Number(snapped.toFixed(decimalsOf(step))), min, max);
+  // The grid does not start at `min`: 0.05 to 3 by 0.1 should still give 0.1, 0.2 …
+  return clamp(Number((Math.round(value / step) * step).toFixed(decimalsOf(step))), min, max);
 }
 
 /**
- * The value one key press away. On a logarithmic scale a press is a fiftieth of the range's logarithm.
+ * The value a number of key presses away.
  * @param {Scale} scale
  * @param {number} value
  * @param {number} presses signed; 10 for a page
  * @param {boolean} fine
  */
 export function nudge(scale, value, presses, fine) {
-  const fineness = fine && !scale.integer ? 10 : 1;
+  const fineness = fine ? 10 : 1;
   if (isLog(scale)) {
-    const moved = toValue(scale, toPlace(scale, value) + presses / (100 * fineness), fineness);
+    const moved = snap(scale, value * (1 + scale.step / fineness) ** presses, 10);
     if (moved !== value) return moved;
+    // Too coarse a grid for so small a factor: one unit of the grid instead.
+    return snap(scale, value + Math.sign(presses) * (scale.integer ? 1 : 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS)), 10);
   }
-  const step = (scale.step > 0 ? scale.step : (scale.max - scale.min) / 100) / fineness;
+  const step = (scale.step > 0 ? scale.step : (scale.max - scale.min) / 100) / (scale.integer ? 1 : fineness);
   return snap(scale, value + presses * step, fineness);
 }
 

@@ -16,6 +16,7 @@ import { decimalsOf } from './format.js';
  * @property {(value: number, live: boolean) => void} change `live` while the hand is still on it
  * @property {() => void} reset
  * @property {boolean} [number] false: no number box
+ * @property {number} [factor] what the box shows, over the value: 100 for per cent
  */
 /**
  * @typedef {object} Slider
@@ -34,6 +35,7 @@ const PLACES = 10000;
 /** @param {SliderOptions} options @returns {Slider} */
 export function createSlider(options) {
   let { scale, value } = options;
+  const factor = options.factor ?? 1;
   let dragging = false;
   const range = h('input', { type: 'range', class: 'slider', min: 0, max: PLACES, step: 1, 'aria-label': options.name });
   const box = options.number === false ? null : createBox();
@@ -41,7 +43,7 @@ export function createSlider(options) {
   function createBox() {
     const input = h('input', { type: 'number', class: 'box', id: uniqueId('number'), 'aria-label': `${options.name}, number`, inputmode: 'decimal' });
     const read = (/** @type {boolean} */ live) => {
-      const typed = input.valueAsNumber;
+      const typed = input.valueAsNumber / factor;
       if (Number.isNaN(typed)) return;
       // The box takes any number within the range, not only the slider's grid.
       take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), live, input);
@@ -77,16 +79,17 @@ export function createSlider(options) {
     range.style.setProperty('--place', place.toFixed(4));
     range.setAttribute('aria-valuetext', options.describe(value));
     if (box && except !== box) {
-      const digits = Math.max(decimalsOf(scale.step), 0);
-      box.value = String(scale.integer ? value : Number(value.toFixed(Math.min(digits + 2, 12))));
+      // Two digits beyond the grid, for values made under shift or typed.
+      const exact = scale.integer ? value : scale.scale === 'log' ? Number(value.toPrecision(5)) : Number(value.toFixed(Math.min(decimalsOf(scale.step) + 2, 12)));
+      box.value = String(Number((exact * factor).toPrecision(12)));
     }
   }
 
   function writeScale() {
     setAttribute(range, 'aria-label', options.name);
     if (!box) return;
-    box.min = String(scale.min);
-    box.max = String(scale.max);
+    box.min = String(Number((scale.min * factor).toPrecision(12)));
+    box.max = String(Number((scale.max * factor).toPrecision(12)));
     box.step = 'any';
   }
 

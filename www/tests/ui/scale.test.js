@@ -2,8 +2,8 @@ import { describe, expect, it } from 'vitest';
 import { nudge, snap, toPlace, toValue } from '../../src/ui/scale.js';
 
 const linear = { min: 0.2, max: 2, step: 0.01 };
-const log = /** @type {const} */ ({ min: 0.001, max: 0.1, step: 0.0001, scale: 'log' });
-const count = /** @type {const} */ ({ min: 10, max: 1000000, step: 1, scale: 'log', integer: true });
+const log = /** @type {const} */ ({ min: 0.001, max: 0.1, step: 0.01, scale: 'log' });
+const count = /** @type {const} */ ({ min: 10, max: 1000000, step: 0.01, scale: 'log', integer: true });
 
 describe('slider scales', () => {
   it('maps ends to ends and the middle of a logarithmic range to its geometric mean', () => {

@@ -25,8 +25,8 @@ export function mountSampling(body, engine, description, { head }) {
   });
 
   const actions = h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
-    action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), computed(() => true), 'primary'),
-    action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), busy),
+    action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), computed(() => true), 'primary in-tabs'),
+    action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), busy, 'in-tabs'),
     action('Generate only', 'Places the particles level by level and leaves them unrelaxed. Key G.', () => engine.generateOnly(), computed(() => true)),
     action('Relax one step', 'Moves the present particles one relaxation step further. Key E.', () => engine.relax(1), computed(() => some.value && !busy.value)),
   ]);

@@ -50,11 +50,13 @@ function createChoice(engine, info, value) {
  */
 function createNumber(engine, info, value) {
   const integer = info.kind === 'integer';
+  const factor = info.unit === '%' ? 100 : 1;
   const slider = createSlider({
     name: info.label,
     scale: { min: info.min, max: info.max, step: info.step, scale: info.scale, integer },
     value: Number(value.peek()),
-    describe: (now) => `${integer ? formatCount(now) : formatSignificant(now)}${info.unit ? ` ${info.unit}` : ''}`,
+    factor,
+    describe: (now) => `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
   });

@@ -1,6 +1,9 @@
 /** One quiet line that says where the run stands. Pure. */
 import { formatCount, formatSeconds, plural } from '../format.js';
 
+/** While the picture of a finished run grows, level by level. @param {{ level: number, particles: number }} reveal */
+export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
+
 /**
  * @param {import('../../engine/types.js').Progress} progress
  * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null }} facts

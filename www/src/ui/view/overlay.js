@@ -1,7 +1,7 @@
 /** What stands on the picture itself: the caption, the hint, the empty state, the poster's end. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
-import { captionOf } from './caption.js';
+import { captionOf, revealOf } from './caption.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -21,11 +21,11 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
   const empty = h('div', { class: 'empty', role: 'status' });
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
-  const text = computed(() => captionOf(engine.progress.value, {
+  const text = computed(() => (engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
     partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: engine.timing.value?.total ?? null,
-  }));
+  })));
   bindText(caption, () => text.value);
-  announce(spoken, text, engine.busy);
+  announce(spoken, text, computed(() => engine.busy.value || engine.reveal.value !== null));
 
   // The poster stands in until the first particles are on screen.
   const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
@@ -35,7 +35,7 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
     poster.classList.add('gone');
     start.hidden = true;
   });
-  effect(() => { if (engine.description.value) start.hidden = true; });
+  effect(() => { if (engine.description.value || engine.notice.value?.id === 'load') start.hidden = true; });
 
   hintUntilUsed(hint, stage, settled);
 
@@ -45,7 +45,8 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
     if (lost.value) fill(empty, ...emptyState(engine));
     else fill(empty);
   });
-  effect(() => { stage.classList.toggle('faulty', engine.fieldError.value !== null); });
+  // The last good surface stays, dimmed, while the formula is wrong; an empty one is no error.
+  effect(() => { stage.classList.toggle('faulty', engine.fieldError.value !== null && engine.state.value.formula.trim() !== ''); });
 }
 
 /** @param {Engine} engine */

@@ -1,0 +1,104 @@
+import { expect, test } from '@playwright/test';
+import { open, report, settled, state, typeFormula } from './helpers.js';
+
+test('a typed formula gets sliders for its unknown names, and dragging one samples anew', async ({ page }) => {
+  const { clean } = await open(page);
+  await typeFormula(page, 'x^2 + y^2 + k z^2 = 1');
+  const slider = page.getByRole('slider', { name: /k$/ });
+  await expect(slider).toBeVisible();
+  await settled(page);
+  const before = await report(page);
+  const box = await slider.boundingBox();
+  if (!box) throw new Error('the slider has no box');
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.9, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await settled(page);
+  expect((await state(page)).parameters.k).toBeGreaterThan(1);
+  expect((await report(page)).digest).not.toBe(before.digest);
+  await slider.dblclick();
+  await settled(page);
+  expect((await state(page)).parameters.k).toBeUndefined();
+  await clean();
+});
+
+test('an error names its place, the last surface stays, and a press on the suggestion mends it', async ({ page }) => {
+  const { clean } = await open(page);
+  const before = await report(page);
+  await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+  const editor = page.getByRole('textbox', { name: 'Formula' });
+  await expect(editor).toHaveAttribute('aria-invalid', 'true');
+  await expect(page.locator('.cm-fault')).toHaveText('sqr');
+  expect((await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count))).toBe(before.count);
+  await page.getByRole('button', { name: 'Change to sqrt' }).click();
+  await expect(editor).toHaveAttribute('aria-invalid', 'false');
+  await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + sqrt(z) = 1');
+  await clean();
+});
+
+test('beyond four unknown names a slider is added on request', async ({ page }) => {
+  await open(page);
+  await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');
+  const add = page.getByRole('button', { name: /^Add slider/ });
+  await expect(add.first()).toBeVisible();
+  await add.first().click();
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+  await expect(page.locator('.row[data-parameter]')).toHaveCount(5);
+});
+
+test('an empty formula is met with a hint, not an error, and the surface stays', async ({ page }) => {
+  await open(page);
+  const before = await report(page);
+  await typeFormula(page, '');
+  const message = page.locator('#formula-fault');
+  await expect(message).toContainText('Type a formula');
+  await expect(message).toHaveAttribute('data-tone', 'hint');
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+  await expect(page.locator('.editor')).not.toHaveClass(/has-fault/);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(before.count);
+});
+
+test('markup in a formula stays text', async ({ page }) => {
+  const { faults } = await open(page);
+  await typeFormula(page, '<img src=x onerror=alert(1)>');
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
+  expect(await page.evaluate(() => document.querySelectorAll('img[onerror], [onerror]').length)).toBe(0);
+  expect(await page.evaluate(() => document.querySelector('.code-host')?.shadowRoot?.querySelectorAll('img').length)).toBe(0);
+  expect(faults).toEqual([]);
+});
+
+test('the formula is shown as mathematics', async ({ page }) => {
+  await open(page);
+  await typeFormula(page, 'x^2 + y^2/4 + z^2 = 1');
+  await expect(page.locator('.preview math mfrac, .preview math msup').first()).toBeVisible();
+});
+
+test('a surface of the gallery is chosen by a press and by the arrow keys', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.locator('.tile[data-surface="torus"]').click();
+  await settled(page);
+  expect((await state(page)).surface).toBe('torus');
+  await expect(page.getByRole('heading', { name: 'Torus' })).toBeVisible();
+  await expect(page.getByRole('radio', { name: 'Torus' })).toBeChecked();
+  await page.keyboard.press('ArrowLeft');
+  await expect.poll(async () => (await state(page)).surface).not.toBe('torus');
+  await clean();
+});
+
+test('the clip box is edited axis by axis and taken back', async ({ page }) => {
+  await open(page);
+  await page.locator('.clip summary').click();
+  const high = page.getByRole('spinbutton', { name: 'x to' });
+  await high.fill('0.25');
+  await high.press('Tab');
+  await settled(page);
+  expect((await state(page)).bounds.max[0]).toBe(0.25);
+  const xs = await page.evaluate(() => {
+    const { positions, count } = /** @type {any} */ (window).marchingParticles.particles();
+    return Math.max(...Array.from({ length: count }, (_, i) => positions[3 * i]));
+  });
+  expect(xs).toBeLessThanOrEqual(0.25 + 1e-6);
+  await page.locator('.clip').getByRole('button', { name: 'Reset' }).click();
+  await expect.poll(async () => (await state(page)).bounds).toBeNull();
+});

@@ -1,0 +1,59 @@
+/** What the interface's browser tests share. */
+import { expect } from '@playwright/test';
+
+/** The panels are tested without a graphics device: software rendering of large windows is slow. */
+const ADDRESS = './?backend=canvas2d';
+
+/**
+ * Opens the page and waits for the first run. Violations of the content security policy and errors fail the test.
+ * @param {import('@playwright/test').Page} page
+ * @param {{ width?: number, height?: number, hash?: string }} [options]
+ */
+export async function open(page, { width = 1280, height = 800, hash = '' } = {}) {
+  /** @type {string[]} */
+  const faults = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') faults.push(message.text()); });
+  await page.addInitScript(() => {
+    const seen = /** @type {string[]} */ ([]);
+    /** @type {any} */ (window).violations = seen;
+    document.addEventListener('securitypolicyviolation', (event) => seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`));
+  });
+  await page.setViewportSize({ width, height });
+  await page.goto(`${ADDRESS}${hash}`);
+  await settled(page);
+  return { faults, clean: async () => {
+    expect(faults).toEqual([]);
+    expect(await page.evaluate(() => /** @type {any} */ (window).violations)).toEqual([]);
+  } };
+}
+
+/** Waits until nothing runs and the figures are there. @param {import('@playwright/test').Page} page */
+export async function settled(page) {
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await page.waitForFunction(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    return !engine.busy.value && engine.reveal.value === null && engine.progress.value.phase === 'done' && (engine.report.value !== null || engine.empty.value);
+  });
+}
+
+/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+export const report = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report());
+
+/** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
+export const state = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.state);
+
+/**
+ * Types a formula into the editor in place of the one there.
+ * @param {import('@playwright/test').Page} page
+ * @param {string} text
+ */
+export async function typeFormula(page, text) {
+  const editor = page.getByRole('textbox', { name: 'Formula' });
+  await editor.click();
+  await expect(page.locator('.code-host')).toBeVisible();
+  await page.keyboard.press('ControlOrMeta+a');
+  await page.keyboard.press('Delete');
+  if (text) await page.keyboard.insertText(text);
+  await expect.poll(async () => (await state(page)).formula).toBe(text);
+}

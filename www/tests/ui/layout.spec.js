@@ -1,0 +1,123 @@
+import AxeBuilder from '@axe-core/playwright';
+import { expect, test } from '@playwright/test';
+import { open, state } from './helpers.js';
+
+const SIZES = /** @type {const} */ ([[1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
+
+for (const [width, height] of SIZES) {
+  test(`nothing overflows at ${width} by ${height}`, async ({ page }) => {
+    const { clean } = await open(page, { width, height });
+    const compact = width < 720 || height < 480;
+    for (const tab of compact ? ['Sampling', 'Report', 'Field'] : ['']) {
+      if (tab) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
+      const { scroll, outside } = await page.evaluate(() => {
+        const visible = (/** @type {Element} */ element) => element.checkVisibility();
+        const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')].filter(visible).filter((element) => {
+          const { left, right, top, bottom } = element.getBoundingClientRect();
+          return left < -0.5 || right > innerWidth + 0.5 || top < -2.5 || bottom > innerHeight + 0.5;
+        }).map((element) => element.className);
+        for (const body of document.querySelectorAll('.panel-body')) {
+          if (visible(body) && body.scrollWidth > body.clientWidth + 1) outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
+        }
+        return { scroll: document.documentElement.scrollWidth, outside };
+      });
+      expect(scroll).toBeLessThanOrEqual(width);
+      expect(outside).toEqual([]);
+    }
+    // The surface stays visible: a good part of the window belongs to the picture.
+    const view = await page.locator('#view').boundingBox();
+    expect((view?.width ?? 0) * (view?.height ?? 0)).toBeGreaterThan(0.2 * width * height);
+    await clean();
+  });
+}
+
+for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) {
+  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
+    test(`axe finds nothing at ${width} by ${height}, ${colorScheme}`, async ({ page }) => {
+      await page.emulateMedia({ colorScheme });
+      await open(page, { width, height });
+      if (width < 720) {
+        for (const tab of ['Sampling', 'Report', 'Field']) {
+          await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
+          expect((await scan(page)).violations).toEqual([]);
+        }
+        return;
+      }
+      expect((await scan(page)).violations).toEqual([]);
+      await page.getByRole('button', { name: 'View options' }).click();
+      expect((await scan(page)).violations).toEqual([]);
+      await page.keyboard.press('Escape');
+      await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+      expect((await scan(page)).violations).toEqual([]);
+    });
+  }
+}
+
+/** @param {import('@playwright/test').Page} page */
+const scan = (page) => new AxeBuilder({ page }).withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']).analyze();
+
+test('targets are at least 24 pixels', async ({ page }) => {
+  await open(page, { width: 1440, height: 900 });
+  const small = await page.evaluate(() => [...document.querySelectorAll('button, select, input:not(.visually-hidden), summary')]
+    .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest('label.check'))
+    .map((element) => ({ name: element.textContent || element.getAttribute('aria-label'), box: element.getBoundingClientRect() }))
+    .filter(({ box }) => box.width < 23.5 || box.height < 23.5)
+    .map(({ name, box }) => `${name} ${box.width} by ${box.height}`));
+  expect(small).toEqual([]);
+});
+
+test('the page settles without a jump and asks nobody else for anything', async ({ page, baseURL }) => {
+  /** @type {string[]} */
+  const foreign = [];
+  page.on('request', (request) => { if (!request.url().startsWith(new URL(baseURL ?? '').origin) && !/^(blob|data):/.test(request.url())) foreign.push(request.url()); });
+  await page.addInitScript(() => {
+    /** @type {any} */ (window).shift = 0;
+    new PerformanceObserver((list) => {
+      for (const entry of list.getEntries()) /** @type {any} */ (window).shift += /** @type {any} */ (entry).value;
+    }).observe({ type: 'layout-shift', buffered: true });
+  });
+  await open(page, { width: 1440, height: 900 });
+  expect(await page.evaluate(() => /** @type {any} */ (window).shift)).toBeLessThan(0.05);
+  expect(foreign).toEqual([]);
+});
+
+test('keys alone reach the formula, a slider, the run and the panels', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toBeFocused();
+  await expect(page.locator('.code-host')).toBeVisible();
+  await page.keyboard.press('Escape');
+  // Out of the editor by Tab, on to the first slider.
+  for (let i = 0; i < 4 && !(await page.evaluate(() => document.activeElement?.matches('.row .slider'))); i += 1) await page.keyboard.press('Tab');
+  const name = await page.evaluate(() => document.activeElement?.closest('.row')?.getAttribute('data-parameter'));
+  expect(name).toBeTruthy();
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(async () => Object.keys((await state(page)).parameters)).toContain(name);
+  await page.locator('#canvas-host').focus();
+  const yaw = (await state(page)).view.camera.yaw;
+  await page.keyboard.press('ArrowLeft');
+  await expect.poll(async () => (await state(page)).view.camera.yaw).not.toBe(yaw);
+  await page.keyboard.press('h');
+  await expect(page.locator('#panel-field')).toBeHidden();
+  await page.keyboard.press('h');
+  await expect(page.locator('#panel-field')).toBeVisible();
+  await page.keyboard.press('?');
+  await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
+  await page.keyboard.press('Escape');
+  await expect(page.getByRole('dialog')).toHaveCount(0);
+  await clean();
+});
+
+test('the theme follows the system and can be switched', async ({ page }) => {
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await open(page);
+  const ground = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+  const dark = await ground();
+  await page.getByRole('button', { name: 'View options' }).click();
+  await page.getByRole('button', { name: 'Light', exact: true }).click();
+  expect(await ground()).not.toBe(dark);
+  await page.emulateMedia({ colorScheme: 'light' });
+  await page.getByRole('button', { name: 'System' }).click();
+  expect(await ground()).not.toBe(dark);
+});

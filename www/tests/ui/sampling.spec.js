@@ -1,0 +1,83 @@
+import { expect, test } from '@playwright/test';
+import { open, report, settled, state } from './helpers.js';
+
+test('the settings are those that the core describes, each with its help', async ({ page }) => {
+  await open(page);
+  const settings = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.settings);
+  await expect(page.locator('.setting')).toHaveCount(settings.length);
+  for (const { name, label, help } of settings) {
+    const setting = page.locator(`.setting[data-setting="${name}"]`);
+    await expect(setting).toContainText(label);
+    if (!(await setting.isVisible())) continue;
+    await setting.locator('.setting-label').hover();
+    await expect(page.locator('#explain')).toContainText(help.slice(0, 40));
+  }
+});
+
+test('a double click on Run is one run', async ({ page }) => {
+  const { clean } = await open(page);
+  const before = await report(page);
+  await page.getByRole('button', { name: 'Run', exact: true }).first().dblclick();
+  await settled(page);
+  const after = await report(page);
+  expect(after.digest).toBe(before.digest);
+  expect(after.stop_reason).toBe('complete');
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(false);
+  await clean();
+});
+
+test('generate only leaves the front unrelaxed; relax one step moves it', async ({ page }) => {
+  await open(page);
+  const relaxed = await report(page);
+  await page.getByRole('button', { name: 'Generate only' }).click();
+  await settled(page);
+  const front = await report(page);
+  expect(front.count).toBe(relaxed.count);
+  expect(front.digest).not.toBe(relaxed.digest);
+  await page.getByRole('button', { name: 'Relax one step' }).click();
+  await expect.poll(async () => (await report(page))?.digest ?? front.digest).not.toBe(front.digest);
+});
+
+test('typing a radius samples with it', async ({ page }) => {
+  await open(page);
+  const before = await report(page);
+  const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
+  await box.fill('2');
+  await box.press('Enter');
+  await box.blur();
+  await settled(page);
+  expect((await state(page)).settings.radius_share).toBeCloseTo(0.02);
+  expect((await report(page)).count).toBeLessThan(before.count);
+});
+
+test('the report explains its figures and shows them before and after relaxation', async ({ page }) => {
+  await open(page, { width: 1440, height: 900 });
+  const rows = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.report);
+  await expect(page.locator('.figures .term')).toHaveCount(rows.length);
+  const row = rows.find((/** @type {any} */ { key }) => key === 'quality.six');
+  const term = page.getByRole('button', { name: row.label, exact: true });
+  await term.focus();
+  await page.keyboard.press('Shift+Tab');
+  await page.keyboard.press('Tab');
+  await expect(page.locator('#explain')).toContainText(row.help.slice(0, 40));
+  await page.keyboard.press('Escape');
+  await expect(page.locator('#explain')).toBeHidden();
+  const cells = page.locator('.figures tr', { has: term }).locator('td');
+  for (const i of [0, 1]) await expect(cells.nth(i)).toHaveText(/\d/);
+  await expect(page.locator('.plot canvas')).toBeVisible();
+  await page.getByText('As a table').click();
+  expect(await page.locator('.histogram tbody tr').count()).toBeGreaterThan(2);
+});
+
+test('the particles and the picture can be taken away', async ({ page }) => {
+  await open(page);
+  const count = (await report(page)).count;
+  await page.getByRole('button', { name: 'Export', exact: true }).click();
+  const [csv] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: /Export CSV/ }).click()]);
+  expect(csv.suggestedFilename()).toMatch(/^ellipsoid-\d+\.csv$/);
+  const { readFile } = await import('node:fs/promises');
+  const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n').filter((line) => !line.startsWith('#'));
+  expect(lines.length).toBe(count + 1);
+  const [png] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save picture' }).click()]);
+  expect((await readFile(await png.path())).subarray(1, 4).toString()).toBe('PNG');
+});
