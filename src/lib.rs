@@ -12,3 +12,5 @@ pub mod field;
 pub mod math;
 pub mod particles;
 pub mod quality;
+pub mod sampler;
+pub mod spatial;

@@ -1,0 +1,510 @@
+//! The sampler: a state machine that covers a surface with particles and relaxes them.
+//!
+//! [`Sampler::start`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of
+//! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
+//! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
+
+mod project;
+mod relax;
+mod settings;
+mod survey;
+mod uniform;
+
+pub use settings::{Settings, SettingsError, SizeMode};
+pub use uniform::FateCounts;
+
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::particles::Particles;
+use project::{Projector, Tolerance, tolerance};
+use rand_core::{Rng, SeedableRng};
+use relax::Relaxation;
+use serde::Serialize;
+use survey::{Absence, Survey, survey};
+use uniform::Front;
+
+/// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
+/// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
+const PACKING: f64 = 1.08;
+
+/// A wanted count above this is approached through a pilot run with [`PILOT_SHARE`] of it, which shows the packing.
+const PILOT_FROM: f64 = 8_000.0;
+/// Size of a pilot run as a share of the wanted count.
+const PILOT_SHARE: f64 = 1.0 / 20.0;
+
+/// A wanted count counts as met within this share.
+const COUNT_TOLERANCE: f64 = 0.03;
+
+/// Attempts at meeting a wanted count.
+const MAX_ATTEMPTS: u32 = 4;
+
+/// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
+/// cover has no hole larger than 1.85 (1.6 of the ideal).
+const UNCOVERED: f32 = 2.0;
+
+/// What the sampler is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Nothing started.
+    #[default]
+    Idle,
+    /// Looking for a first point on every component.
+    Seeding,
+    /// Placing particles, level by level.
+    Generation,
+    /// Relaxing them.
+    Relaxation,
+    /// Finished or stopped.
+    Done,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// Everything done.
+    Complete,
+    /// Stopped by the caller; what was there stays.
+    Cancelled,
+    /// The limit on particles was reached.
+    Cap,
+    /// No point of the surface in the box.
+    NoSurface,
+    /// f has the same value everywhere.
+    Constant,
+    /// f has no value anywhere in the box.
+    Undefined,
+    /// The radius is too large for the surface: no child fits.
+    OneParticle,
+}
+
+/// What [`Sampler::start`] found out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Start {
+    /// Repulsion radius of the run.
+    pub radius: f64,
+    /// Particles to expect.
+    pub predicted_count: u64,
+    /// Estimated area of the surface in the box.
+    pub area: f64,
+    /// Things the user should know, in words.
+    pub warnings: Vec<String>,
+}
+
+/// State after a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct Progress {
+    /// Current phase.
+    pub phase: Phase,
+    /// Particles in the columns that will stay.
+    pub particles: usize,
+    /// Generation level under way.
+    pub level: u32,
+    /// Relaxation steps done.
+    pub relax_step: u32,
+    /// Relaxation steps asked for.
+    pub relax_steps: u32,
+    /// Field evaluations so far, all phases.
+    pub evaluations: u64,
+    /// Estimated share of the work done.
+    pub fraction: f64,
+    /// Set once the run has ended.
+    pub stop_reason: Option<StopReason>,
+    /// A sentence for the user where the reason needs one.
+    pub message: Option<String>,
+    /// Repulsion radius.
+    pub radius: f64,
+    /// Whether particles that were there before this step have moved or gone.
+    pub moved: bool,
+}
+
+/// Evaluations by phase, and what became of the children.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Counts {
+    /// Evaluations of the survey.
+    pub seeding_evaluations: u64,
+    /// Evaluations of the fronts, all attempts.
+    pub generation_evaluations: u64,
+    /// Evaluations of the relaxation.
+    pub relaxation_evaluations: u64,
+    /// Fates of the children of the last attempt.
+    pub fates: FateCounts,
+    /// Fronts started, each from a seed of its own.
+    pub seeds: u32,
+}
+
+/// Samples one surface at a time.
+#[derive(Clone)]
+pub struct Sampler {
+    settings: Settings,
+    bounds: Bounds,
+    radius: f64,
+    tolerance: Tolerance,
+    phase: Phase,
+    stop_reason: Option<StopReason>,
+    survey: Survey,
+    /// Next survey point to check for cover.
+    next_seed: usize,
+    /// Survey points in the order in which they are tried: this one first, the others in grid order.
+    first_seed: usize,
+    attempt: u32,
+    /// Whether the attempt under way only measures the packing.
+    pilot: bool,
+    projector: Projector,
+    front: Front,
+    relaxation: Relaxation,
+    particles: Particles,
+    counts: Counts,
+    moved: bool,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Sampler {
+    /// A sampler with nothing to do.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            settings: Settings::default(),
+            bounds: Bounds::cube(1.0),
+            radius: 1.0,
+            tolerance: Tolerance::default(),
+            phase: Phase::Idle,
+            stop_reason: None,
+            survey: Survey::default(),
+            next_seed: 0,
+            first_seed: 0,
+            attempt: 0,
+            pilot: false,
+            projector: Projector::new(),
+            front: Front::new(),
+            relaxation: Relaxation::new(),
+            particles: Particles::default(),
+            counts: Counts::default(),
+            moved: false,
+        }
+    }
+
+    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay.
+    #[must_use]
+    pub fn particles(&self) -> &Particles {
+        &self.particles
+    }
+
+    /// Counts of the run so far.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        Counts { fates: self.front.fates, ..self.counts.clone() }
+    }
+
+    /// Energy per particle before the first relaxation step and after each: Σ exp(−d²/2σ²) over pairs, cut off at 3σ.
+    #[must_use]
+    pub fn energy(&self) -> &[f64] {
+        &self.relaxation.energy
+    }
+
+    /// Repulsion radius r of the run.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The settings of the run.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Starts a run: surveys the field (about 40,000 evaluations) and fixes the radius. Particles of an earlier run are
+    /// dropped.
+    ///
+    /// # Errors
+    ///
+    /// If a setting or the box is invalid; an earlier run is then left as it is.
+    pub fn start(
+        &mut self,
+        field: &mut dyn Field,
+        bounds: &Bounds,
+        settings: &Settings,
+    ) -> Result<Start, SettingsError> {
+        settings.validate()?;
+        if !bounds.is_valid() {
+            return Err(SettingsError::Box);
+        }
+        self.settings = *settings;
+        self.bounds = *bounds;
+        self.particles.clear();
+        self.relaxation.clear();
+        self.counts = Counts::default();
+        self.projector.evaluations = 0;
+        self.stop_reason = None;
+        self.attempt = 0;
+        self.pilot = false;
+        self.survey = survey(field, bounds, &mut self.projector);
+        self.counts.seeding_evaluations = self.projector.evaluations;
+
+        let area = self.survey.area;
+        // Hexagonal packing: each particle takes 2√3 r².
+        let per_radius_sq = area * PACKING / (2.0 * SQRT_3);
+        self.radius = match settings.size_mode {
+            SizeMode::Radius => settings.radius_share * bounds.diagonal(),
+            SizeMode::Count => {
+                let wanted = f64::from(settings.count);
+                self.pilot = wanted > PILOT_FROM;
+                let first = if self.pilot { (wanted * PILOT_SHARE).max(1_500.0) } else { wanted };
+                let radius = (per_radius_sq / first).sqrt();
+                if radius > 0.0 { radius } else { settings.radius_share * bounds.diagonal() }
+            }
+        };
+        let predicted = match settings.size_mode {
+            SizeMode::Radius => (per_radius_sq / (self.radius * self.radius)).round(),
+            SizeMode::Count => f64::from(settings.count),
+        };
+        let mut warnings = Vec::new();
+        if predicted > f64::from(settings.max_particles) {
+            warnings.push(format!(
+                "about {predicted:.0} particles would fit, more than the limit of {}; the run will stop there",
+                settings.max_particles
+            ));
+        }
+        self.begin_attempt();
+        Ok(Start { radius: self.radius, predicted_count: predicted as u64, area, warnings })
+    }
+
+    /// Empties the columns and prepares a front of the present radius.
+    fn begin_attempt(&mut self) {
+        self.moved = true;
+        self.particles.clear();
+        self.tolerance = tolerance(self.radius as f32, self.survey.resolution, self.survey.gradient_scale);
+        self.front.reset(
+            self.radius as f32,
+            self.settings.match_tolerance as f32,
+            self.tolerance,
+            &self.bounds,
+            self.settings.max_particles as usize,
+        );
+        self.counts.seeds = 0;
+        self.next_seed = 0;
+        let candidates = self.survey.position.len() as u64;
+        self.phase = Phase::Seeding;
+        self.first_seed = if candidates == 0 {
+            0
+        } else {
+            (rand_pcg::Pcg32::seed_from_u64(self.settings.seed).next_u64() % candidates) as usize
+        };
+    }
+
+    /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
+    pub fn relax(&mut self, steps: u32) {
+        if self.phase == Phase::Done && self.particles.len() > 1 {
+            self.settings.relax_steps = self.relaxation.steps_done() + steps;
+            self.stop_reason = None;
+            self.phase = Phase::Relaxation;
+            self.relaxation.begin(
+                self.radius as f32,
+                self.tolerance,
+                &self.bounds,
+                self.settings.relax_steps,
+            );
+        }
+    }
+
+    /// Ends the run where it is; the particles placed so far stay.
+    pub fn cancel(&mut self) {
+        if matches!(self.phase, Phase::Seeding | Phase::Generation | Phase::Relaxation) {
+            if self.phase == Phase::Relaxation {
+                self.moved |= self.relaxation.abandon(&mut self.particles);
+            }
+            self.front.stop(&mut self.particles);
+            self.finish(StopReason::Cancelled);
+        }
+    }
+
+    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
+    /// relaxation step.
+    pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
+        let mut left = budget;
+        let before = self.projector.evaluations;
+        while left > 0 {
+            match self.phase {
+                Phase::Idle | Phase::Done => break,
+                Phase::Seeding => left = self.seed(left),
+                Phase::Generation => {
+                    let start = self.projector.evaluations;
+                    left = self.front.step(field, &mut self.projector, &mut self.particles, left);
+                    self.counts.generation_evaluations += self.projector.evaluations - start;
+                    if self.front.is_done() {
+                        if self.front.capped {
+                            self.end_generation();
+                        } else {
+                            self.phase = Phase::Seeding;
+                        }
+                    }
+                }
+                Phase::Relaxation => {
+                    let start = self.projector.evaluations;
+                    let (rest, moved) = self.relaxation.step(
+                        field,
+                        &mut self.projector,
+                        &mut self.front.grid,
+                        &mut self.particles,
+                        left,
+                    );
+                    self.moved |= moved;
+                    left = rest;
+                    self.counts.relaxation_evaluations += self.projector.evaluations - start;
+                    if self.relaxation.is_done() {
+                        let reason = if self.front.capped { StopReason::Cap } else { StopReason::Complete };
+                        self.finish(reason);
+                    }
+                }
+            }
+        }
+        debug_assert!(self.projector.evaluations >= before);
+        self.progress()
+    }
+
+    /// The state as of now; the `moved` flag is cleared by reading it.
+    pub fn progress(&mut self) -> Progress {
+        let particles = match self.phase {
+            Phase::Generation => self.front.settled(),
+            _ => self.particles.len(),
+        };
+        let expected = self.survey.area * PACKING / (2.0 * SQRT_3 * self.radius * self.radius);
+        let relax_steps = f64::from(self.settings.relax_steps);
+        // A relaxation step costs about a quarter of the generation per particle.
+        let generation = 1.0 / (1.0 + 0.25 * relax_steps);
+        let fraction = match self.phase {
+            Phase::Idle => 0.0,
+            Phase::Seeding | Phase::Generation => {
+                generation * (particles as f64 / expected.max(1.0)).min(0.99)
+            }
+            Phase::Relaxation => {
+                generation
+                    + (1.0 - generation) * f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0)
+            }
+            Phase::Done => 1.0,
+        };
+        Progress {
+            phase: self.phase,
+            particles,
+            level: self.particles.level[..particles].last().copied().unwrap_or(0),
+            relax_step: self.relaxation.steps_done(),
+            relax_steps: self.settings.relax_steps,
+            evaluations: self.projector.evaluations,
+            fraction,
+            stop_reason: self.stop_reason,
+            message: self.message(),
+            radius: self.radius,
+            moved: core::mem::take(&mut self.moved),
+        }
+    }
+
+    fn message(&self) -> Option<String> {
+        Some(match self.stop_reason? {
+            StopReason::Complete | StopReason::Cancelled => return None,
+            StopReason::Cap => format!(
+                "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
+                self.settings.max_particles
+            ),
+            StopReason::NoSurface if self.survey.absence == Absence::Proven => {
+                "No surface in this box: f keeps one sign throughout (proven by interval arithmetic).".into()
+            }
+            StopReason::NoSurface => {
+                "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
+                    .into()
+            }
+            StopReason::Constant => {
+                "f has the same value everywhere in the box, so there is no surface to sample.".into()
+            }
+            StopReason::Undefined => "f has no value anywhere in the box.".into(),
+            StopReason::OneParticle => {
+                "The radius is too large for this surface: only one particle fits. Choose a smaller radius."
+                    .into()
+            }
+        })
+    }
+
+    /// Looks for the next survey point that no particle covers and starts a front there.
+    fn seed(&mut self, mut budget: u32) -> u32 {
+        let count = self.survey.position.len();
+        while budget > 0 {
+            if self.next_seed >= count {
+                self.end_generation();
+                return budget;
+            }
+            budget -= 1;
+            let i = match self.next_seed {
+                0 => self.first_seed,
+                k if k <= self.first_seed => k - 1,
+                k => k,
+            };
+            self.next_seed += 1;
+            let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
+            let clear = UNCOVERED * self.radius as f32;
+            if !self.front.is_covered(&self.particles, position, normal, clear) {
+                if self.particles.len() >= self.settings.max_particles as usize {
+                    self.front.capped = true;
+                    self.end_generation();
+                    return budget;
+                }
+                self.front.add_seed(&mut self.particles, position, normal);
+                self.counts.seeds += 1;
+                self.phase = Phase::Generation;
+                return budget;
+            }
+        }
+        budget
+    }
+
+    /// Decides, once the surface is covered, whether the count is met, and goes on to the relaxation.
+    fn end_generation(&mut self) {
+        let count = self.particles.len();
+        if count == 0 {
+            let reason = match self.survey.absence {
+                Absence::Constant => StopReason::Constant,
+                Absence::Undefined => StopReason::Undefined,
+                _ => StopReason::NoSurface,
+            };
+            return self.finish(reason);
+        }
+        let wanted = f64::from(self.settings.count);
+        let miss = count as f64 / wanted;
+        self.attempt += 1;
+        if self.settings.size_mode == SizeMode::Count
+            && (self.pilot || (miss - 1.0).abs() > COUNT_TOLERANCE)
+            && self.attempt < MAX_ATTEMPTS
+            && count > 1
+            && !self.front.capped
+        {
+            self.radius *= miss.sqrt();
+            self.pilot = false;
+            return self.begin_attempt();
+        }
+        if count == 1 {
+            self.finish(StopReason::OneParticle);
+        } else if self.settings.relax_steps == 0 {
+            self.finish(if self.front.capped { StopReason::Cap } else { StopReason::Complete });
+        } else {
+            self.phase = Phase::Relaxation;
+            self.relaxation.begin(
+                self.radius as f32,
+                self.tolerance,
+                &self.bounds,
+                self.settings.relax_steps,
+            );
+        }
+    }
+
+    fn finish(&mut self, reason: StopReason) {
+        self.stop_reason = Some(reason);
+        self.phase = Phase::Done;
+    }
+}
+
+const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -1,0 +1,585 @@
+//! Uniform sampling, paper §4: a front of particles that places six children around each, 60° apart in the tangent
+//! plane and 2r away on the surface, generation level by generation level.
+//!
+//! # Differs from the paper
+//!
+//! * The paper speaks of a stack of untreated particles; its rings (Fig. 11) are those of a queue, used here.
+//! * "If an existing particle corresponds": a child corresponds when a particle of the same sheet is within the match
+//!   radius, a share of 2r. The paper takes a matched particle out of the neighbours, so that two children cannot match
+//!   it; here it stays, which makes the match radius a lower bound on all distances.
+//! * A child is first placed on the circle by the curvature of the particles around its parent, without evaluating the
+//!   field, and compared with the particles there at that place. Only a free child is projected, at about two
+//!   evaluations, and then compared again at its final place. All free children of a level are projected together.
+
+use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
+use crate::field::Field;
+use crate::math::{Bounds, LANES, Lanes, tangent_frame};
+use crate::particles::{Particles, SlotFate, Slots};
+use crate::spatial::{CellGrid, Neighbours, Place};
+use glam::Vec3;
+
+/// Directions of the six slots in the frame (V̂⁰, N̂ × V̂⁰): paper §4.2.
+const SLOT_DIRECTION: [[f32; 2]; 6] = {
+    const SIN_60: f32 = 0.866_025_4;
+    [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
+};
+
+/// Particles within this many radii of a parent tell its curvature: the six ideal neighbours are at 2, the next ring
+/// at 3.46.
+const RING: f32 = 2.6;
+
+/// Most particles that the curvature is fitted to; six fit on a lattice.
+const RING_CAPACITY: usize = 12;
+
+/// Weight of "equal curvature in all directions" in the fit, which decides what the neighbours leave open.
+const ISOTROPY: f32 = 0.005;
+
+/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
+/// no more than 45°, give or take [`RISE_SLACK`]: this is sin² 45°.
+const MAX_RISE_SQ: f32 = 0.5;
+
+/// Distance, as a share of the match radius, below which the direction between two particles tells nothing.
+const RISE_SLACK: f32 = 0.5;
+
+/// A gathered neighbourhood holds every particle within 2r plus the match radius of the parent. The grid's cells are
+/// this much larger, which makes a query read about 16 cells of five particles.
+const CELL_PER_REACH: f32 = 1.2;
+
+/// Fates of children, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct FateCounts {
+    /// New particles, seeds not counted.
+    pub added: u64,
+    /// Slots where an existing particle sits.
+    pub matched: u64,
+    /// No surface met on the circle.
+    pub not_converged: u64,
+    /// Outside the clip box.
+    pub outside: u64,
+    /// No value or no gradient.
+    pub undefined: u64,
+    /// Not placed because the limit on particles was reached.
+    pub capped: u64,
+}
+
+impl FateCounts {
+    fn count(&mut self, fate: SlotFate) {
+        match fate {
+            SlotFate::Added => self.added += 1,
+            SlotFate::Matched => self.matched += 1,
+            SlotFate::NotConverged => self.not_converged += 1,
+            SlotFate::Outside => self.outside += 1,
+            SlotFate::Undefined => self.undefined += 1,
+            SlotFate::Capped => self.capped += 1,
+            SlotFate::Open | SlotFate::Parent => {}
+        }
+    }
+}
+
+/// A free child on its way to the surface. Its provisional place stands in the particle columns.
+#[derive(Clone, Copy, Debug)]
+struct Child {
+    circle: Circle,
+    slot: u32,
+    place: Place,
+    /// Distance to the nearest particle of its sheet when it was found free.
+    clearance: f32,
+}
+
+/// What the front does next within a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Find the free slots of particle `next`.
+    Place,
+    /// Project the children from `next` on.
+    Project,
+    /// Decide the final fate of child `next`.
+    Settle,
+}
+
+/// The advancing front.
+#[derive(Clone)]
+pub(super) struct Front {
+    radius: f32,
+    match_radius: f32,
+    tolerance: Tolerance,
+    bounds: Bounds,
+    max_particles: usize,
+    pub(super) grid: CellGrid,
+    found: Neighbours,
+    normals: NormalColumns,
+    stage: Stage,
+    next: usize,
+    /// Particles of the level under way.
+    level: core::ops::Range<usize>,
+    /// Particles before this index are final; provisional children stand from here on.
+    settled: usize,
+    children: Vec<Child>,
+    circles: Vec<Circle>,
+    landings: Vec<Landing>,
+    batch: Vec<Landing>,
+    /// Largest distance between a provisional and a final place in this level.
+    drift: f32,
+    pub(super) fates: FateCounts,
+    pub(super) capped: bool,
+}
+
+/// Normals of a gathered neighbourhood, column by column, and which of it is on the parent's side.
+#[derive(Clone, Debug, Default)]
+struct NormalColumns {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+}
+
+/// Second fundamental form in the frame (V̂⁰, N̂ × V̂⁰): the normal turns by `[a b; b c] · offset`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    a: f32,
+    b: f32,
+    c: f32,
+}
+
+impl Front {
+    pub(super) fn new() -> Self {
+        Self {
+            radius: 1.0,
+            match_radius: 1.0,
+            tolerance: Tolerance::default(),
+            bounds: Bounds::cube(1.0),
+            max_particles: 0,
+            grid: CellGrid::new(1.0),
+            found: Neighbours::default(),
+            normals: NormalColumns::default(),
+            stage: Stage::Place,
+            next: 0,
+            level: 0..0,
+            settled: 0,
+            children: Vec::new(),
+            circles: Vec::with_capacity(BATCH),
+            landings: Vec::new(),
+            batch: Vec::with_capacity(BATCH),
+            drift: 0.0,
+            fates: FateCounts::default(),
+            capped: false,
+        }
+    }
+
+    /// Prepares for particles of one radius; `match_tolerance` is the match radius as a share of 2r.
+    pub(super) fn reset(
+        &mut self,
+        radius: f32,
+        match_tolerance: f32,
+        tolerance: Tolerance,
+        bounds: &Bounds,
+        max_particles: usize,
+    ) {
+        self.radius = radius;
+        self.match_radius = 2.0 * radius * match_tolerance;
+        self.tolerance = tolerance;
+        self.bounds = *bounds;
+        self.max_particles = max_particles;
+        self.grid.reset(CELL_PER_REACH * self.reach());
+        self.stage = Stage::Place;
+        self.next = 0;
+        self.level = 0..0;
+        self.settled = 0;
+        self.children.clear();
+        self.landings.clear();
+        self.drift = 0.0;
+        self.fates = FateCounts::default();
+        self.capped = false;
+    }
+
+    /// Everything that a child can collide with is within this distance of its parent.
+    fn reach(&self) -> f32 {
+        (2.0 * self.radius + self.match_radius).max(RING * self.radius)
+    }
+
+    /// Whether every particle has placed its children.
+    pub(super) fn is_done(&self) -> bool {
+        self.level.is_empty()
+    }
+
+    /// Particles that are final.
+    pub(super) fn settled(&self) -> usize {
+        self.settled
+    }
+
+    /// Whether a particle of the sheet of (`position`, `normal`) is within `distance` of it.
+    pub(super) fn is_covered(
+        &mut self,
+        particles: &Particles,
+        position: Vec3,
+        normal: Vec3,
+        distance: f32,
+    ) -> bool {
+        self.grid.gather(position, distance, &mut self.found);
+        self.found.index[..self.found.len()].iter().any(|&j| particles.normal[j as usize].dot(normal) > 0.0)
+    }
+
+    /// Adds a first particle. Only between levels.
+    pub(super) fn add_seed(&mut self, particles: &mut Particles, position: Vec3, normal: Vec3) {
+        debug_assert!(self.is_done());
+        let index = particles.len();
+        self.grid.insert(position, index as u32);
+        push(particles, position, normal, self.radius, Particles::NO_PARENT, 0, Slots::default());
+        self.level = index..index + 1;
+        self.settled = index + 1;
+        self.stage = Stage::Place;
+        self.next = index;
+    }
+
+    /// Does up to `budget` units (a particle's slots, a child's projection, a child's fate) and returns what is left.
+    pub(super) fn step(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &mut Particles,
+        mut budget: u32,
+    ) -> u32 {
+        while budget > 0 && !self.is_done() {
+            match self.stage {
+                Stage::Place => {
+                    if self.next < self.level.end {
+                        self.place_children(field, particles, self.next);
+                        self.next += 1;
+                        budget -= 1;
+                    } else {
+                        (self.stage, self.next) = (Stage::Project, 0);
+                        self.landings.clear();
+                        self.drift = 0.0;
+                    }
+                }
+                Stage::Project => {
+                    let count = (self.children.len() - self.next).min(BATCH).min(budget as usize);
+                    if count > 0 {
+                        self.project_children(field, projector, particles, count);
+                        self.next += count;
+                        budget -= count as u32;
+                    } else {
+                        (self.stage, self.next) = (Stage::Settle, 0);
+                    }
+                }
+                Stage::Settle => {
+                    if self.next < self.children.len() {
+                        self.settle_child(particles, self.next);
+                        self.next += 1;
+                        budget -= 1;
+                    } else {
+                        truncate(particles, self.settled);
+                        self.children.clear();
+                        self.level = self.level.end..self.settled;
+                        (self.stage, self.next) = (Stage::Place, self.level.start);
+                        if self.capped {
+                            self.level = self.settled..self.settled;
+                        }
+                    }
+                }
+            }
+        }
+        budget
+    }
+
+    /// Ends the front where it is: provisional children are dropped.
+    pub(super) fn stop(&mut self, particles: &mut Particles) {
+        truncate(particles, self.settled);
+        self.children.clear();
+        self.level = self.settled..self.settled;
+    }
+
+    /// Finds the free slots of particle `parent` and enters a provisional child in each: paper §4.2 and §4.4.
+    fn place_children(&mut self, field: &mut dyn Field, particles: &mut Particles, parent: usize) {
+        let (p, n) = (particles.position[parent], particles.normal[parent]);
+        let reach = self.reach();
+        let mut found = core::mem::take(&mut self.found);
+        self.grid.gather(p, reach, &mut found);
+        self.normals.fill(&found, particles);
+
+        let grandparent = particles.parent[parent];
+        let is_seed = grandparent == Particles::NO_PARENT;
+        let (u, w) = if is_seed {
+            tangent_frame(n)
+        } else {
+            // Slot 0 of every particle but a seed is its parent (paper §4.4).
+            let towards = particles.position[grandparent as usize] - p;
+            let u = (towards - n * towards.dot(n)).normalize_or_zero();
+            if u == Vec3::ZERO { tangent_frame(n) } else { (u, n.cross(u)) }
+        };
+        let shape =
+            if is_seed { shape_at(field, p, u, w) } else { self.fit_shape(&found, particles, parent, u, w) };
+
+        let (distance, slack_sq) = (2.0 * self.radius, self.slack_sq());
+        let level = particles.level[parent] + 1;
+        let mut slots = particles.slots[parent];
+        let mut count = found.len();
+        if !is_seed {
+            slots.set(0, SlotFate::Parent);
+        }
+        for (k, &[cos, sin]) in SLOT_DIRECTION.iter().enumerate().skip(usize::from(!is_seed)) {
+            let direction = u * cos + w * sin;
+            // The surface falls away by κ d²/2 in a distance d, hence sin θ = −κ_V r at d = 2r.
+            let (su, sw) = (shape.a * cos + shape.b * sin, shape.b * cos + shape.c * sin);
+            let curvature = su * cos + sw * sin;
+            let sin_theta = (-curvature * self.radius).clamp(-0.9, 0.9);
+            let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
+            let offset = (direction * cos_theta + n * sin_theta) * distance;
+            let normal = (n + (u * su + w * sw) * (distance * cos_theta)).try_normalize().unwrap_or(n);
+
+            let nearest_sq = self.normals.nearest_sq(&found, count, offset, normal, slack_sq);
+            if nearest_sq <= self.match_radius * self.match_radius {
+                slots.set(k, SlotFate::Matched);
+                self.fates.count(SlotFate::Matched);
+                continue;
+            }
+            if particles.len() >= self.max_particles {
+                slots.set(k, SlotFate::Capped);
+                self.fates.count(SlotFate::Capped);
+                self.capped = true;
+                continue;
+            }
+            let index = particles.len() as u32;
+            let position = p + offset;
+            push(particles, position, normal, self.radius, parent as u32, level, initial_slots());
+            self.children.push(Child {
+                circle: Circle {
+                    centre: p,
+                    normal: n,
+                    direction,
+                    radius: distance,
+                    guess: [cos_theta, sin_theta],
+                },
+                slot: k as u32,
+                place: self.grid.insert(position, index),
+                clearance: nearest_sq.sqrt(),
+            });
+            found.append(index, offset, nearest_sq);
+            self.normals.append(count, normal);
+            count += 1;
+        }
+        particles.slots[parent] = slots;
+        self.found = found;
+    }
+
+    /// Least-squares fit of the second fundamental form to the normals of the settled particles around `parent`.
+    fn fit_shape(&self, found: &Neighbours, particles: &Particles, parent: usize, u: Vec3, w: Vec3) -> Shape {
+        // Summed in the order of the indices, so that the result does not depend on how the grid is made.
+        let mut ring = [(u32::MAX, 0_u32); RING_CAPACITY];
+        let mut count = 0;
+        let reach_sq = (RING * self.radius) * (RING * self.radius);
+        for m in 0..found.len() {
+            let j = found.index[m];
+            if found.distance_sq[m] <= reach_sq && (j as usize) < self.settled && j as usize != parent {
+                let mut at = count.min(RING_CAPACITY - 1);
+                if count == RING_CAPACITY && ring[at].0 < j {
+                    continue;
+                }
+                while at > 0 && ring[at - 1].0 > j {
+                    ring[at] = ring[at - 1];
+                    at -= 1;
+                }
+                ring[at] = (j, m as u32);
+                count = (count + 1).min(RING_CAPACITY);
+            }
+        }
+        let n = particles.normal[parent];
+        let (mut xx, mut xy, mut yy) = (0.0_f32, 0.0, 0.0);
+        let (mut xp, mut yp, mut xq, mut yq) = (0.0_f32, 0.0, 0.0, 0.0);
+        for &(j, m) in &ring[..count] {
+            let offset = found.offset(m as usize);
+            let turn = particles.normal[j as usize] - n;
+            // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
+            if turn.length_squared() > 1.0 {
+                continue;
+            }
+            let (x, y, p, q) = (offset.dot(u), offset.dot(w), turn.dot(u), turn.dot(w));
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
+            xp += x * p;
+            yp += y * p;
+            xq += x * q;
+            yq += y * q;
+        }
+        let prior = ISOTROPY * (xx + yy);
+        // Normal equations of a x + b y = p, b x + c y = q with the prior (a − c)² + b², solved by Cramer's rule.
+        let (m11, m12, m13) = (xx + prior, xy, -prior);
+        let (m22, m23, m33) = (xx + yy + prior, xy, yy + prior);
+        let (r1, r2, r3) = (xp, yp + xq, yq);
+        let (c11, c12, c13) = (m22 * m33 - m23 * m23, m13 * m23 - m12 * m33, m12 * m23 - m13 * m22);
+        let determinant = m11 * c11 + m12 * c12 + m13 * c13;
+        let (c22, c23, c33) = (m11 * m33 - m13 * m13, m12 * m13 - m11 * m23, m11 * m22 - m12 * m12);
+        let inverse = 1.0 / determinant;
+        let shape = Shape {
+            a: (c11 * r1 + c12 * r2 + c13 * r3) * inverse,
+            b: (c12 * r1 + c22 * r2 + c23 * r3) * inverse,
+            c: (c13 * r1 + c23 * r2 + c33 * r3) * inverse,
+        };
+        if shape.a.is_finite() && shape.b.is_finite() && shape.c.is_finite() {
+            shape
+        } else {
+            Shape::default()
+        }
+    }
+
+    fn project_children(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        count: usize,
+    ) {
+        self.circles.clear();
+        self.circles.extend(self.children[self.next..self.next + count].iter().map(|child| child.circle));
+        projector.land_on_circles(field, &self.circles, self.tolerance, &mut self.batch);
+        for (k, landing) in self.batch.iter().enumerate() {
+            if let Landing::On { position, .. } = landing {
+                let provisional = particles.position[self.settled + self.next + k];
+                self.drift = self.drift.max((*position - provisional).length());
+            }
+        }
+        self.landings.extend_from_slice(&self.batch);
+    }
+
+    /// Final fate of child `k` of the level, in queue order: paper §4.4, Algorithm 2.
+    fn settle_child(&mut self, particles: &mut Particles, k: usize) {
+        let child = self.children[k];
+        // Settled children close up over those that were not added.
+        let provisional = self.level.end + k;
+        let parent = particles.parent[provisional] as usize;
+        let fate = match self.landings[k] {
+            Landing::NotConverged => SlotFate::NotConverged,
+            Landing::Undefined => SlotFate::Undefined,
+            Landing::On { position, .. } if !self.bounds.contains(position) => SlotFate::Outside,
+            Landing::On { position, normal } => {
+                let moved = (position - particles.position[provisional]).length();
+                // Nothing can be nearer than the clearance less what both have moved.
+                let safe = child.clearance - moved - self.drift > self.match_radius;
+                if !safe && self.collides(particles, position, normal) {
+                    SlotFate::Matched
+                } else {
+                    let index = self.settled;
+                    self.grid.update(child.place, position, index as u32);
+                    particles.position[index] = position;
+                    particles.normal[index] = normal;
+                    particles.parent[index] = parent as u32;
+                    self.settled += 1;
+                    SlotFate::Added
+                }
+            }
+        };
+        if fate != SlotFate::Added {
+            self.grid.remove(child.place);
+        }
+        self.fates.count(fate);
+        particles.slots[parent].set(child.slot as usize, fate);
+    }
+
+    /// Squared slack of [`RISE_SLACK`].
+    fn slack_sq(&self) -> f32 {
+        (RISE_SLACK * self.match_radius) * (RISE_SLACK * self.match_radius)
+    }
+
+    /// Whether a particle at `offset` with the normal `other` belongs to the sheet of a point with the normal `normal`.
+    fn same_sheet(&self, offset: Vec3, normal: Vec3, other: Vec3) -> bool {
+        let rise = offset.dot(normal);
+        normal.dot(other) > 0.0 && rise * rise <= MAX_RISE_SQ * (offset.length_squared() + self.slack_sq())
+    }
+
+    /// Whether a settled particle of the same sheet is within the match radius.
+    fn collides(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
+        self.grid.gather(position, self.match_radius, &mut self.found);
+        let settled = self.settled;
+        (0..self.found.len()).any(|m| {
+            let j = self.found.index[m] as usize;
+            j < settled && self.same_sheet(self.found.offset(m), normal, particles.normal[j])
+        })
+    }
+}
+
+impl NormalColumns {
+    /// Reads the normals of `found`; the columns are padded to whole lanes with normals that belong to no sheet.
+    fn fill(&mut self, found: &Neighbours, particles: &Particles) {
+        // Room for the neighbours, six children and the padding.
+        let capacity = (found.len() + 6).next_multiple_of(LANES);
+        for column in [&mut self.x, &mut self.y, &mut self.z] {
+            column.clear();
+            column.resize(capacity, 0.0);
+        }
+        for (m, &j) in found.index[..found.len()].iter().enumerate() {
+            let n = particles.normal[j as usize];
+            (self.x[m], self.y[m], self.z[m]) = (n.x, n.y, n.z);
+        }
+    }
+
+    fn append(&mut self, m: usize, n: Vec3) {
+        (self.x[m], self.y[m], self.z[m]) = (n.x, n.y, n.z);
+    }
+
+    /// Squared distance from `offset` to the nearest of the first `count` neighbours that are on its sheet.
+    #[inline(always)]
+    fn nearest_sq(&self, found: &Neighbours, count: usize, offset: Vec3, normal: Vec3, slack_sq: f32) -> f32 {
+        let (ox, oy, oz) = (Lanes::splat(offset.x), Lanes::splat(offset.y), Lanes::splat(offset.z));
+        let (nx, ny, nz) = (Lanes::splat(normal.x), Lanes::splat(normal.y), Lanes::splat(normal.z));
+        let mut nearest = Lanes::splat(f32::INFINITY);
+        let chunk = |column: &[f32], m: usize| Lanes(column.as_chunks::<LANES>().0[m]);
+        for m in 0..count.div_ceil(LANES) {
+            let (dx, dy, dz) = (chunk(&found.x, m) - ox, chunk(&found.y, m) - oy, chunk(&found.z, m) - oz);
+            let distance_sq = dx * dx + dy * dy + dz * dz;
+            let rise = dx * nx + dy * ny + dz * nz;
+            let along = nx * chunk(&self.x, m) + ny * chunk(&self.y, m) + nz * chunk(&self.z, m);
+            let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * Lanes::splat(MAX_RISE_SQ);
+            for lane in 0..LANES {
+                let same = along.0[lane] > 0.0 && excess.0[lane] <= 0.0;
+                let d = if same { distance_sq.0[lane] } else { f32::INFINITY };
+                nearest.0[lane] = if d < nearest.0[lane] { d } else { nearest.0[lane] };
+            }
+        }
+        nearest.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+    }
+}
+
+/// Second fundamental form at a seed, from the Hessian: [uᵀHu uᵀHw; · wᵀHw]/|∇f|.
+fn shape_at(field: &mut dyn Field, p: Vec3, u: Vec3, w: Vec3) -> Shape {
+    let jet = field.jet(p.as_dvec3());
+    let (u, w) = (u.as_dvec3(), w.as_dvec3());
+    let slope = jet.gradient.length();
+    let entry = |a: glam::DVec3, b: glam::DVec3| {
+        let k = (a.dot(jet.hessian.apply(b)) / slope) as f32;
+        if k.is_finite() { k } else { 0.0 }
+    };
+    Shape { a: entry(u, u), b: entry(u, w), c: entry(w, w) }
+}
+
+/// Slots of a new particle: the parent's is known.
+fn initial_slots() -> Slots {
+    let mut slots = Slots::default();
+    slots.set(0, SlotFate::Parent);
+    slots
+}
+
+fn push(
+    particles: &mut Particles,
+    position: Vec3,
+    normal: Vec3,
+    radius: f32,
+    parent: u32,
+    level: u32,
+    slots: Slots,
+) {
+    particles.position.push(position);
+    particles.normal.push(normal);
+    particles.radius.push(radius);
+    particles.parent.push(parent);
+    particles.level.push(level);
+    particles.slots.push(slots);
+}
+
+fn truncate(particles: &mut Particles, len: usize) {
+    particles.position.truncate(len);
+    particles.normal.truncate(len);
+    particles.radius.truncate(len);
+    particles.parent.truncate(len);
+    particles.level.truncate(len);
+    particles.slots.truncate(len);
+}

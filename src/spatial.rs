@@ -1,0 +1,409 @@
+//! A sparse cell grid over points in space: insertion one by one, and all points within a radius.
+//!
+//! Cells are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, found through an open-addressing hash table;
+//! a cell holds its points in blocks of eight, coordinates and all, so that a query reads a few contiguous blocks
+//! and compares eight distances at a time. Memory is proportional to the occupied cells and a query costs the same
+//! at 10³ and 10⁶ points.
+
+use crate::math::{LANES, Lanes};
+use glam::Vec3;
+
+/// No block.
+const NONE: u32 = u32::MAX;
+/// Cell coordinates are kept in 21 bits each, so that three of them make one hash key.
+const COORDINATE_BITS: u32 = 21;
+const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
+/// Key of an empty table entry: no brick has it, because a packed key uses 63 bits.
+const EMPTY: u64 = u64::MAX;
+
+#[derive(Clone, Copy)]
+struct Brick {
+    key: u64,
+    /// First block of each of the eight cells.
+    head: [u32; 8],
+}
+
+const EMPTY_BRICK: Brick = Brick { key: EMPTY, head: [NONE; 8] };
+
+#[derive(Clone, Copy)]
+struct Block {
+    x: Lanes,
+    y: Lanes,
+    z: Lanes,
+    index: [u32; LANES],
+    next: u32,
+    len: u32,
+}
+
+/// Where a point sits in the grid; valid until the grid is cleared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place(u32);
+
+/// Points found by [`CellGrid::gather`]: columns that share an index, offsets measured from the centre of the query.
+///
+/// The columns are longer than [`Neighbours::len`]; what stands behind it is of no meaning.
+#[derive(Clone, Debug, Default)]
+pub struct Neighbours {
+    len: usize,
+    /// Index given at insertion.
+    pub index: Vec<u32>,
+    /// Point minus centre, x.
+    pub x: Vec<f32>,
+    /// Point minus centre, y.
+    pub y: Vec<f32>,
+    /// Point minus centre, z.
+    pub z: Vec<f32>,
+    /// Squared distance.
+    pub distance_sq: Vec<f32>,
+}
+
+impl Neighbours {
+    /// Number of points found.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether nothing was found.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Point `i` minus the centre of the query.
+    #[inline(always)]
+    #[must_use]
+    pub fn offset(&self, i: usize) -> Vec3 {
+        Vec3::new(self.x[i], self.y[i], self.z[i])
+    }
+
+    /// Adds a point by its offset from the centre.
+    #[inline]
+    pub fn append(&mut self, index: u32, offset: Vec3, distance_sq: f32) {
+        self.reserve_block();
+        let m = self.len;
+        self.index[m] = index;
+        (self.x[m], self.y[m], self.z[m]) = (offset.x, offset.y, offset.z);
+        self.distance_sq[m] = distance_sq;
+        self.len += 1;
+    }
+
+    /// Makes room for one more block behind the points found so far.
+    #[inline(always)]
+    fn reserve_block(&mut self) {
+        if self.index.len() < self.len + LANES {
+            let capacity = (2 * self.len + LANES).next_multiple_of(16 * LANES);
+            self.index.resize(capacity, 0);
+            for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.distance_sq] {
+                column.resize(capacity, 0.0);
+            }
+        }
+    }
+}
+
+/// A sparse grid of cubic cells.
+#[derive(Clone)]
+pub struct CellGrid {
+    inverse_cell: f32,
+    table: Vec<Brick>,
+    bricks: usize,
+    blocks: Vec<Block>,
+}
+
+impl CellGrid {
+    /// An empty grid whose cells have the given side.
+    ///
+    /// Fast for query radii near 0.8 of the side.
+    ///
+    /// # Panics
+    ///
+    /// If the side is not positive and finite.
+    #[must_use]
+    pub fn new(cell_side: f32) -> Self {
+        let mut grid = Self { inverse_cell: 0.0, table: Vec::new(), bricks: 0, blocks: Vec::new() };
+        grid.reset(cell_side);
+        grid
+    }
+
+    /// Removes every point, keeps the memory and sets a new side.
+    ///
+    /// # Panics
+    ///
+    /// If the side is not positive and finite.
+    pub fn reset(&mut self, cell_side: f32) {
+        assert!(cell_side > 0.0 && cell_side.is_finite(), "the cell side must be positive, got {cell_side}");
+        self.inverse_cell = 1.0 / cell_side;
+        self.table.fill(EMPTY_BRICK);
+        if self.table.is_empty() {
+            self.table.resize(64, EMPTY_BRICK);
+        }
+        self.bricks = 0;
+        self.blocks.clear();
+    }
+
+    /// Gives all memory back; the grid stays usable after [`CellGrid::reset`].
+    pub fn release(&mut self) {
+        self.table = Vec::new();
+        self.blocks = Vec::new();
+        self.bricks = 0;
+    }
+
+    /// Cell coordinate of `x`, offset so that it is never negative; saturates far outside any sensible box.
+    #[inline(always)]
+    fn coordinate(&self, x: f32) -> u32 {
+        const CENTRE: f32 = (1 << (COORDINATE_BITS - 1)) as f32;
+        // A conversion from float to integer truncates; after the shift the operand is positive, so it is a floor.
+        (x * self.inverse_cell + CENTRE) as u32
+    }
+
+    /// Inserts a point and returns its place. `index` is handed back by queries.
+    pub fn insert(&mut self, point: Vec3, index: u32) -> Place {
+        let (brick_key, cell) = self.cell_of(point);
+        if 2 * (self.bricks + 1) > self.table.len() {
+            self.grow();
+        }
+        let entry = self.find_or_add(brick_key);
+        let mut head = self.table[entry].head[cell];
+        if head == NONE || self.blocks[head as usize].len as usize == LANES {
+            let block = Block {
+                x: Lanes::splat(f32::INFINITY),
+                y: Lanes::splat(f32::INFINITY),
+                z: Lanes::splat(f32::INFINITY),
+                index: [NONE; LANES],
+                next: head,
+                len: 0,
+            };
+            head = self.blocks.len() as u32;
+            self.blocks.push(block);
+            self.table[entry].head[cell] = head;
+        }
+        let block = &mut self.blocks[head as usize];
+        let lane = block.len as usize;
+        block.len += 1;
+        block.x.0[lane] = point.x;
+        block.y.0[lane] = point.y;
+        block.z.0[lane] = point.z;
+        block.index[lane] = index;
+        Place(head * LANES as u32 + lane as u32)
+    }
+
+    /// Takes the point at `place` out of all further queries. Its lane is not used again.
+    pub fn remove(&mut self, place: Place) {
+        let block = &mut self.blocks[place.0 as usize / LANES];
+        block.x.0[place.0 as usize % LANES] = f32::INFINITY;
+    }
+
+    /// Moves the point at `place` to `point` under a new index.
+    pub fn update(&mut self, place: Place, point: Vec3, index: u32) {
+        let (b, lane) = (place.0 as usize / LANES, place.0 as usize % LANES);
+        let block = &mut self.blocks[b];
+        let old = Vec3::new(block.x.0[lane], block.y.0[lane], block.z.0[lane]);
+        let same_cell = [0, 1, 2].iter().all(|&k| self.coordinate(old[k]) == self.coordinate(point[k]));
+        if same_cell {
+            let block = &mut self.blocks[b];
+            block.x.0[lane] = point.x;
+            block.y.0[lane] = point.y;
+            block.z.0[lane] = point.z;
+            block.index[lane] = index;
+        } else {
+            self.remove(place);
+            self.insert(point, index);
+        }
+    }
+
+    /// Collects every point within `radius` of `centre` (boundary included), in an order that depends only on the
+    /// history of insertions. Replaces the content of `found`.
+    pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Neighbours) {
+        found.len = 0;
+        let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
+        let hi = (centre + radius).to_array().map(|x| self.coordinate(x));
+        for bz in lo[2] >> 1..=hi[2] >> 1 {
+            for by in lo[1] >> 1..=hi[1] >> 1 {
+                for bx in lo[0] >> 1..=hi[0] >> 1 {
+                    let Some(brick) = self.find(key(bx, by, bz)) else { continue };
+                    for cell in 0..8u32 {
+                        let head = brick.head[cell as usize];
+                        let (cx, cy, cz) =
+                            (2 * bx + (cell & 1), 2 * by + (cell >> 1 & 1), 2 * bz + (cell >> 2));
+                        let outside =
+                            cx < lo[0] || cx > hi[0] || cy < lo[1] || cy > hi[1] || cz < lo[2] || cz > hi[2];
+                        if head != NONE && !outside {
+                            self.gather_cell(head, centre, radius, found);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn gather_cell(&self, head: u32, centre: Vec3, radius: f32, found: &mut Neighbours) {
+        let radius_sq = radius * radius;
+        let mut next = head;
+        while next != NONE {
+            let block = &self.blocks[next as usize];
+            let dx = block.x - Lanes::splat(centre.x);
+            let dy = block.y - Lanes::splat(centre.y);
+            let dz = block.z - Lanes::splat(centre.z);
+            let distance_sq = dx * dx + dy * dy + dz * dz;
+            let mut near = 0_u32;
+            for lane in 0..LANES {
+                near |= u32::from(distance_sq.0[lane] <= radius_sq) << lane;
+            }
+            if near != 0 {
+                found.reserve_block();
+            }
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                let m = found.len;
+                found.index[m] = block.index[lane];
+                found.x[m] = dx.0[lane];
+                found.y[m] = dy.0[lane];
+                found.z[m] = dz.0[lane];
+                found.distance_sq[m] = distance_sq.0[lane];
+                found.len += 1;
+            }
+            next = block.next;
+        }
+    }
+
+    #[inline(always)]
+    fn cell_of(&self, point: Vec3) -> (u64, usize) {
+        let [x, y, z] = point.to_array().map(|c| self.coordinate(c));
+        (key(x >> 1, y >> 1, z >> 1), (x & 1 | (y & 1) << 1 | (z & 1) << 2) as usize)
+    }
+
+    #[inline(always)]
+    fn slot(&self, key: u64) -> usize {
+        // Multiplicative hashing: the golden ratio in 64 bits spreads consecutive keys; the top bits are the best.
+        (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - self.table.len().trailing_zeros())) as usize
+    }
+
+    #[inline(always)]
+    fn find(&self, key: u64) -> Option<&Brick> {
+        let mut slot = self.slot(key);
+        loop {
+            let brick = &self.table[slot];
+            if brick.key == key {
+                return Some(brick);
+            }
+            if brick.key == EMPTY {
+                return None;
+            }
+            slot = (slot + 1) & (self.table.len() - 1);
+        }
+    }
+
+    fn find_or_add(&mut self, key: u64) -> usize {
+        let mut slot = self.slot(key);
+        loop {
+            if self.table[slot].key == key {
+                return slot;
+            }
+            if self.table[slot].key == EMPTY {
+                self.table[slot].key = key;
+                self.bricks += 1;
+                return slot;
+            }
+            slot = (slot + 1) & (self.table.len() - 1);
+        }
+    }
+
+    fn grow(&mut self) {
+        let new_len = (2 * self.table.len()).max(64);
+        let old = core::mem::replace(&mut self.table, vec![EMPTY_BRICK; new_len]);
+        self.bricks = 0;
+        for brick in old.into_iter().filter(|brick| brick.key != EMPTY) {
+            let slot = self.find_or_add(brick.key);
+            self.table[slot] = brick;
+        }
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.table.capacity() * size_of::<Brick>() + self.blocks.capacity() * size_of::<Block>()
+    }
+}
+
+#[inline(always)]
+fn key(x: u32, y: u32, z: u32) -> u64 {
+    (u64::from(x) & COORDINATE_MASK)
+        | (u64::from(y) & COORDINATE_MASK) << COORDINATE_BITS
+        | (u64::from(z) & COORDINATE_MASK) << (2 * COORDINATE_BITS)
+}
+
+/// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle of [`CellGrid::gather`].
+#[must_use]
+pub fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
+    let near = |p: &Vec3| {
+        let d = *p - centre;
+        d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius
+    };
+    points.iter().enumerate().filter(|(_, p)| near(p)).map(|(i, _)| i as u32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cloud(count: u32) -> Vec<Vec3> {
+        // A Weyl sequence: well spread, deterministic, no two points alike.
+        let step = Vec3::new(0.754_877_7, 0.569_840_3, 0.430_159_7);
+        (0..count).map(|i| (step * i as f32).fract() * 4.0 - 2.0).collect()
+    }
+
+    #[test]
+    fn gather_finds_what_the_naive_search_finds() {
+        let points = cloud(3000);
+        for side in [0.05, 0.3, 1.7] {
+            let mut grid = CellGrid::new(side);
+            for (i, &p) in points.iter().enumerate() {
+                grid.insert(p, i as u32);
+            }
+            let mut found = Neighbours::default();
+            for &centre in points.iter().step_by(37) {
+                for radius in [0.0, 0.1, 0.4] {
+                    grid.gather(centre, radius, &mut found);
+                    let mut got = found.index[..found.len()].to_vec();
+                    got.sort_unstable();
+                    assert_eq!(got, gather_naive(&points, centre, radius), "side {side} radius {radius}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn moved_and_removed_points_are_found_where_they_are_now() {
+        let mut points = cloud(500);
+        let mut grid = CellGrid::new(0.4);
+        let places: Vec<_> = points.iter().enumerate().map(|(i, &p)| grid.insert(p, i as u32)).collect();
+        for (i, place) in places.into_iter().enumerate() {
+            if i % 3 == 0 {
+                grid.remove(place);
+                points[i] = Vec3::INFINITY;
+            } else {
+                points[i] += Vec3::new(0.05, -0.3, 0.01) * (i % 5) as f32;
+                grid.update(place, points[i], i as u32);
+            }
+        }
+        let mut found = Neighbours::default();
+        for &centre in points.iter().filter(|p| p.is_finite()) {
+            grid.gather(centre, 0.5, &mut found);
+            let mut got = found.index[..found.len()].to_vec();
+            got.sort_unstable();
+            assert_eq!(got, gather_naive(&points, centre, 0.5));
+        }
+    }
+
+    #[test]
+    fn a_reset_grid_is_empty() {
+        let mut grid = CellGrid::new(1.0);
+        grid.insert(Vec3::ONE, 7);
+        grid.reset(0.5);
+        let mut found = Neighbours::default();
+        grid.gather(Vec3::ONE, 1.0, &mut found);
+        assert!(found.is_empty());
+    }
+}
