@@ -13,4 +13,7 @@ pub mod math;
 pub mod particles;
 pub mod quality;
 pub mod sampler;
+pub mod session;
 pub mod spatial;
+#[cfg(target_arch = "wasm32")]
+pub mod web;

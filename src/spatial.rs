@@ -36,7 +36,7 @@ struct Block {
 }
 
 /// Where a point sits in the grid; valid until the grid is cleared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place(u32);
 
 /// Points found by [`CellGrid::gather`]: columns that share an index, offsets measured from the centre of the query.

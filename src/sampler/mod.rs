@@ -339,6 +339,7 @@ impl Sampler {
                     left = self.front.step(field, &mut self.projector, &mut self.particles, left);
                     self.counts.generation_evaluations += self.projector.evaluations - start;
                     if self.front.is_done() {
+                        self.front.drop_lone_seed(&mut self.particles);
                         if self.front.capped {
                             self.end_generation();
                         } else {
@@ -486,7 +487,7 @@ impl Sampler {
             self.pilot = false;
             return self.begin_attempt();
         }
-        if count == 1 {
+        if self.front.fates.added == 0 && !self.front.capped {
             self.finish(StopReason::OneParticle);
         } else if self.settings.relax_steps == 0 {
             self.finish(if self.front.capped { StopReason::Cap } else { StopReason::Complete });

@@ -110,6 +110,7 @@ pub(super) struct Front {
     normals: NormalColumns,
     stage: Stage,
     next: usize,
+    seed_place: Place,
     /// Particles of the level under way.
     level: core::ops::Range<usize>,
     /// Particles before this index are final; provisional children stand from here on.
@@ -153,6 +154,7 @@ impl Front {
             normals: NormalColumns::default(),
             stage: Stage::Place,
             next: 0,
+            seed_place: Place::default(),
             level: 0..0,
             settled: 0,
             children: Vec::new(),
@@ -218,11 +220,26 @@ impl Front {
         self.found.index[..self.found.len()].iter().any(|&j| particles.normal[j as usize].dot(normal) > 0.0)
     }
 
+    /// Takes the last seed back if it stayed alone and any other particle, of whatever sheet, is within 2r: a lone
+    /// particle there is the far side of something too small for the radius.
+    pub(super) fn drop_lone_seed(&mut self, particles: &mut Particles) {
+        let last = particles.len() - 1;
+        if particles.parent[last] == Particles::NO_PARENT {
+            self.grid.gather(particles.position[last], 2.0 * self.radius, &mut self.found);
+            if self.found.len() > 1 {
+                self.grid.remove(self.seed_place);
+                truncate(particles, last);
+                self.settled = last;
+                self.level = last..last;
+            }
+        }
+    }
+
     /// Adds a first particle. Only between levels.
     pub(super) fn add_seed(&mut self, particles: &mut Particles, position: Vec3, normal: Vec3) {
         debug_assert!(self.is_done());
         let index = particles.len();
-        self.grid.insert(position, index as u32);
+        self.seed_place = self.grid.insert(position, index as u32);
         push(particles, position, normal, self.radius, Particles::NO_PARENT, 0, Slots::default());
         self.level = index..index + 1;
         self.settled = index + 1;

@@ -1,0 +1,427 @@
+//! What there is to choose and to read, described so that an interface can be generated from it: a new surface, setting
+//! or figure needs no new code anywhere else.
+
+use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
+use crate::field::gallery::{self, Surface};
+use crate::math::Bounds;
+use crate::sampler::Settings;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// The whole description.
+#[derive(Clone, Debug, Serialize)]
+pub struct Description {
+    /// Version of this crate.
+    pub version: &'static str,
+    /// Identifier of the surface to begin with.
+    pub default_surface: &'static str,
+    /// The gallery.
+    pub surfaces: Vec<SurfaceEntry>,
+    /// Settings of a run.
+    pub settings: Vec<Setting>,
+    /// Rows of the report.
+    pub report: Vec<ReportRow>,
+    /// What can become of a child.
+    pub fates: Vec<Fate>,
+    /// Functions of the formula language.
+    pub functions: Vec<FunctionInfo>,
+    /// Ways to colour the particles.
+    pub colours: Vec<Colour>,
+}
+
+/// A gallery surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct SurfaceEntry {
+    /// Identifier.
+    pub id: &'static str,
+    /// Name.
+    pub name: &'static str,
+    /// Formula.
+    pub formula: &'static str,
+    /// Parameters with their ranges.
+    pub parameters: Vec<Parameter>,
+    /// Clip box.
+    pub bounds: Bounds,
+    /// Degree of the polynomial, if it is one.
+    pub degree: Option<u32>,
+    /// Genus, where the surface is closed, connected and smooth.
+    pub genus: Option<u32>,
+    /// Two sentences about it.
+    pub story: &'static str,
+    /// The formula as MathML.
+    pub mathml: String,
+}
+
+/// A setting of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Setting {
+    /// Name in [`Settings`].
+    pub name: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+    /// Group it is shown in.
+    pub group: &'static str,
+    /// `number`, `integer` or `choice`.
+    pub kind: &'static str,
+    /// Default value.
+    pub default: Value,
+    /// Smallest value.
+    pub min: Option<f64>,
+    /// Largest value.
+    pub max: Option<f64>,
+    /// Step of a slider; on a logarithmic scale a factor minus one.
+    pub step: Option<f64>,
+    /// `linear` or `log`.
+    pub scale: &'static str,
+    /// Unit; `%` shows the value times 100.
+    pub unit: &'static str,
+    /// Values of a choice.
+    pub choices: Vec<Choice>,
+    /// One line of explanation.
+    pub help: &'static str,
+    /// Shown only when another setting has this value.
+    pub when: Option<Value>,
+}
+
+/// One value of a choice.
+#[derive(Clone, Debug, Serialize)]
+pub struct Choice {
+    /// Value.
+    pub value: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+}
+
+/// A row of the report.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReportRow {
+    /// Path into the report.
+    pub key: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+    /// Group it is shown in.
+    pub group: &'static str,
+    /// Unit; `%` shows the value times 100.
+    pub unit: &'static str,
+    /// Digits after the point.
+    pub digits: u8,
+    /// The ideal value, in words.
+    pub ideal: &'static str,
+    /// Which way is better.
+    pub better: Option<&'static str>,
+    /// Definition and meaning.
+    pub help: &'static str,
+}
+
+/// What can become of a child.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fate {
+    /// Name, as in the report's counts.
+    pub name: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+    /// One line of explanation.
+    pub help: &'static str,
+}
+
+/// A way to colour the particles.
+#[derive(Clone, Debug, Serialize)]
+pub struct Colour {
+    /// Identifier.
+    pub id: &'static str,
+    /// Name for a person.
+    pub label: &'static str,
+    /// One line of explanation.
+    pub help: &'static str,
+    /// Unit of the legend.
+    pub unit: &'static str,
+}
+
+/// Describes everything there is.
+#[must_use]
+pub fn describe() -> Description {
+    Description {
+        version: env!("CARGO_PKG_VERSION"),
+        default_surface: gallery::SURFACES[0].id,
+        surfaces: gallery::SURFACES.iter().map(surface).collect(),
+        settings: settings(),
+        report: REPORT.to_vec(),
+        fates: FATES.to_vec(),
+        functions: FUNCTIONS.to_vec(),
+        colours: COLOURS.to_vec(),
+    }
+}
+
+fn surface(surface: &Surface) -> SurfaceEntry {
+    SurfaceEntry {
+        id: surface.id,
+        name: surface.name,
+        formula: surface.formula,
+        parameters: surface.declared(),
+        bounds: surface.bounds,
+        degree: surface.degree,
+        genus: surface.genus,
+        story: surface.story,
+        mathml: surface.field().mathml(),
+    }
+}
+
+fn settings() -> Vec<Setting> {
+    let default = Settings::default();
+    let range = |name: &str| Settings::RANGES.into_iter().find(|r| r.0 == name).map(|r| (r.1, r.2));
+    let number = |name, label, default: Value, step: f64| {
+        let (min, max) = range(name).unzip();
+        Setting {
+            name,
+            label,
+            group: "Sampling",
+            kind: if default.is_f64() { "number" } else { "integer" },
+            default,
+            min,
+            max,
+            step: Some(step),
+            scale: "linear",
+            unit: "",
+            choices: Vec::new(),
+            help: "",
+            when: None,
+        }
+    };
+    vec![
+        Setting {
+            kind: "choice",
+            step: None,
+            choices: vec![
+                Choice { value: "radius", label: "Radius" },
+                Choice { value: "count", label: "Count" },
+            ],
+            help: "Give the size of the particles, or how many there should be.",
+            ..number("size_mode", "Size by", json!(default.size_mode), 0.0)
+        },
+        Setting {
+            scale: "log",
+            unit: "%",
+            help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
+            when: Some(json!({ "name": "size_mode", "value": "radius" })),
+            ..number("radius_share", "Radius", json!(default.radius_share), 0.01)
+        },
+        Setting {
+            scale: "log",
+            unit: "particles",
+            help: "Wanted number of particles, met within 3 %.",
+            when: Some(json!({ "name": "size_mode", "value": "count" })),
+            ..number("count", "Count", json!(default.count), 0.01)
+        },
+        Setting {
+            max: Some(100.0),
+            unit: "steps",
+            help: "Steps of Gaussian repulsion after the generation. The paper takes ten.",
+            ..number("relax_steps", "Relaxation", json!(default.relax_steps), 1.0)
+        },
+        Setting {
+            unit: "× 2r",
+            group: "Advanced",
+            help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+            ..number("match_tolerance", "Match tolerance", json!(default.match_tolerance), 0.01)
+        },
+        Setting {
+            min: Some(0.0),
+            max: Some(999_999.0),
+            group: "Advanced",
+            help: "Chooses the point on the surface where the front begins.",
+            ..number("seed", "Seed", json!(default.seed), 1.0)
+        },
+        Setting {
+            scale: "log",
+            unit: "particles",
+            group: "Advanced",
+            help: "The run stops when it has placed this many.",
+            ..number("max_particles", "Limit", json!(default.max_particles), 0.01)
+        },
+    ]
+}
+
+const fn row(
+    key: &'static str,
+    label: &'static str,
+    (group, unit, digits): (&'static str, &'static str, u8),
+    (ideal, better): (&'static str, Option<&'static str>),
+    help: &'static str,
+) -> ReportRow {
+    ReportRow { key, label, group, unit, digits, ideal, better, help }
+}
+
+const LOWER: Option<&str> = Some("lower");
+const HIGHER: Option<&str> = Some("higher");
+
+const REPORT: &[ReportRow] = &[
+    row("count", "Particles", ("Run", "", 0), ("", None), "Particles on the surface."),
+    row(
+        "levels",
+        "Generation levels",
+        ("Run", "", 0),
+        ("", None),
+        "Rings of particles, each placed by the one before it.",
+    ),
+    row(
+        "components_seeded",
+        "Fronts",
+        ("Run", "", 0),
+        ("", None),
+        "Fronts started, each from a point that no particle covered: at least one for every connected piece of the surface.",
+    ),
+    row(
+        "evaluations_per_particle",
+        "Evaluations per particle",
+        ("Run", "", 2),
+        ("about 2", LOWER),
+        "Field evaluations of the front divided by the particles it placed.",
+    ),
+    row(
+        "quality.six",
+        "Six neighbours",
+        ("Order", "%", 1),
+        ("100 %", HIGHER),
+        "Share of the particles with exactly six natural neighbours, those of their Voronoi cell in the tangent plane. A closed surface of genus 0 must have at least twelve without.",
+    ),
+    row(
+        "quality.psi6",
+        "Hexagonal order ψ₆",
+        ("Order", "", 3),
+        ("1", HIGHER),
+        "Mean of |mean of exp(6iθ) over the natural neighbours|: 1 for a perfect hexagonal lattice.",
+    ),
+    row(
+        "quality.ang_min_mean",
+        "Mean smallest angle",
+        ("Triangles", "°", 1),
+        ("60°", HIGHER),
+        "Mean over the triangles of natural neighbours of their smallest angle.",
+    ),
+    row(
+        "quality.ang_min",
+        "Smallest angle",
+        ("Triangles", "°", 1),
+        ("60°", HIGHER),
+        "Smallest angle of any triangle of natural neighbours.",
+    ),
+    row(
+        "quality.lt30",
+        "Angles below 30°",
+        ("Triangles", "%", 2),
+        ("0 %", LOWER),
+        "Share of the triangles with an angle below 30°.",
+    ),
+    row(
+        "quality.gt90",
+        "Angles above 90°",
+        ("Triangles", "%", 2),
+        ("0 %", LOWER),
+        "Share of the triangles with an angle above 90°.",
+    ),
+    row(
+        "quality.cover",
+        "Largest hole",
+        ("Spacing", "", 2),
+        ("1", LOWER),
+        "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles.",
+    ),
+    row(
+        "quality.rho",
+        "Closest pair",
+        ("Spacing", "", 3),
+        ("1", HIGHER),
+        "Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius.",
+    ),
+    row(
+        "quality.nn_cv",
+        "Spacing variation",
+        ("Spacing", "%", 1),
+        ("0 %", LOWER),
+        "Standard deviation of the distance to the nearest neighbour over its mean.",
+    ),
+    row(
+        "quality.edge_cv",
+        "Edge variation",
+        ("Spacing", "%", 1),
+        ("0 %", LOWER),
+        "Standard deviation of the distance between natural neighbours over its mean.",
+    ),
+    row(
+        "quality.err_max",
+        "Largest residual",
+        ("Accuracy", "", 6),
+        ("0", LOWER),
+        "Largest distance |f|/|∇f| from the surface over the spacing of a perfect lattice.",
+    ),
+    row(
+        "quality.err_mean",
+        "Mean residual",
+        ("Accuracy", "", 6),
+        ("0", LOWER),
+        "Mean distance |f|/|∇f| from the surface over the spacing of a perfect lattice.",
+    ),
+    row(
+        "quality.area",
+        "Area",
+        ("Surface", "units²", 3),
+        ("", None),
+        "Area of the triangles of natural neighbours.",
+    ),
+    row(
+        "quality.euler",
+        "Euler number",
+        ("Surface", "", 0),
+        ("", None),
+        "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its pieces.",
+    ),
+    row(
+        "quality.components",
+        "Connected pieces",
+        ("Surface", "", 0),
+        ("", None),
+        "Pieces of the mesh of natural neighbours.",
+    ),
+];
+
+const FATES: &[Fate] = &[
+    Fate { name: "added", label: "Added", help: "A new particle was placed." },
+    Fate { name: "matched", label: "Matched", help: "A particle of the same sheet sits there already." },
+    Fate {
+        name: "not_converged",
+        label: "Not converged",
+        help: "The circle around the parent met no point of the surface.",
+    },
+    Fate { name: "outside", label: "Outside", help: "The point lies outside the clip box." },
+    Fate { name: "undefined", label: "Undefined", help: "f has no value or no gradient there." },
+    Fate { name: "capped", label: "Capped", help: "The limit on particles was reached." },
+];
+
+const COLOURS: &[Colour] = &[
+    Colour {
+        id: "level",
+        label: "Generation level",
+        help: "Rings in the order in which they were placed; the colours repeat every twelve levels.",
+        unit: "",
+    },
+    Colour {
+        id: "fate",
+        label: "Fate of the children",
+        help: "Interior, at the border of the box, or next to a place where a child found no surface.",
+        unit: "",
+    },
+    Colour {
+        id: "valence",
+        label: "Neighbours",
+        help: "Number of natural neighbours; six is ideal.",
+        unit: "",
+    },
+    Colour {
+        id: "nearest",
+        label: "Nearest distance",
+        help: "Distance to the nearest particle over 2r.",
+        unit: "× 2r",
+    },
+    Colour { id: "normal", label: "Normal", help: "Direction of the outward normal.", unit: "" },
+    Colour { id: "plain", label: "Plain", help: "One colour.", unit: "" },
+];

@@ -1,0 +1,348 @@
+//! One user's work: a field, a sampler and the particles between them. Commands go in, changes and reports come out;
+//! there is no clock, no GPU and no platform in here.
+
+mod describe;
+
+pub use describe::{Choice, Colour, Description, Fate, ReportRow, Setting, SurfaceEntry, describe};
+
+use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, Parameter};
+use crate::field::gallery::{self, Surface};
+use crate::math::Bounds;
+use crate::particles::Particles;
+use crate::quality::{self, Figures, Histogram};
+use crate::sampler::{FateCounts, Phase, Progress, Sampler, Settings, SettingsError, Start, StopReason};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
+const MAX_KEPT: usize = 400_000;
+
+/// What a caller asks of the field; everything is optional.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FieldRequest {
+    /// Identifier of a gallery surface to start from; without one, the present field is changed.
+    pub surface: Option<String>,
+    /// Text of the formula, in the place of the surface's.
+    pub formula: Option<String>,
+    /// Values of parameters by name.
+    pub parameters: BTreeMap<String, f64>,
+    /// Parameters that the formula's unknown names become.
+    pub declare: Vec<Parameter>,
+    /// Clip box.
+    pub bounds: Option<Bounds>,
+}
+
+/// The field as it now is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FieldAnswer {
+    /// Gallery surface, if the formula is still its own.
+    pub surface: Option<&'static str>,
+    /// Text of the formula.
+    pub formula: String,
+    /// Parameters with values and ranges.
+    pub parameters: Vec<Parameter>,
+    /// Parameters that were not declared but found in the formula.
+    pub auto: Vec<String>,
+    /// Clip box.
+    pub bounds: Bounds,
+    /// The formula as a MathML element.
+    pub mathml: String,
+}
+
+/// Why a field was refused. The field before it stays.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FieldError {
+    /// The formula has a mistake.
+    #[error(transparent)]
+    Formula(#[from] FormulaError),
+    /// No surface of that name.
+    #[error("there is no surface `{0}` in the gallery")]
+    UnknownSurface(String),
+    /// The box is not one.
+    #[error("the box must have finite corners and a positive size on every axis")]
+    Box,
+}
+
+/// Everything worth knowing about a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Number of particles.
+    pub count: usize,
+    /// Number of generation levels.
+    pub levels: u32,
+    /// Fronts started, each from a seed of its own.
+    pub components_seeded: u32,
+    /// Repulsion radius.
+    pub radius: f64,
+    /// Field evaluations of the whole run.
+    pub evaluations: u64,
+    /// Field evaluations of the front per particle.
+    pub evaluations_per_particle: f64,
+    /// What became of the children.
+    pub fates: FateCounts,
+    /// Why the run ended.
+    pub stop_reason: Option<StopReason>,
+    /// Things the user should know, in words.
+    pub warnings: Vec<String>,
+    /// Particles per generation level.
+    pub level_counts: Vec<u32>,
+    /// Energy per particle before the first relaxation step and after each.
+    pub energy: Vec<f64>,
+    /// Digest of the particles, 16 hexadecimal digits.
+    pub digest: String,
+    /// Quality now.
+    pub quality: Option<Figures>,
+    /// Quality after the front, before the relaxation.
+    pub quality_before: Option<Figures>,
+    /// Nearest-neighbour distances.
+    pub nearest_histogram: Histogram,
+}
+
+/// A field, a sampler and a run.
+pub struct Session {
+    field: FormulaField,
+    surface: Option<&'static Surface>,
+    declared: Vec<Parameter>,
+    bounds: Bounds,
+    sampler: Sampler,
+    warnings: Vec<String>,
+    last: Option<Progress>,
+    /// Positions and normals after the front.
+    front: (Vec<Vec3>, Vec<Vec3>),
+    front_figures: Option<Figures>,
+    measured: quality::Report,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Session {
+    /// A session on the gallery's first surface, with nothing sampled.
+    #[must_use]
+    pub fn new() -> Self {
+        let surface = &gallery::SURFACES[0];
+        Self {
+            field: surface.field(),
+            surface: Some(surface),
+            declared: surface.declared(),
+            bounds: surface.bounds,
+            sampler: Sampler::new(),
+            warnings: Vec::new(),
+            last: None,
+            front: (Vec::new(), Vec::new()),
+            front_figures: None,
+            measured: quality::Report::default(),
+        }
+    }
+
+    /// The present field.
+    pub fn field(&mut self) -> &mut FormulaField {
+        &mut self.field
+    }
+
+    /// The clip box.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The sampler.
+    #[must_use]
+    pub fn sampler(&self) -> &Sampler {
+        &self.sampler
+    }
+
+    /// The particles; of a generation level under way, the columns may hold provisional ones beyond
+    /// [`Session::count`].
+    #[must_use]
+    pub fn particles(&self) -> &Particles {
+        self.sampler.particles()
+    }
+
+    /// Number of particles that will stay.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.last.as_ref().map_or(0, |progress| progress.particles)
+    }
+
+    /// The field as it is.
+    #[must_use]
+    pub fn answer(&self) -> FieldAnswer {
+        FieldAnswer {
+            surface: self.surface.map(|surface| surface.id),
+            formula: self.field.text().to_owned(),
+            parameters: self.field.parameters().to_vec(),
+            auto: self.field.auto().to_vec(),
+            bounds: self.bounds,
+            mathml: self.field.mathml(),
+        }
+    }
+
+    /// Changes the field. Particles of an earlier run stay until the next [`Session::start`].
+    ///
+    /// # Errors
+    ///
+    /// If the surface is unknown, the formula has a mistake, a value is not finite or the box is not one; nothing is
+    /// changed then.
+    pub fn set_field(&mut self, request: &FieldRequest) -> Result<FieldAnswer, FieldError> {
+        let surface = match &request.surface {
+            Some(id) => Some(gallery::find(id).ok_or_else(|| FieldError::UnknownSurface(id.clone()))?),
+            None => None,
+        };
+        let bounds = request.bounds.or(surface.map(|s| s.bounds)).unwrap_or(self.bounds);
+        if !bounds.is_valid() {
+            return Err(FieldError::Box);
+        }
+        let text = match (&request.formula, surface) {
+            (Some(text), _) => text.as_str(),
+            (None, Some(surface)) => surface.formula,
+            (None, None) => self.field.text(),
+        };
+        // A declared parameter that the formula does not use stays declared: it may come back with the next key.
+        let mut declared = surface.map_or_else(
+            || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
+            Surface::declared,
+        );
+        for parameter in &request.declare {
+            match declared.iter_mut().find(|known| known.name == parameter.name) {
+                Some(known) => *known = parameter.clone(),
+                None => declared.push(parameter.clone()),
+            }
+        }
+        let mut field = if text == self.field.text() && declared == self.declared {
+            self.field.clone()
+        } else {
+            FormulaField::parse(text, &declared)?
+        };
+        for (name, &value) in &request.parameters {
+            match field.set_parameter(name, value) {
+                // A value for a name that the formula no longer has is of no consequence.
+                Err(error) if error.kind == FormulaErrorKind::BadParameter && value.is_finite() => {}
+                result => result?,
+            }
+        }
+        self.surface = surface
+            .or(self.surface.filter(|_| request.surface.is_none()))
+            .filter(|surface| surface.formula == field.text());
+        self.field = field;
+        self.declared = declared;
+        self.bounds = bounds;
+        Ok(self.answer())
+    }
+
+    /// Starts a run on the present field.
+    ///
+    /// # Errors
+    ///
+    /// If a setting is out of its range.
+    pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
+        let start = self.sampler.start(&mut self.field, &self.bounds, settings)?;
+        self.warnings.clone_from(&start.warnings);
+        self.last = None;
+        self.front.0.clear();
+        self.front.1.clear();
+        self.front_figures = None;
+        self.measured = quality::Report::default();
+        Ok(start)
+    }
+
+    /// Does up to `budget` units of work; see [`Sampler::step`].
+    pub fn step(&mut self, budget: u32) -> Progress {
+        let progress = self.sampler.step(&mut self.field, budget);
+        let particles = self.sampler.particles();
+        if progress.phase == Phase::Relaxation
+            && self.front.0.is_empty()
+            && progress.relax_step == 0
+            && progress.particles <= MAX_KEPT
+        {
+            self.front.0.extend_from_slice(&particles.position);
+            self.front.1.extend_from_slice(&particles.normal);
+        }
+        self.remember(progress)
+    }
+
+    /// Asks for more relaxation steps on the particles of a finished run; [`Session::step`] does them.
+    pub fn relax(&mut self, steps: u32) {
+        self.sampler.relax(steps);
+        let progress = self.sampler.progress();
+        self.remember(progress);
+    }
+
+    /// Ends the run; the particles placed so far stay.
+    pub fn cancel(&mut self) -> Progress {
+        self.sampler.cancel();
+        let progress = self.sampler.progress();
+        self.remember(progress)
+    }
+
+    fn remember(&mut self, progress: Progress) -> Progress {
+        self.last = Some(progress.clone());
+        progress
+    }
+
+    /// Measures the particles: a few microseconds each. Call it when the run has ended.
+    pub fn report(&mut self) -> Report {
+        let particles = self.sampler.particles();
+        let options = quality::Options::default();
+        let count = particles.len();
+        self.measured = quality::measure(
+            &particles.position,
+            &particles.normal,
+            &mut self.field,
+            Some(&self.bounds),
+            &options,
+        );
+        if self.front_figures.is_none() && !self.front.0.is_empty() {
+            let (position, normal) = &self.front;
+            let before = quality::measure(position, normal, &mut self.field, Some(&self.bounds), &options);
+            self.front_figures = Some(before.figures);
+        }
+        let mut level_counts = Vec::new();
+        for &level in &particles.level {
+            if level_counts.len() <= level as usize {
+                level_counts.resize(level as usize + 1, 0);
+            }
+            level_counts[level as usize] += 1;
+        }
+        let counts = self.sampler.counts();
+        let evaluations =
+            counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
+        let mut warnings = self.warnings.clone();
+        let troubled = counts.fates.not_converged + counts.fates.undefined;
+        if troubled > 0 {
+            warnings.push(format!(
+                "{} children found no surface at their distance and {} met a place without a value or a normal: \
+                 an edge, a singular point or a radius too large for the curvature.",
+                counts.fates.not_converged, counts.fates.undefined
+            ));
+        }
+        Report {
+            count,
+            levels: level_counts.len() as u32,
+            components_seeded: counts.seeds,
+            radius: self.sampler.radius(),
+            evaluations,
+            evaluations_per_particle: counts.generation_evaluations as f64 / count.max(1) as f64,
+            fates: counts.fates,
+            stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
+            warnings,
+            level_counts,
+            energy: self.sampler.energy().to_vec(),
+            digest: format!("{:016x}", particles.digest()),
+            quality: (count > 0).then_some(self.measured.figures),
+            quality_before: self.front_figures,
+            nearest_histogram: self.measured.histogram.clone(),
+        }
+    }
+
+    /// Per-particle columns of the last [`Session::report`].
+    #[must_use]
+    pub fn measured(&self) -> &quality::Report {
+        &self.measured
+    }
+}

@@ -1,0 +1,171 @@
+//! The core bundle: a [`Session`] behind JSON strings and copies of the particle columns.
+
+use crate::field::formula::FormulaError;
+use crate::sampler::Settings;
+use crate::session::{FieldError, FieldRequest, Session, describe};
+use glam::Vec3;
+use serde::Serialize;
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// A sampling session. Strings are JSON; columns are copies, three floats a vector.
+#[wasm_bindgen]
+pub struct Core {
+    session: Session,
+}
+
+fn text(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_else(|error| refusal("json", &error.to_string()))
+}
+
+fn refusal(kind: &str, message: &str) -> String {
+    json!({ "ok": false, "error": { "kind": kind, "message": message, "start": 0, "end": 0, "suggestion": null, "names": [] } })
+        .to_string()
+}
+
+fn accepted(value: &impl Serialize) -> String {
+    let mut value = serde_json::to_value(value).unwrap_or_default();
+    if let Value::Object(fields) = &mut value {
+        fields.insert("ok".into(), true.into());
+    }
+    value.to_string()
+}
+
+fn formula_error(formula: &str, error: &FormulaError) -> String {
+    let span = error.utf16_span(formula);
+    json!({ "ok": false, "error": {
+        "kind": error.kind, "message": error.message, "start": span.start, "end": span.end,
+        "suggestion": error.suggestion, "names": error.names,
+    } })
+    .to_string()
+}
+
+#[wasm_bindgen]
+impl Core {
+    /// A session on the default surface, with nothing sampled.
+    #[wasm_bindgen(constructor)]
+    #[expect(clippy::new_without_default, reason = "a constructor for JavaScript")]
+    pub fn new() -> Self {
+        console_error_panic_hook::set_once();
+        Self { session: Session::new() }
+    }
+
+    /// Everything there is to choose and to read: `Description`.
+    pub fn describe(&self) -> String {
+        text(&describe())
+    }
+
+    /// Changes the field: `FieldRequest` to `FieldAnswer`. After an error the last good field stays.
+    pub fn set_field(&mut self, request: &str) -> String {
+        let request: FieldRequest = match serde_json::from_str(request) {
+            Ok(request) => request,
+            Err(error) => return refusal("request", &error.to_string()),
+        };
+        match self.session.set_field(&request) {
+            Ok(answer) => accepted(&answer),
+            Err(FieldError::Formula(error)) => {
+                formula_error(request.formula.as_deref().unwrap_or_default(), &error)
+            }
+            Err(error @ FieldError::UnknownSurface(_)) => refusal("unknown_surface", &error.to_string()),
+            Err(error @ FieldError::Box) => refusal("box", &error.to_string()),
+        }
+    }
+
+    /// Starts a run: `Settings`, of which what is missing has its default.
+    pub fn start(&mut self, settings: &str) -> String {
+        let settings: Settings = match serde_json::from_str(settings) {
+            Ok(settings) => settings,
+            Err(error) => return refusal("settings", &error.to_string()),
+        };
+        match self.session.start(&settings) {
+            Ok(start) => accepted(&start),
+            Err(error) => refusal("settings", &error.to_string()),
+        }
+    }
+
+    /// Does up to `budget` units of work: `Progress`.
+    pub fn step(&mut self, budget: u32) -> String {
+        text(&self.session.step(budget))
+    }
+
+    /// Queues relaxation steps on the present particles.
+    pub fn relax(&mut self, steps: u32) -> String {
+        self.session.relax(steps);
+        json!({ "ok": true }).to_string()
+    }
+
+    /// Ends the run and keeps the particles: `Progress`.
+    pub fn cancel(&mut self) -> String {
+        text(&self.session.cancel())
+    }
+
+    /// Number of particles.
+    pub fn count(&self) -> usize {
+        self.session.count()
+    }
+
+    /// Positions from particle `from` on.
+    pub fn positions(&self, from: usize) -> Vec<f32> {
+        self.vectors(&self.session.particles().position, from)
+    }
+
+    /// Unit normals from particle `from` on.
+    pub fn normals(&self, from: usize) -> Vec<f32> {
+        self.vectors(&self.session.particles().normal, from)
+    }
+
+    /// Repulsion radii from particle `from` on.
+    pub fn radii(&self, from: usize) -> Vec<f32> {
+        self.column(&self.session.particles().radius, from)
+    }
+
+    /// Generation levels from particle `from` on.
+    pub fn levels(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.particles().level, from)
+    }
+
+    /// Parents from particle `from` on; 0xffffffff for a seed.
+    pub fn parents(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.particles().parent, from)
+    }
+
+    /// Six three-bit fates per particle, from particle `from` on.
+    pub fn slots(&self, from: usize) -> Vec<u32> {
+        self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
+    }
+
+    /// Measures the particles: `Report`.
+    pub fn report(&mut self) -> String {
+        text(&self.session.report())
+    }
+
+    /// Natural neighbours per particle, as of the last report.
+    pub fn valence(&self) -> Vec<u8> {
+        self.session.measured().valence.clone()
+    }
+
+    /// Distance to the nearest particle, as of the last report.
+    pub fn nearest(&self) -> Vec<f32> {
+        self.session.measured().nearest.clone()
+    }
+
+    /// |f|/|∇f| per particle, as of the last report.
+    pub fn residual(&self) -> Vec<f32> {
+        self.session.measured().residual.clone()
+    }
+
+    /// Digest of the particle columns, 16 hexadecimal digits.
+    pub fn digest(&self) -> String {
+        format!("{:016x}", self.session.particles().digest())
+    }
+
+    fn column<T: Copy>(&self, column: &[T], from: usize) -> Vec<T> {
+        let count = self.session.count().min(column.len());
+        column[from.min(count)..count].to_vec()
+    }
+
+    fn vectors(&self, column: &[Vec3], from: usize) -> Vec<f32> {
+        let count = self.session.count().min(column.len());
+        bytemuck::cast_slice(&column[from.min(count)..count]).to_vec()
+    }
+}

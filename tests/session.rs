@@ -1,0 +1,219 @@
+//! What a user of the whole core sees: a field, a run, a report.
+
+use marching_particles::sampler::{Phase, Settings, SizeMode, StopReason};
+use marching_particles::session::{FieldError, FieldRequest, Session, describe};
+
+fn request(json: &str) -> FieldRequest {
+    serde_json::from_str(json).expect("a field request")
+}
+
+fn run(session: &mut Session, settings: &Settings, budget: u32) -> StopReason {
+    session.start(settings).expect("valid settings");
+    loop {
+        let progress = session.step(budget);
+        if let Some(reason) = progress.stop_reason {
+            return reason;
+        }
+    }
+}
+
+fn sized(count: u32) -> Settings {
+    Settings { size_mode: SizeMode::Count, count, ..Settings::default() }
+}
+
+#[test]
+fn a_run_cut_into_single_units_is_the_same_run() {
+    let mut one = Session::new();
+    let mut many = Session::new();
+    let settings = sized(700);
+    assert_eq!(run(&mut one, &settings, u32::MAX), StopReason::Complete);
+    assert_eq!(run(&mut many, &settings, 1), StopReason::Complete);
+    assert_eq!(one.particles().digest(), many.particles().digest());
+    let mut seven = Session::new();
+    run(&mut seven, &settings, 7);
+    assert_eq!(one.particles().digest(), seven.particles().digest());
+}
+
+#[test]
+fn a_session_can_be_used_again_with_the_same_result() {
+    let mut session = Session::new();
+    run(&mut session, &sized(500), 1000);
+    let first = session.particles().digest();
+    session.set_field(&request(r#"{"surface":"torus"}"#)).unwrap();
+    run(&mut session, &sized(900), 333);
+    assert_ne!(session.particles().digest(), first);
+    session.set_field(&request(r#"{"surface":"ellipsoid"}"#)).unwrap();
+    run(&mut session, &sized(500), 10);
+    assert_eq!(session.particles().digest(), first);
+}
+
+#[test]
+fn another_seed_begins_elsewhere() {
+    let mut session = Session::new();
+    run(&mut session, &sized(500), 1000);
+    let first = session.particles().position[0];
+    run(&mut session, &Settings { seed: 1, ..sized(500) }, 1000);
+    assert_ne!(session.particles().position[0], first);
+}
+
+#[test]
+fn the_count_is_met_within_three_percent() {
+    for (surface, count) in [("ellipsoid", 1500), ("torus", 3000), ("tanglecube", 12_000), ("sphere", 9_000)]
+    {
+        let mut session = Session::new();
+        session.set_field(&request(&format!(r#"{{"surface":"{surface}"}}"#))).unwrap();
+        run(&mut session, &Settings { relax_steps: 0, ..sized(count) }, u32::MAX);
+        let miss = session.count() as f64 / f64::from(count) - 1.0;
+        assert!(miss.abs() <= 0.03, "{surface}: {} particles for {count}", session.count());
+    }
+}
+
+#[test]
+fn cancelling_keeps_what_is_there() {
+    for budget in [100, 2_000, 6_000, 20_000] {
+        let mut session = Session::new();
+        session.start(&sized(2_000)).unwrap();
+        session.step(budget);
+        let progress = session.cancel();
+        assert_eq!(progress.phase, Phase::Done);
+        assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
+        assert_eq!(progress.particles, session.particles().len());
+        let particles = session.particles();
+        let columns = [
+            particles.normal.len(),
+            particles.radius.len(),
+            particles.parent.len(),
+            particles.level.len(),
+            particles.slots.len(),
+        ];
+        assert_eq!(columns, [particles.len(); 5]);
+        assert!(particles.position.iter().all(|p| p.is_finite()));
+        let report = session.report();
+        assert_eq!(report.count, progress.particles);
+        assert!(report.quality.is_none_or(|q| q.err_max < 1e-2), "cancelled after {budget}");
+    }
+}
+
+#[test]
+fn more_relaxation_can_be_asked_for() {
+    let mut session = Session::new();
+    run(&mut session, &Settings { relax_steps: 0, ..sized(1_000) }, 500);
+    let generated = session.particles().digest();
+    session.relax(1);
+    while session.step(100).stop_reason.is_none() {}
+    assert_ne!(session.particles().digest(), generated);
+    assert_eq!(session.report().energy.len(), 2);
+    session.relax(3);
+    while session.step(77).stop_reason.is_none() {}
+    let energy = session.report().energy;
+    assert_eq!(energy.len(), 5);
+    assert!(energy.is_sorted_by(|a, b| a > b), "{energy:?}");
+}
+
+#[test]
+fn a_mistake_leaves_the_last_good_field() {
+    let mut session = Session::new();
+    let before = session.answer();
+    assert!(matches!(session.set_field(&request(r#"{"formula":"x^2+"}"#)), Err(FieldError::Formula(_))));
+    assert!(matches!(
+        session.set_field(&request(r#"{"surface":"nowhere"}"#)),
+        Err(FieldError::UnknownSurface(_))
+    ));
+    let flat = r#"{"bounds":{"min":[0,0,0],"max":[1,1,0]}}"#;
+    assert!(matches!(session.set_field(&request(flat)), Err(FieldError::Box)));
+    assert_eq!(session.answer(), before);
+}
+
+#[test]
+fn parameters_can_be_declared_and_set() {
+    let mut session = Session::new();
+    let answer = session
+        .set_field(&request(r#"{"formula":"x^2+y^2+z^2-a^2","parameters":{"a":0.5,"gone":3}}"#))
+        .unwrap();
+    assert_eq!(answer.auto, ["a"]);
+    assert_eq!(answer.parameters[0].value, 0.5);
+    assert_eq!(answer.surface, None);
+    let answer = session.set_field(&request(r#"{"parameters":{"a":0.75}}"#)).unwrap();
+    assert_eq!(answer.parameters[0].value, 0.75);
+    assert_eq!(answer.formula, "x^2+y^2+z^2-a^2");
+}
+
+#[test]
+fn surfaces_that_are_not_there_are_said_so() {
+    let cases = [
+        ("x^2+y^2+z^2+1", StopReason::NoSurface),
+        ("0*x+3", StopReason::Constant),
+        ("x-x", StopReason::Constant),
+        ("ln(-1-x^2)", StopReason::Undefined),
+    ];
+    for (formula, reason) in cases {
+        let mut session = Session::new();
+        session.set_field(&request(&format!(r#"{{"formula":"{formula}"}}"#))).unwrap();
+        assert_eq!(run(&mut session, &Settings::default(), 10_000), reason, "{formula}");
+        assert_eq!(session.count(), 0);
+        let last = session.step(1);
+        assert!(last.message.is_some_and(|m| m.len() > 20), "{formula}");
+        assert_eq!(session.report().count, 0);
+    }
+}
+
+#[test]
+fn an_absent_surface_is_proven_absent() {
+    let mut session = Session::new();
+    session.set_field(&request(r#"{"formula":"x^2+y^2+z^2+1"}"#)).unwrap();
+    run(&mut session, &Settings::default(), 10_000);
+    assert!(session.step(1).message.is_some_and(|m| m.contains("proven")));
+}
+
+#[test]
+fn a_radius_larger_than_the_surface_gives_one_particle_and_an_explanation() {
+    let mut session = Session::new();
+    session
+        .set_field(&request(r#"{"formula":"x^2+y^2+z^2-0.01","bounds":{"min":[-1,-1,-1],"max":[1,1,1]}}"#))
+        .unwrap();
+    let settings = Settings { radius_share: 0.1, ..Settings::default() };
+    assert_eq!(run(&mut session, &settings, 1000), StopReason::OneParticle);
+    assert_eq!(session.count(), 1);
+    assert!(session.step(1).message.is_some_and(|m| m.contains("smaller radius")));
+}
+
+#[test]
+fn settings_out_of_range_are_refused_by_name() {
+    let mut session = Session::new();
+    for radius in [0.0, -1.0, f64::NAN, 1e-9, f64::INFINITY] {
+        let error = session.start(&Settings { radius_share: radius, ..Settings::default() }).unwrap_err();
+        assert!(error.to_string().contains("radius_share"), "{error}");
+    }
+}
+
+#[test]
+fn the_cap_stops_a_run_and_says_so() {
+    let mut session = Session::new();
+    let settings = Settings { max_particles: 300, ..Settings::default() };
+    let start = session.start(&settings).unwrap();
+    assert!(start.predicted_count > 300);
+    assert!(!start.warnings.is_empty());
+    assert_eq!(run(&mut session, &settings, 50), StopReason::Cap);
+    assert!(session.count() <= 300 && session.count() > 250, "{}", session.count());
+}
+
+#[test]
+fn every_row_of_the_report_is_in_the_report() {
+    let mut session = Session::new();
+    run(&mut session, &sized(800), 1000);
+    let report = serde_json::to_value(session.report()).unwrap();
+    let description = describe();
+    assert!(description.report.len() > 10);
+    for row in &description.report {
+        let found = row.key.split('.').try_fold(&report, |value, key| value.get(key));
+        assert!(found.is_some_and(|v| v.is_number()), "{} is not in the report", row.key);
+    }
+    for fate in &description.fates {
+        assert!(report["fates"].get(fate.name).is_some(), "{}", fate.name);
+    }
+    let settings = serde_json::to_value(Settings::default()).unwrap();
+    for setting in &description.settings {
+        assert_eq!(settings[setting.name], setting.default, "{}", setting.name);
+    }
+    assert_eq!(settings.as_object().unwrap().len(), description.settings.len());
+}
