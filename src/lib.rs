@@ -12,6 +12,7 @@ pub mod field;
 pub mod math;
 pub mod particles;
 pub mod quality;
+pub mod render;
 pub mod sampler;
 pub mod session;
 pub mod spatial;

@@ -7,3 +7,8 @@
 mod core;
 #[cfg(not(feature = "render"))]
 pub use core::Core;
+
+#[cfg(feature = "render")]
+mod render;
+#[cfg(feature = "render")]
+pub use render::Renderer;

@@ -1,0 +1,99 @@
+// The twelve edges of the clip box, as quads of constant width on the screen.
+
+// Twin of `Frame` in src/render/layout.rs, which documents the fields.
+struct Frame {
+    clip_from_world: mat4x4<f32>,
+    eye: vec3<f32>,
+    perspective: f32,
+    forward: vec3<f32>,
+    disc_scale: f32,
+    key_light: vec3<f32>,
+    dim_backfaces: f32,
+    sky: vec3<f32>,
+    dim: f32,
+    background: vec4<f32>,
+    viewport: vec2<f32>,
+    pixel_ratio: f32,
+    time: f32,
+    box_min: vec3<f32>,
+    fade: f32,
+    box_max: vec3<f32>,
+    light_ground: f32,
+    box_colour: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// Width of an edge in page pixels.
+const WIDTH = 1.25;
+// Edges are cut off this close to the eye's plane, as a share of the farther end's distance.
+const NEAR = 1e-3;
+
+struct Edge {
+    @builtin(position) clip: vec4<f32>,
+    // Signed distance from the middle of the line in pixels, times w: see fs_box.
+    @location(0) across_px: f32,
+    @location(1) @interpolate(flat) half_px: f32,
+}
+
+// End `end` (0 or 1) of edge `edge` (0 to 11): four edges along each axis.
+fn edge_end(edge: u32, end: f32) -> vec3<f32> {
+    let axis = edge >> 2u;
+    let a = f32(edge & 1u);
+    let b = f32((edge >> 1u) & 1u);
+    var s = vec3<f32>(end, a, b);
+    if axis == 1u {
+        s = vec3<f32>(a, end, b);
+    } else if axis == 2u {
+        s = vec3<f32>(a, b, end);
+    }
+    return mix(frame.box_min, frame.box_max, s);
+}
+
+@vertex
+fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32) -> Edge {
+    var out: Edge;
+    out.clip = vec4<f32>(0.0, 0.0, 2.0, 1.0);
+    var start = frame.clip_from_world * vec4<f32>(edge_end(edge, 0.0), 1.0);
+    var to = frame.clip_from_world * vec4<f32>(edge_end(edge, 1.0), 1.0);
+    // Cut the edge where it passes behind the eye.
+    let near = NEAR * max(start.w, to.w);
+    if near <= 0.0 {
+        return out;
+    }
+    if start.w < near {
+        start = mix(start, to, (near - start.w) / (to.w - start.w));
+    } else if to.w < near {
+        to = mix(to, start, (near - to.w) / (start.w - to.w));
+    }
+    let along_px = 0.5 * frame.viewport * (to.xy / to.w - start.xy / start.w);
+    let length_px = length(along_px);
+    if length_px < 1e-3 {
+        return out;
+    }
+    let along = along_px / length_px;
+    let side = f32(vertex & 1u) * 2.0 - 1.0;
+    let half_px = 0.5 * WIDTH * frame.pixel_ratio;
+    let reach_px = half_px + 1.0;
+    let at = select(start, to, vertex > 1u);
+    let outwards = select(-along, along, vertex > 1u);
+    // Half a width past the corner, so that three edges meet without a notch.
+    let shift_px = side * reach_px * vec2<f32>(-along.y, along.x) + half_px * outwards;
+    out.clip = at + vec4<f32>(shift_px * 2.0 / frame.viewport * at.w, 0.0, 0.0);
+    out.across_px = side * reach_px * at.w;
+    out.half_px = half_px;
+    return out;
+}
+
+@fragment
+fn fs_box(edge: Edge) -> @location(0) vec4<f32> {
+    // Perspective interpolation of a value times w gives w times the value that is linear on the screen;
+    // here, clip.w is 1/w.
+    let distance = abs(edge.across_px * edge.clip.w);
+    let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * frame.box_colour.a;
+    if alpha < 0.002 {
+        discard;
+    }
+    let colour = mix(frame.box_colour.rgb, frame.background.rgb, frame.dim);
+    return vec4<f32>(colour * alpha, alpha);
+}

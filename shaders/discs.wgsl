@@ -1,0 +1,255 @@
+// Particles as discs in their tangent planes, and the ring around one of them. See src/render/mod.rs.
+
+// Twin of `Frame` in src/render/layout.rs, which documents the fields.
+struct Frame {
+    clip_from_world: mat4x4<f32>,
+    eye: vec3<f32>,
+    perspective: f32,
+    forward: vec3<f32>,
+    disc_scale: f32,
+    key_light: vec3<f32>,
+    dim_backfaces: f32,
+    sky: vec3<f32>,
+    dim: f32,
+    background: vec4<f32>,
+    viewport: vec2<f32>,
+    pixel_ratio: f32,
+    time: f32,
+    box_min: vec3<f32>,
+    fade: f32,
+    box_max: vec3<f32>,
+    light_ground: f32,
+    box_colour: vec4<f32>,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+
+// One particle; twin of RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES.
+struct Particle {
+    @location(0) position: vec3<f32>,
+    @location(1) radius: f32,
+    @location(2) normal_oct: vec2<f32>,
+    @location(3) birth: f32,
+    @location(4) colour: vec4<f32>,
+}
+
+struct Disc {
+    @builtin(position) clip: vec4<f32>,
+    // Position in the disc's plane; the rim at length 1.
+    @location(0) uv: vec2<f32>,
+    // Linear colour, and the opacity by which birth and colour fade the disc.
+    @location(1) @interpolate(flat) colour: vec4<f32>,
+    // Key light along (t, b, n), and 1 for a disc seen from behind.
+    @location(2) @interpolate(flat) key: vec4<f32>,
+    // Sky direction along (t, b, n), and how edge-on the disc is: 0 seen from the front, 1 edge-on.
+    @location(3) @interpolate(flat) sky: vec4<f32>,
+    // Half axes on the screen in pixels: along t, along b.
+    @location(4) @interpolate(flat) axes_px: vec2<f32>,
+}
+
+// How far past the rim the quad reaches on the screen, in pixels: half a pixel of edge and half a pixel to spare,
+// since a pixel is shaded where its centre lies in the quad.
+const PAD_PX = 1.0;
+// In its own plane a quad reaches at most this many radii; beyond, it is widened on the screen, at constant depth.
+// Otherwise the pad of a disc seen edge-on would stab through its neighbours.
+const MAX_REACH = 2.0;
+// Born discs grow from this share of their size.
+const BIRTH_SIZE = 0.6;
+// Lean of the shading normal at the rim: a low dome, so that a disc looks like a bead when it is large.
+const DOME = 0.34;
+// Discs with a half axis below the first are points, above the second full discs, in pixels.
+const POINT_PX = vec2<f32>(0.7, 1.7);
+// Coverage from which a pixel counts as core: in points, in full discs.
+const CORE = vec2<f32>(0.5, 0.96);
+// Coverage below this is not worth blending: half a step of an 8-bit channel.
+const NOTHING = 0.002;
+
+fn oct_decode(e: vec2<f32>) -> vec3<f32> {
+    let z = 1.0 - abs(e.x) - abs(e.y);
+    let fold = max(-z, 0.0);
+    return normalize(vec3<f32>(e.x + select(fold, -fold, e.x >= 0.0), e.y + select(fold, -fold, e.y >= 0.0), z));
+}
+
+fn linear_from_srgb(c: vec3<f32>) -> vec3<f32> {
+    return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
+}
+
+// Unit vector perpendicular to n and to the line of sight v: the axis of the disc that does not foreshorten.
+fn facing_axis(n: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
+    var t = cross(n, v);
+    if dot(t, t) < 1e-6 {
+        // Seen face-on any axis will do; take one of the world's that is not along n.
+        t = cross(n, select(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), abs(n.x) > 0.7));
+    }
+    return normalize(t);
+}
+
+// From the centre to a point of the rim, on the screen, in pixels.
+fn axis_px(centre: vec4<f32>, rim: vec4<f32>) -> vec2<f32> {
+    return 0.5 * frame.viewport * (rim.xy / rim.w - centre.xy / centre.w);
+}
+
+fn hidden() -> vec4<f32> {
+    return vec4<f32>(0.0, 0.0, 2.0, 1.0);
+}
+
+fn quad_corner(vertex: u32) -> vec2<f32> {
+    return vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+}
+
+@vertex
+fn vs_disc(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    var out: Disc;
+    out.clip = hidden();
+    let age = select(1.0, clamp((frame.time - particle.birth) / max(frame.fade, 1e-6), 0.0, 1.0), frame.fade > 0.0);
+    let appear = age * age * (3.0 - 2.0 * age);
+    let opacity = appear * particle.colour.a;
+    let centre = frame.clip_from_world * vec4<f32>(particle.position, 1.0);
+    if particle.radius <= 0.0 || opacity <= NOTHING || centre.w <= 0.0 {
+        return out;
+    }
+
+    let outward = oct_decode(particle.normal_oct);
+    let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
+    let behind = dot(outward, v) < 0.0;
+    let n = select(outward, -outward, behind);
+    let t = facing_axis(n, v);
+    let b = cross(n, t);
+    let r = particle.radius * frame.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    let a_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * t, 1.0));
+    let b_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * b, 1.0));
+    let axes = max(vec2<f32>(length(a_px), length(b_px)), vec2<f32>(1e-4));
+    let a_dir = a_px / axes.x;
+    // An axis that points at the eye has no direction of its own on the screen.
+    let b_dir = select(vec2<f32>(-a_dir.y, a_dir.x), b_px / axes.y, axes.y > 1e-3);
+
+    let corner = quad_corner(vertex);
+    let reach = 1.0 + PAD_PX / axes;
+    let in_plane = corner * min(reach, vec2<f32>(MAX_REACH));
+    let on_screen = corner * (reach - min(reach, vec2<f32>(MAX_REACH))) * axes;
+    let world = particle.position + r * (in_plane.x * t + in_plane.y * b);
+    out.clip = frame.clip_from_world * vec4<f32>(world, 1.0);
+    out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.viewport * out.clip.w, 0.0, 0.0);
+
+    out.uv = corner * reach;
+    out.colour = vec4<f32>(linear_from_srgb(particle.colour.rgb), opacity);
+    out.key = vec4<f32>(dot(frame.key_light, t), dot(frame.key_light, b), dot(frame.key_light, n), select(0.0, 1.0, behind));
+    let edge_on = 1.0 - dot(n, v);
+    out.sky = vec4<f32>(dot(frame.sky, t), dot(frame.sky, b), dot(frame.sky, n), edge_on);
+    out.axes_px = axes;
+    return out;
+}
+
+// Share of the pixel that the disc covers, by the distance to the rim in pixels. Derivatives: call in uniform flow.
+fn coverage(disc: Disc) -> f32 {
+    let along_x = dpdx(disc.uv);
+    let along_y = dpdy(disc.uv);
+    let rho = max(length(disc.uv), 1e-6);
+    let slope = length(vec2<f32>(dot(disc.uv, along_x), dot(disc.uv, along_y))) / rho;
+    let inside_px = (1.0 - rho) / max(slope, 1e-6);
+    // Half a pixel from the centre of a thin ellipse lies its rim, whatever the estimate says.
+    let widest = 0.5 + min(disc.axes_px.x, disc.axes_px.y);
+    return clamp(min(0.5 + inside_px, widest), 0.0, 1.0);
+}
+
+fn shade(disc: Disc) -> vec3<f32> {
+    let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
+    let rho = min(length(disc.uv), 1.0);
+    // The dome: its normal leans outward by DOME at the rim.
+    let lean = disc.uv / max(length(disc.uv), 1e-6) * rho * rho * DOME * full;
+    let scale = inverseSqrt(1.0 + dot(lean, lean));
+    let toward_key = (dot(lean, disc.key.xy) + disc.key.z) * scale;
+    let toward_sky = (dot(lean, disc.sky.xy) + disc.sky.z) * scale;
+    let hemisphere = mix(0.46, 0.66, 0.5 + 0.5 * toward_sky);
+    // Wrapped: light reaches a little past the terminator, as from a large soft box.
+    let key = max((toward_key + 0.25) / 1.25, 0.0);
+    var light = hemisphere + 0.52 * key * key;
+    // The rim darkens, and the silhouette, so that order shows.
+    light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
+    light *= 1.0 - 0.30 * disc.sky.w * disc.sky.w * disc.sky.w;
+    let front = disc.colour.rgb * light;
+    let back = mix(disc.colour.rgb * light * 0.72, frame.background.rgb, frame.dim_backfaces);
+    return mix(mix(front, back, disc.key.w), frame.background.rgb, frame.dim);
+}
+
+// How much a disc is a disc and not a point.
+fn fullness(disc: Disc) -> f32 {
+    return smoothstep(POINT_PX.x, POINT_PX.y, min(disc.axes_px.x, disc.axes_px.y));
+}
+
+@fragment
+fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
+    let covered = coverage(disc) * disc.colour.a;
+    let full = fullness(disc);
+    if covered < mix(CORE.x, CORE.y, full) {
+        discard;
+    }
+    let alpha = mix(covered, 1.0, full);
+    return vec4<f32>(shade(disc) * alpha, alpha);
+}
+
+@fragment
+fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
+    let covered = coverage(disc) * disc.colour.a;
+    if covered >= mix(CORE.x, CORE.y, fullness(disc)) || covered < NOTHING {
+        discard;
+    }
+    return vec4<f32>(shade(disc) * covered, covered);
+}
+
+struct Ring {
+    @builtin(position) clip: vec4<f32>,
+    // Offset from the centre in pixels, along the axes of the ellipse.
+    @location(0) offset_px: vec2<f32>,
+    @location(1) @interpolate(flat) axes_px: vec2<f32>,
+}
+
+// The ring leaves this gap to its disc, and is that thick, in page pixels.
+const RING_GAP = 1.5;
+const RING_WIDTH = 2.0;
+// Smallest half axis of the ring, in page pixels, and smallest ratio of its axes.
+const RING_MIN = 4.0;
+const RING_SQUASH = 0.35;
+
+@vertex
+fn vs_ring(@builtin(vertex_index) vertex: u32, particle: Particle) -> Ring {
+    var out: Ring;
+    out.clip = hidden();
+    let centre = frame.clip_from_world * vec4<f32>(particle.position, 1.0);
+    if particle.radius <= 0.0 || centre.w <= 0.0 {
+        return out;
+    }
+    let n = oct_decode(particle.normal_oct);
+    let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
+    let t = facing_axis(n, v);
+    let r = particle.radius * frame.disc_scale;
+    let a_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * t, 1.0));
+    let a = max(length(a_px), 1e-4);
+    let squash = max(abs(dot(n, v)), RING_SQUASH);
+    let grow = (RING_GAP + 0.5 * RING_WIDTH) * frame.pixel_ratio;
+    out.axes_px = max(vec2<f32>(a, a * squash), vec2<f32>(RING_MIN * frame.pixel_ratio)) + grow;
+    out.offset_px = quad_corner(vertex) * (out.axes_px + 2.0 * RING_WIDTH * frame.pixel_ratio);
+    let a_dir = a_px / a;
+    let screen = out.offset_px.x * a_dir + out.offset_px.y * vec2<f32>(-a_dir.y, a_dir.x);
+    out.clip = centre + vec4<f32>(screen * 2.0 / frame.viewport * centre.w, 0.0, 0.0);
+    return out;
+}
+
+@fragment
+fn fs_ring(ring: Ring) -> @location(0) vec4<f32> {
+    // Distance to the ellipse to first order.
+    let p = ring.offset_px / ring.axes_px;
+    let rho = max(length(p), 1e-4);
+    let distance = abs((rho - 1.0) * rho / max(length(p / ring.axes_px), 1e-6));
+    let half = 0.5 * RING_WIDTH * frame.pixel_ratio;
+    // A line in the contrast to the ground, in a thin line of the ground's own kind: seen on any colour.
+    let line = clamp(half + 0.5 - distance, 0.0, 1.0);
+    let casing = 0.8 * clamp(half + 0.75 * frame.pixel_ratio + 0.5 - distance, 0.0, 1.0);
+    let ink = vec3<f32>(mix(1.0, 0.01, frame.light_ground));
+    let ground = vec3<f32>(1.0) - ink;
+    let alpha = max(line, casing);
+    if alpha < NOTHING {
+        discard;
+    }
+    return vec4<f32>(mix(ground, ink, line) * alpha, alpha);
+}

@@ -1,0 +1,248 @@
+//! The bytes that reach the GPU: one instance record per particle and one uniform block per picture, with the
+//! tables that the pipelines are built from and that the shader test compares with the WGSL.
+
+use bytemuck::{Pod, Zeroable};
+use core::mem::offset_of;
+
+/// What the vertex stage reads per particle, apart from its colour: 24 bytes.
+///
+/// The colour lies in a buffer of its own (see [`COLOUR_STRIDE`]), so that colouring by something else uploads 4 bytes
+/// a particle instead of 28 and no copy of the records has to be kept.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Record {
+    /// World position.
+    pub position: [f32; 3],
+    /// Repulsion radius in world units; 0 hides the particle.
+    pub radius: f32,
+    /// Unit normal, octahedral, two signed normalised 16-bit numbers (largest error 0.004°).
+    pub normal: [i16; 2],
+    /// Time of birth in seconds on the renderer's own clock.
+    pub birth: f32,
+}
+
+/// Bytes of one colour: red, green, blue, opacity; sRGB, 8 bits each.
+pub const COLOUR_STRIDE: usize = 4;
+
+impl Record {
+    /// Packs one particle.
+    ///
+    /// `normal` need not have unit length. A non-finite position or radius, or a radius that is not positive, gives a
+    /// record that is not drawn; a zero or non-finite normal gives +z.
+    #[must_use]
+    pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32) -> Self {
+        let drawable = radius > 0.0 && radius.is_finite() && position.iter().all(|c| c.is_finite());
+        Self {
+            position: if drawable { position } else { [0.0; 3] },
+            radius: if drawable { radius } else { 0.0 },
+            normal: oct_encode(normal),
+            birth,
+        }
+    }
+}
+
+/// A direction as two signed normalised 16-bit numbers: the octahedral map (Meyer et al. 2010; Cigolle et al.,
+/// "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014).
+#[must_use]
+pub fn oct_encode(n: [f32; 3]) -> [i16; 2] {
+    let sum = n[0].abs() + n[1].abs() + n[2].abs();
+    if !(sum > 0.0 && sum.is_finite()) {
+        return [0, 0];
+    }
+    let (x, y) = (n[0] / sum, n[1] / sum);
+    let (x, y) = if n[2] < 0.0 {
+        ((1.0 - y.abs()) * 1.0_f32.copysign(x), (1.0 - x.abs()) * 1.0_f32.copysign(y))
+    } else {
+        (x, y)
+    };
+    let quantise = |c: f32| (c * f32::from(i16::MAX)).round() as i16;
+    [quantise(x), quantise(y)]
+}
+
+/// The inverse of [`oct_encode`], as the vertex shader computes it.
+#[must_use]
+pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
+    let [x, y] = e.map(|c| (f32::from(c) / f32::from(i16::MAX)).max(-1.0));
+    let z = 1.0 - x.abs() - y.abs();
+    let fold = (-z).max(0.0);
+    let v = [x - fold.copysign(x), y - fold.copysign(y), z];
+    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+    v.map(|c| c / length)
+}
+
+/// The uniform block `Frame` of every shader: the camera, the light and the style of one picture.
+///
+/// Offsets follow WGSL's uniform rules, which agree with std140 for these types; [`Frame::FIELDS`] lists them for the test.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Frame {
+    /// Clip from world, column-major, depth 0 to 1.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Eye in world coordinates (perspective only).
+    pub eye: [f32; 3],
+    /// 1 for a perspective camera, 0 for an orthographic one.
+    pub perspective: f32,
+    /// Unit viewing direction in world coordinates.
+    pub forward: [f32; 3],
+    /// Radius of a disc as a share of the repulsion radius.
+    pub disc_scale: f32,
+    /// Unit direction to the key light, in world coordinates.
+    pub key_light: [f32; 3],
+    /// How far back faces fade towards the background, 0 to 1.
+    pub dim_backfaces: f32,
+    /// Unit direction to the sky of the hemisphere light, in world coordinates.
+    pub sky: [f32; 3],
+    /// How far the whole picture fades towards the background, 0 to 1.
+    pub dim: f32,
+    /// Background, linear, not multiplied by its opacity.
+    pub background: [f32; 4],
+    /// Width and height of the target in pixels.
+    pub viewport: [f32; 2],
+    /// Target pixels per page pixel: the unit of line widths.
+    pub pixel_ratio: f32,
+    /// Now, in seconds on the renderer's own clock.
+    pub time: f32,
+    /// Smallest corner of the clip box.
+    pub box_min: [f32; 3],
+    /// Seconds that a new particle takes to appear; 0 = at once.
+    pub fade: f32,
+    /// Largest corner of the clip box.
+    pub box_max: [f32; 3],
+    /// 0 where the background is dark, 1 where it is light.
+    pub light_ground: f32,
+    /// Colour of the box's edges, linear, not multiplied by its opacity.
+    pub box_colour: [f32; 4],
+}
+
+macro_rules! offsets {
+    ($type:ty: $($field:ident),+ $(,)?) => { &[$((stringify!($field), offset_of!($type, $field))),+] };
+}
+
+impl Frame {
+    /// Name and byte offset of every field, in order.
+    pub const FIELDS: &'static [(&'static str, usize)] = offsets!(Frame:
+        clip_from_world, eye, perspective, forward, disc_scale, key_light, dim_backfaces, sky, dim,
+        background, viewport, pixel_ratio, time, box_min, fade, box_max, light_ground, box_colour,
+    );
+}
+
+/// How the vertex stage reads an attribute. Names follow WebGPU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// One single-precision number.
+    Float32,
+    /// Three single-precision numbers.
+    Float32x3,
+    /// Two signed normalised 16-bit numbers.
+    Snorm16x2,
+    /// Four unsigned normalised bytes.
+    Unorm8x4,
+}
+
+impl Format {
+    /// Number of components that the shader sees; all are `f32` there.
+    #[must_use]
+    pub const fn components(self) -> usize {
+        match self {
+            Self::Float32 => 1,
+            Self::Snorm16x2 => 2,
+            Self::Float32x3 => 3,
+            Self::Unorm8x4 => 4,
+        }
+    }
+
+    /// Bytes in the buffer.
+    #[must_use]
+    pub const fn size(self) -> usize {
+        match self {
+            Self::Float32x3 => 12,
+            Self::Float32 | Self::Snorm16x2 | Self::Unorm8x4 => 4,
+        }
+    }
+}
+
+/// One per-instance attribute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attribute {
+    /// `@location` in the shaders.
+    pub location: u32,
+    /// Byte offset in its record.
+    pub offset: usize,
+    /// Its encoding.
+    pub format: Format,
+}
+
+/// The attributes of a [`Record`].
+pub const RECORD_ATTRIBUTES: [Attribute; 4] = [
+    Attribute { location: 0, offset: offset_of!(Record, position), format: Format::Float32x3 },
+    Attribute { location: 1, offset: offset_of!(Record, radius), format: Format::Float32 },
+    Attribute { location: 2, offset: offset_of!(Record, normal), format: Format::Snorm16x2 },
+    Attribute { location: 3, offset: offset_of!(Record, birth), format: Format::Float32 },
+];
+
+/// The attribute of the colour buffer.
+pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
+    [Attribute { location: 4, offset: 0, format: Format::Unorm8x4 }];
+
+/// `(file name, source)` of every shader. `tests/shaders.rs` checks that this lists all files of `shaders/`.
+pub const SHADERS: [(&str, &str); 2] = [
+    ("discs.wgsl", include_str!("../../shaders/discs.wgsl")),
+    ("box.wgsl", include_str!("../../shaders/box.wgsl")),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn octahedral_normals_come_back_within_five_thousandths_of_a_degree() {
+        let steps = 97;
+        let mut worst_deg = 0.0_f64;
+        for i in 0..=steps {
+            for j in 0..=2 * steps {
+                let theta = std::f32::consts::PI * i as f32 / steps as f32;
+                let phi = std::f32::consts::PI * j as f32 / steps as f32;
+                let n = [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()];
+                let [n, m] = [n, oct_decode(oct_encode(n.map(|c| 3.0 * c)))].map(|v| v.map(f64::from));
+                // The cross product, since the cosine of so small an angle says nothing.
+                let cross: f64 = (0..3)
+                    .map(|k| (n[(k + 1) % 3] * m[(k + 2) % 3] - n[(k + 2) % 3] * m[(k + 1) % 3]).powi(2))
+                    .sum();
+                assert!((0..3).map(|k| n[k] * m[k]).sum::<f64>() > 0.0, "{n:?} became {m:?}");
+                worst_deg = worst_deg.max(cross.sqrt().asin().to_degrees());
+            }
+        }
+        assert!(worst_deg < 0.005, "largest error {worst_deg}°");
+    }
+
+    #[test]
+    fn unusable_particles_become_records_that_are_not_drawn() {
+        let normal = [0.0, 0.0, 1.0];
+        for (position, radius) in [
+            ([f32::NAN, 0.0, 0.0], 1.0),
+            ([0.0, f32::INFINITY, 0.0], 1.0),
+            ([0.0; 3], 0.0),
+            ([0.0; 3], -1.0),
+            ([0.0; 3], f32::NAN),
+            ([0.0; 3], f32::INFINITY),
+        ] {
+            let record = Record::new(position, normal, radius, 0.0);
+            assert_eq!(record.radius, 0.0, "{position:?} {radius}");
+            assert!(record.position.iter().all(|c| c.is_finite()));
+        }
+        for bad in [[0.0; 3], [f32::NAN, 1.0, 0.0], [f32::INFINITY, 0.0, 0.0]] {
+            assert_eq!(oct_decode(Record::new([0.0; 3], bad, 1.0, 0.0).normal), [0.0, 0.0, 1.0], "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn attributes_tile_the_record_without_gap_or_overlap() {
+        let mut at = 0;
+        for attribute in RECORD_ATTRIBUTES {
+            assert_eq!(attribute.offset, at, "location {}", attribute.location);
+            at += attribute.format.size();
+        }
+        assert_eq!(at, size_of::<Record>());
+        assert_eq!(COLOUR_ATTRIBUTES[0].format.size(), COLOUR_STRIDE);
+    }
+}

@@ -1,0 +1,98 @@
+//! From the bytes of a read-back texture to the rows of a picture.
+
+/// Bytes of one row in a read-back buffer: rows start at multiples of 256 bytes (WebGPU, `bytesPerRow`).
+#[must_use]
+pub const fn padded_row(width_px: u32) -> u32 {
+    (4 * width_px).next_multiple_of(256)
+}
+
+/// RGBA rows from top to bottom, opacity not multiplied in, from rows padded as [`padded_row`] says.
+///
+/// `padded` holds premultiplied pixels; where `bgra` is set, blue comes first. Where `opaque` is set, the opacity is
+/// written as 255 whatever was drawn.
+///
+/// The colours are divided by the opacity in linear light, where they were multiplied.
+///
+/// # Panics
+///
+/// If `padded` is shorter than `height_px` rows.
+#[must_use]
+pub fn straight_rgba(padded: &[u8], width_px: u32, height_px: u32, bgra: bool, opaque: bool) -> Vec<u8> {
+    let row = 4 * width_px as usize;
+    let stride = padded_row(width_px) as usize;
+    let mut out = Vec::with_capacity(row * height_px as usize);
+    for y in 0..height_px as usize {
+        out.extend_from_slice(&padded[y * stride..y * stride + row]);
+    }
+    for pixel in out.as_chunks_mut::<4>().0 {
+        if bgra {
+            pixel.swap(0, 2);
+        }
+        if opaque {
+            pixel[3] = 255;
+        } else if pixel[3] < 255 {
+            let opacity = f32::from(pixel[3]) / 255.0;
+            for c in &mut pixel[..3] {
+                *c = if opacity > 0.0 { encode(decode(*c) / opacity) } else { 0 };
+            }
+        }
+    }
+    out
+}
+
+fn decode(byte: u8) -> f32 {
+    let c = f32::from(byte) / 255.0;
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+fn encode(linear: f32) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    (c * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn padding_is_dropped_and_blue_first_is_mended() {
+        let (width, height) = (3, 2);
+        let mut padded = vec![99_u8; (padded_row(width) * height) as usize];
+        for y in 0..2 {
+            for x in 0..3 {
+                let at = y * padded_row(width) as usize + 4 * x;
+                padded[at..at + 4].copy_from_slice(&[10 * x as u8, 100 + y as u8, 7, 255]);
+            }
+        }
+        let rgba = straight_rgba(&padded, width, height, false, false);
+        assert_eq!(rgba.len(), 24);
+        assert_eq!(&rgba[8..12], &[20, 100, 7, 255]);
+        assert_eq!(&rgba[12..16], &[0, 101, 7, 255]);
+        let bgra = straight_rgba(&padded, width, height, true, false);
+        assert_eq!(&bgra[8..12], &[7, 100, 20, 255]);
+    }
+
+    #[test]
+    fn rows_are_padded_to_256_bytes() {
+        assert_eq!([1, 63, 64, 65, 800].map(padded_row), [256, 256, 256, 512, 3328]);
+    }
+
+    #[test]
+    fn opacity_is_divided_out_in_linear_light() {
+        let half_of_white = encode(0.5);
+        let mut padded = vec![0_u8; 256];
+        padded[..4].copy_from_slice(&[half_of_white, half_of_white, 0, 128]);
+        let rgba = straight_rgba(&padded, 1, 1, false, false);
+        assert!(rgba[0] >= 253 && rgba[1] >= 253 && rgba[2] == 0 && rgba[3] == 128, "{rgba:?}");
+        assert_eq!(straight_rgba(&[0; 256], 1, 1, false, false), [0, 0, 0, 0]);
+        assert_eq!(straight_rgba(&[5; 256], 1, 1, false, true), [5, 5, 5, 255]);
+    }
+
+    #[test]
+    fn every_byte_survives_the_curve() {
+        for byte in 0..=255 {
+            assert_eq!(encode(decode(byte)), byte);
+        }
+    }
+}

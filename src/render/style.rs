@@ -1,0 +1,191 @@
+//! How the picture looks, as the page states it, and the uniform block that follows from style and camera.
+
+use super::layout::Frame;
+use super::view::View;
+use serde::Deserialize;
+
+/// The look of the picture. Colours are sRGB with components from 0 to 1 and opacity last.
+///
+/// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct Style {
+    /// Background. Its opacity matters only for a transparent picture; the canvas is opaque.
+    pub background: [f32; 4],
+    /// Radius of a disc as a share of the repulsion radius. At 1 the discs of a hexagonal packing touch;
+    /// the default leaves the gaps by which the eye sees the order.
+    pub disc_scale: f32,
+    /// Direction to the key light in view coordinates: x right, y up, z towards the viewer.
+    pub key_light_view: [f32; 3],
+    /// How far the whole picture fades towards the background: 0 not, 1 wholly.
+    pub dim: f32,
+    /// How far discs seen from behind fade towards the background.
+    pub dim_backfaces: f32,
+    /// Seconds that a new particle takes to appear; 0 = at once.
+    pub fade_s: f32,
+    /// Index of the particle with a ring around it; negative for none.
+    pub outline: i64,
+    /// The clip box, drawn by its edges.
+    #[serde(rename = "box")]
+    pub clip_box: Option<ClipBox>,
+    /// Canvas pixels per page pixel: lines and rings are that much thicker.
+    pub pixel_ratio: f32,
+}
+
+/// A box to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct ClipBox {
+    /// Smallest corner, in world coordinates.
+    pub min: [f32; 3],
+    /// Largest corner.
+    pub max: [f32; 3],
+    /// Colour of the edges, sRGB and opacity.
+    pub colour: [f32; 4],
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            background: [0.98, 0.98, 0.98, 1.0],
+            disc_scale: 0.92,
+            key_light_view: [-0.45, 0.65, 0.62],
+            dim: 0.0,
+            dim_backfaces: 0.55,
+            fade_s: 0.12,
+            outline: -1,
+            clip_box: None,
+            pixel_ratio: 1.0,
+        }
+    }
+}
+
+/// What a picture is drawn for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Size of the canvas, for which the view was made, in pixels.
+    pub canvas: [u32; 2],
+    /// Size of the target in pixels.
+    pub size: [u32; 2],
+    /// Now, in seconds on the renderer's own clock.
+    pub time: f32,
+}
+
+impl Style {
+    /// The uniform block for one picture.
+    #[must_use]
+    pub fn frame(&self, view: &View, target: Target) -> Frame {
+        let clamp = |v: f32, lo: f32, hi: f32| if v >= lo { v.min(hi) } else { lo };
+        let share = |v: f32| clamp(v, 0.0, 1.0);
+        let background = linear(self.background);
+        let clip_box = self.clip_box.unwrap_or(ClipBox { min: [0.0; 3], max: [0.0; 3], colour: [0.0; 4] });
+        let scale = target.size[1].max(1) as f32 / target.canvas[1].max(1) as f32;
+        Frame {
+            clip_from_world: view.clip_from_world_for(target.canvas, target.size),
+            eye: view.eye,
+            perspective: if view.is_perspective() { 1.0 } else { 0.0 },
+            forward: view.direction,
+            disc_scale: clamp(self.disc_scale, 0.01, 4.0),
+            key_light: view.world_from_view(self.key_light_view),
+            dim_backfaces: share(self.dim_backfaces),
+            sky: view.world_from_view([0.0, 1.0, 0.35]),
+            dim: share(self.dim),
+            background,
+            viewport: target.size.map(|n| n.max(1) as f32),
+            pixel_ratio: clamp(self.pixel_ratio, 0.25, 8.0) * scale,
+            time: target.time,
+            box_min: clip_box.min,
+            fade: clamp(self.fade_s, 0.0, 10.0),
+            box_max: clip_box.max,
+            light_ground: if luminance(background) > LIGHT_GROUND { 1.0 } else { 0.0 },
+            box_colour: linear(clip_box.colour),
+        }
+    }
+}
+
+/// Luminance at which black and white contrast equally with a ground (WCAG: √(1.05 · 0.05) − 0.05).
+const LIGHT_GROUND: f32 = 0.179;
+
+fn luminance(linear: [f32; 4]) -> f32 {
+    0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+}
+
+/// sRGB components to linear light (IEC 61966-2-1), clamped to 0 … 1; opacity as it is. NaN becomes 0.
+#[must_use]
+pub fn linear(srgb: [f32; 4]) -> [f32; 4] {
+    let [r, g, b, a] = srgb.map(|c| if c >= 0.0 { c.min(1.0) } else { 0.0 });
+    let curve = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    [curve(r), curve(g), curve(b), a]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_keys_take_their_defaults_and_all_keys_are_read() {
+        let style: Style = serde_json::from_str("{}").expect("empty style");
+        assert_eq!(style, Style::default());
+        let style: Style = serde_json::from_str(
+            r#"{"background":[0,0.5,1,0.25],"disc_scale":0.8,"key_light_view":[1,2,3],"dim":0.5,"dim_backfaces":0.3,
+                "fade_s":0,"outline":7,"box":{"min":[-1,-2,-3],"max":[1,2,3],"colour":[1,1,1,0.5]},"pixel_ratio":2}"#,
+        )
+        .expect("full style");
+        let clip_box =
+            ClipBox { min: [-1.0, -2.0, -3.0], max: [1.0, 2.0, 3.0], colour: [1.0, 1.0, 1.0, 0.5] };
+        assert_eq!(
+            style,
+            Style {
+                background: [0.0, 0.5, 1.0, 0.25],
+                disc_scale: 0.8,
+                key_light_view: [1.0, 2.0, 3.0],
+                dim: 0.5,
+                dim_backfaces: 0.3,
+                fade_s: 0.0,
+                outline: 7,
+                clip_box: Some(clip_box),
+                pixel_ratio: 2.0,
+            }
+        );
+        let style: Style = serde_json::from_str(r#"{"box":null}"#).expect("no box");
+        assert_eq!(style.clip_box, None);
+    }
+
+    #[test]
+    fn a_frame_is_finite_whatever_the_style_says() {
+        let nan = f32::NAN;
+        let style = Style {
+            background: [nan, -1.0, 2.0, nan],
+            disc_scale: nan,
+            key_light_view: [nan; 3],
+            dim: nan,
+            dim_backfaces: -3.0,
+            fade_s: nan,
+            outline: -5,
+            clip_box: None,
+            pixel_ratio: nan,
+        };
+        let target = Target { canvas: [0, 0], size: [0, 0], time: 0.0 };
+        let frame = style.frame(&View::default(), target);
+        assert!(bytemuck::cast_slice::<Frame, f32>(&[frame]).iter().all(|c| c.is_finite()), "{frame:?}");
+        assert_eq!((frame.dim, frame.dim_backfaces), (0.0, 0.0));
+        assert!(frame.disc_scale > 0.0);
+    }
+
+    #[test]
+    fn a_larger_picture_has_thicker_lines_and_the_same_camera() {
+        let (style, view) = (Style::default(), View::default());
+        let screen = style.frame(&view, Target { canvas: [640, 480], size: [640, 480], time: 0.0 });
+        let print = style.frame(&view, Target { canvas: [640, 480], size: [1280, 960], time: 0.0 });
+        assert_eq!(print.pixel_ratio, 2.0 * screen.pixel_ratio);
+        assert_eq!(print.clip_from_world, screen.clip_from_world);
+    }
+
+    #[test]
+    fn the_ground_is_called_light_where_black_contrasts_more() {
+        let target = Target { canvas: [1, 1], size: [1, 1], time: 0.0 };
+        for (grey, light) in [(0.0, 0.0), (0.3, 0.0), (0.5, 1.0), (1.0, 1.0)] {
+            let style = Style { background: [grey, grey, grey, 1.0], ..Style::default() };
+            assert_eq!(style.frame(&View::default(), target).light_ground, light, "grey {grey}");
+        }
+    }
+}

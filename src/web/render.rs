@@ -1,0 +1,279 @@
+//! The renderer as JavaScript sees it: newtypes and copies.
+//!
+//! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
+//! picture may be on its way while the next frame is drawn.
+
+use crate::render::style::Style;
+use crate::render::view::View;
+use crate::render::{Callbacks, Drawn, Renderer as Inner};
+use js_sys::{Float32Array, Function, Promise, Uint8Array, Uint32Array};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::{JsFuture, future_to_promise};
+use web_sys::HtmlCanvasElement;
+
+/// Particles copied at a time, so that a million need no second copy of themselves in this memory.
+const PIECE: u32 = 1 << 16;
+/// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2).
+const POLL_MS: i32 = 4;
+
+#[wasm_bindgen]
+extern "C" {
+    #[wasm_bindgen(js_name = setTimeout)]
+    fn set_timeout(handler: &Function, timeout_ms: i32);
+}
+
+/// Draws particles on a canvas. `free()` it when done; a lost device needs a new renderer on a new canvas.
+#[wasm_bindgen]
+pub struct Renderer {
+    inner: Rc<RefCell<Inner>>,
+    scratch: RefCell<Scratch>,
+    canvas: HtmlCanvasElement,
+    on_context_lost: Closure<dyn FnMut(web_sys::Event)>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    positions: Vec<f32>,
+    normals: Vec<f32>,
+    radii: Vec<f32>,
+    colours: Vec<u32>,
+}
+
+#[wasm_bindgen]
+impl Renderer {
+    /// Opens a graphics device on `canvas`, which must have no context of another kind yet.
+    ///
+    /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or "destroyed".
+    /// `on_error(message)` is called when the device refuses a call; drawing goes on.
+    ///
+    /// # Errors
+    ///
+    /// Throws an `Error` where the canvas, the adapter or the device cannot be had.
+    #[allow(clippy::allow_attributes, reason = "wasm-bindgen's expansion")]
+    pub async fn create(
+        canvas: HtmlCanvasElement,
+        on_lost: Function,
+        on_error: Function,
+    ) -> Result<Renderer, JsError> {
+        console_error_panic_hook::set_once();
+        // What a callback throws is its own affair: there is no caller to hand it to.
+        let callbacks = Callbacks {
+            on_lost: Arc::new(move |reason, message| {
+                let _ = on_lost.call2(&JsValue::NULL, &reason.into(), &message.into());
+            }),
+            on_error: Arc::new(move |message| {
+                let _ = on_error.call1(&JsValue::NULL, &message.into());
+            }),
+        };
+        let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
+        let inner = Rc::new(RefCell::new(Inner::new(target, callbacks).await?));
+        // wgpu hears nothing of a lost WebGL context. The default action would forbid restoring it.
+        let weak = Rc::downgrade(&inner);
+        let on_context_lost = Closure::new(move |event: web_sys::Event| {
+            event.prevent_default();
+            if let Some(inner) = weak.upgrade()
+                && let Ok(inner) = inner.try_borrow()
+            {
+                inner.mark_lost("unknown", "the WebGL context was lost");
+            }
+        });
+        canvas
+            .add_event_listener_with_callback("webglcontextlost", on_context_lost.as_ref().unchecked_ref())
+            .map_err(|_| JsError::new("the canvas takes no event listener"))?;
+        Ok(Self { inner, scratch: RefCell::default(), canvas, on_context_lost })
+    }
+
+    /// "webgpu" or "webgl2".
+    pub fn backend(&self) -> String {
+        self.inner.borrow().backend().to_owned()
+    }
+
+    /// What the driver calls the graphics adapter; may be empty, since browsers hide it.
+    pub fn adapter(&self) -> String {
+        self.inner.borrow().adapter().to_owned()
+    }
+
+    /// Largest number of particles that `write` takes.
+    pub fn max_particles(&self) -> u32 {
+        Inner::MAX_PARTICLES
+    }
+
+    /// Sets the canvas's size in pixels. Beyond the device's limit it shrinks in proportion (read `canvas.width` after
+    /// the next `draw`); where a side is 0 nothing is drawn.
+    pub fn resize(&self, width_px: u32, height_px: u32) {
+        self.inner.borrow_mut().resize([width_px, height_px]);
+    }
+
+    /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
+    ///
+    /// Three numbers per particle in `positions` and `normals`; `colours` are 0xAABBGGRR, sRGB. They begin to appear
+    /// at `birth_s` on the clock of `draw`; -Infinity shows them at once.
+    ///
+    /// # Errors
+    ///
+    /// Throws where the columns disagree in length or there are more particles than `max_particles()`.
+    pub fn write(
+        &self,
+        first: u32,
+        positions: &Float32Array,
+        normals: &Float32Array,
+        radii: &Float32Array,
+        colours: &Uint32Array,
+        birth_s: f64,
+    ) -> Result<(), JsError> {
+        let count = radii.length();
+        if positions.length() != 3 * count || normals.length() != 3 * count || colours.length() != count {
+            return Err(JsError::new(&format!(
+                "columns disagree: {} positions, {} normals, {count} radii, {} colours",
+                f64::from(positions.length()) / 3.0,
+                f64::from(normals.length()) / 3.0,
+                colours.length()
+            )));
+        }
+        check_end(first, count)?;
+        let mut inner = self.inner.borrow_mut();
+        let mut scratch = self.scratch.borrow_mut();
+        let Scratch { positions: p, normals: n, radii: r, colours: c } = &mut *scratch;
+        for from in (0..count).step_by(PIECE as usize) {
+            let to = count.min(from + PIECE);
+            copy(&positions.subarray(3 * from, 3 * to), p);
+            copy(&normals.subarray(3 * from, 3 * to), n);
+            copy(&radii.subarray(from, to), r);
+            copy_colours(&colours.subarray(from, to), c);
+            inner.write(first + from, p, n, r, c, birth_s);
+        }
+        Ok(())
+    }
+
+    /// Changes the colours of particles from `first` on.
+    ///
+    /// # Errors
+    ///
+    /// Throws where there are more particles than `max_particles()`.
+    pub fn write_colours(&self, first: u32, colours: &Uint32Array) -> Result<(), JsError> {
+        let count = colours.length();
+        check_end(first, count)?;
+        let mut inner = self.inner.borrow_mut();
+        let mut scratch = self.scratch.borrow_mut();
+        for from in (0..count).step_by(PIECE as usize) {
+            let to = count.min(from + PIECE);
+            copy_colours(&colours.subarray(from, to), &mut scratch.colours);
+            inner.write_colours(first + from, &scratch.colours);
+        }
+        Ok(())
+    }
+
+    /// Draws the first `count` particles from now on.
+    pub fn set_count(&self, count: u32) {
+        self.inner.borrow_mut().set_count(count);
+    }
+
+    /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing direction (3) in world
+    /// coordinates. Further numbers are ignored; whether the camera is orthographic follows from the matrix.
+    ///
+    /// # Errors
+    ///
+    /// Throws for fewer than 22 numbers and for a number that is not finite; the last camera stays.
+    pub fn set_view(&self, view: &[f32]) -> Result<(), JsError> {
+        self.inner.borrow_mut().set_view(View::from_slice(view)?);
+        Ok(())
+    }
+
+    /// Sets the look from JSON; missing keys take their defaults. The keys are the fields of `render::style::Style`.
+    ///
+    /// # Errors
+    ///
+    /// Throws for malformed JSON and for values of another type; the last style stays.
+    pub fn set_style(&self, json: &str) -> Result<(), JsError> {
+        let style: Style = serde_json::from_str(json)?;
+        self.inner.borrow_mut().set_style(style);
+        Ok(())
+    }
+
+    /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
+    pub fn draw(&self, time_s: f64) -> String {
+        match self.inner.borrow_mut().draw(time_s) {
+            Drawn::Drawn => "drawn",
+            Drawn::Skipped => "skipped",
+            Drawn::Lost => "lost",
+        }
+        .to_owned()
+    }
+
+    /// `[width, height]` that `read_pixels` draws for a wanted size: the wanted one unless the device cannot.
+    pub fn picture_size(&self, width_px: u32, height_px: u32) -> Uint32Array {
+        Uint32Array::from(self.inner.borrow().picture_size([width_px, height_px]).as_slice())
+    }
+
+    /// Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle fully shown, and
+    /// resolves to its pixels: rows from top to bottom, red, green, blue, opacity (not multiplied in), sRGB. Rejects
+    /// where the device is lost.
+    pub fn read_pixels(&self, width_px: u32, height_px: u32, transparent: bool) -> Promise {
+        let inner = Rc::clone(&self.inner);
+        future_to_promise(async move {
+            let lost = || JsError::new("the graphics device is lost");
+            let picture = inner
+                .borrow_mut()
+                .picture([width_px, height_px], transparent, f64::INFINITY)
+                .ok_or_else(lost)?;
+            let state = Arc::new((AtomicBool::new(false), AtomicBool::new(false)));
+            picture.map({
+                let state = Arc::clone(&state);
+                move |ok| {
+                    state.1.store(ok, Ordering::Relaxed);
+                    state.0.store(true, Ordering::Relaxed);
+                }
+            });
+            while !state.0.load(Ordering::Relaxed) {
+                if inner.borrow().is_lost() {
+                    return Err(lost().into());
+                }
+                inner.borrow().poll();
+                let tick = Promise::new(&mut |resolve, _| set_timeout(&resolve, POLL_MS));
+                JsFuture::from(tick).await?;
+            }
+            if !state.1.load(Ordering::Relaxed) {
+                return Err(lost().into());
+            }
+            let pixels = picture.pixels().ok_or_else(lost)?;
+            Ok(Uint8Array::from(pixels.as_slice()).into())
+        })
+    }
+
+    /// Gives the device and its memory back; later calls do nothing. `on_lost` hears "destroyed".
+    pub fn destroy(&self) {
+        self.inner.borrow().destroy();
+    }
+}
+
+impl Drop for Renderer {
+    fn drop(&mut self) {
+        // Fails only for a listener that is not there.
+        let _ = self.canvas.remove_event_listener_with_callback(
+            "webglcontextlost",
+            self.on_context_lost.as_ref().unchecked_ref(),
+        );
+    }
+}
+
+fn check_end(first: u32, count: u32) -> Result<(), JsError> {
+    let end = u64::from(first) + u64::from(count);
+    if end > u64::from(Inner::MAX_PARTICLES) {
+        return Err(JsError::new(&format!("{end} particles, at most {} are drawn", Inner::MAX_PARTICLES)));
+    }
+    Ok(())
+}
+
+fn copy(from: &Float32Array, to: &mut Vec<f32>) {
+    to.resize(from.length() as usize, 0.0);
+    from.copy_to(to);
+}
+
+fn copy_colours(from: &Uint32Array, to: &mut Vec<u32>) {
+    to.resize(from.length() as usize, 0);
+    from.copy_to(to);
+}

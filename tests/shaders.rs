@@ -1,0 +1,336 @@
+//! Every shader, without a GPU: it is valid WGSL, translates to GLSL ES 3.00 as wgpu's WebGL2 back end
+//! translates it, and reads the bytes where the Rust side writes them.
+
+use marching_particles::render::layout::{COLOUR_ATTRIBUTES, Frame, RECORD_ATTRIBUTES, SHADERS};
+use naga::back::glsl;
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, ScalarKind, ShaderStage, TypeInner, VectorSize};
+use std::path::Path;
+
+/// Parses and validates all shaders; WebGL2 and WebGPU without optional features grant no capability.
+fn shaders() -> Vec<(&'static str, Module, ModuleInfo)> {
+    SHADERS
+        .into_iter()
+        .map(|(name, source)| {
+            let module = naga::front::wgsl::parse_str(source)
+                .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
+            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
+            (name, module, info)
+        })
+        .collect()
+}
+
+#[test]
+fn every_shader_file_is_known_and_used() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut files: Vec<String> = std::fs::read_dir(&folder)
+        .expect("the folder shaders/")
+        .map(|entry| entry.expect("an entry of shaders/").file_name().into_string().expect("a UTF-8 name"))
+        .collect();
+    files.sort();
+    let mut known = SHADERS.map(|(name, _)| name.to_owned()).to_vec();
+    known.sort();
+    assert_eq!(files, known);
+    assert!(!files.is_empty());
+    for (name, module, _) in shaders() {
+        for stage in [ShaderStage::Vertex, ShaderStage::Fragment] {
+            assert!(
+                module.entry_points.iter().any(|entry| entry.stage == stage),
+                "{name}: no {stage:?} stage"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_entry_point_translates_to_glsl_es_300() {
+    let options = glsl::Options {
+        version: glsl::Version::Embedded { version: 300, is_webgl: true },
+        writer_flags: glsl::WriterFlags::ADJUST_COORDINATE_SPACE | glsl::WriterFlags::FORCE_POINT_SIZE,
+        ..glsl::Options::default()
+    };
+    let mut translated = 0;
+    for (name, module, info) in shaders() {
+        for entry in &module.entry_points {
+            let pipeline = glsl::PipelineOptions {
+                shader_stage: entry.stage,
+                entry_point: entry.name.clone(),
+                multiview: None,
+            };
+            let mut text = String::new();
+            let policies = naga::proc::BoundsCheckPolicies::default();
+            let mut writer = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
+            let reflection = writer.write().unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
+            assert!(text.starts_with("#version 300 es"), "{name}, {}", entry.name);
+            assert!(!text.contains("buffer "), "{name}, {}: WebGL2 has no storage buffers", entry.name);
+            let uses_frame = reflection.uniforms.len();
+            assert!(uses_frame <= 1, "{name}, {}: {uses_frame} uniform blocks", entry.name);
+            translated += 1;
+        }
+    }
+    assert!(translated >= 2 * SHADERS.len(), "{translated} entry points");
+}
+
+#[test]
+fn uniform_blocks_have_the_layout_of_their_rust_twins() {
+    for (name, module, _) in shaders() {
+        let frame = module
+            .global_variables
+            .iter()
+            .find(|(_, variable)| variable.space == naga::AddressSpace::Uniform)
+            .map(|(_, variable)| &module.types[variable.ty])
+            .unwrap_or_else(|| panic!("{name}: no uniform block"));
+        assert_eq!(frame.name.as_deref(), Some("Frame"), "{name}");
+        let TypeInner::Struct { members, span } = &frame.inner else { panic!("{name}: Frame is no struct") };
+        let fields: Vec<(&str, usize)> = members
+            .iter()
+            .map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize))
+            .collect();
+        assert_eq!(fields, Frame::FIELDS, "{name}");
+        assert_eq!(*span as usize, size_of::<Frame>(), "{name}");
+    }
+}
+
+/// What the disc shader declares for its attributes is what the pipeline feeds it.
+#[test]
+fn vertex_inputs_match_the_attribute_tables() {
+    let mut checked = 0;
+    for (name, module, _) in shaders() {
+        for entry in module.entry_points.iter().filter(|entry| entry.stage == ShaderStage::Vertex) {
+            let inputs: Vec<(u32, usize)> = entry
+                .function
+                .arguments
+                .iter()
+                .filter_map(|argument| match &module.types[argument.ty].inner {
+                    TypeInner::Struct { members, .. } => Some(members),
+                    _ => None,
+                })
+                .flatten()
+                .map(|member| {
+                    let Some(naga::Binding::Location { location, .. }) = member.binding else {
+                        panic!("{name}, {}: a member without a location", entry.name)
+                    };
+                    (location, components(&module.types[member.ty].inner))
+                })
+                .collect();
+            if inputs.is_empty() {
+                continue;
+            }
+            let table: Vec<(u32, usize)> = RECORD_ATTRIBUTES
+                .iter()
+                .chain(&COLOUR_ATTRIBUTES)
+                .map(|attribute| (attribute.location, attribute.format.components()))
+                .collect();
+            assert_eq!(inputs, table, "{name}, {}", entry.name);
+            checked += 1;
+        }
+    }
+    assert!(checked >= 2, "{checked} vertex stages read particles");
+}
+
+/// Number of `f32` components.
+fn components(inner: &TypeInner) -> usize {
+    match inner {
+        TypeInner::Scalar(scalar) if scalar.kind == ScalarKind::Float => 1,
+        TypeInner::Vector { size, scalar } if scalar.kind == ScalarKind::Float => match size {
+            VectorSize::Bi => 2,
+            VectorSize::Tri => 3,
+            VectorSize::Quad => 4,
+        },
+        other => panic!("not a vector of floats: {other:?}"),
+    }
+}
+
+/// Words that WGSL reserves and naga nevertheless takes as names; browsers refuse them.
+#[test]
+fn no_name_is_a_reserved_word() {
+    for (name, source) in SHADERS {
+        let code: String =
+            source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+        let words: Vec<&str> = code
+            .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .filter(|word| !word.is_empty())
+            .collect();
+        assert!(words.contains(&"fn"), "{name}: no code found");
+        for word in words {
+            assert!(!RESERVED.contains(&word), "{name}: `{word}` is reserved");
+        }
+    }
+}
+
+/// WGSL, §16.2 "Reserved words".
+const RESERVED: &[&str] = &[
+    "NULL",
+    "Self",
+    "abstract",
+    "active",
+    "alignas",
+    "alignof",
+    "as",
+    "asm",
+    "asm_fragment",
+    "async",
+    "attribute",
+    "auto",
+    "await",
+    "become",
+    "binding_array",
+    "cast",
+    "catch",
+    "class",
+    "co_await",
+    "co_return",
+    "co_yield",
+    "coherent",
+    "column_major",
+    "common",
+    "compile",
+    "compile_fragment",
+    "concept",
+    "const_cast",
+    "consteval",
+    "constexpr",
+    "constinit",
+    "crate",
+    "debugger",
+    "decltype",
+    "delete",
+    "demote",
+    "demote_to_helper",
+    "do",
+    "dynamic_cast",
+    "enum",
+    "explicit",
+    "export",
+    "extends",
+    "extern",
+    "external",
+    "fallthrough",
+    "filter",
+    "final",
+    "finally",
+    "friend",
+    "from",
+    "fxgroup",
+    "get",
+    "goto",
+    "groupshared",
+    "highp",
+    "impl",
+    "implements",
+    "import",
+    "inline",
+    "instanceof",
+    "interface",
+    "layout",
+    "lowp",
+    "macro",
+    "macro_rules",
+    "match",
+    "mediump",
+    "meta",
+    "mod",
+    "module",
+    "move",
+    "mut",
+    "mutable",
+    "namespace",
+    "new",
+    "nil",
+    "noexcept",
+    "noinline",
+    "nointerpolation",
+    "non_coherent",
+    "noncoherent",
+    "noperspective",
+    "null",
+    "nullptr",
+    "of",
+    "operator",
+    "package",
+    "packoffset",
+    "partial",
+    "pass",
+    "patch",
+    "pixelfragment",
+    "precise",
+    "precision",
+    "premerge",
+    "priv",
+    "protected",
+    "pub",
+    "public",
+    "readonly",
+    "ref",
+    "regardless",
+    "register",
+    "reinterpret_cast",
+    "require",
+    "resource",
+    "restrict",
+    "self",
+    "set",
+    "shared",
+    "sizeof",
+    "smooth",
+    "snorm",
+    "static",
+    "static_assert",
+    "static_cast",
+    "std",
+    "subroutine",
+    "super",
+    "target",
+    "template",
+    "this",
+    "thread_local",
+    "throw",
+    "trait",
+    "try",
+    "type",
+    "typedef",
+    "typeid",
+    "typename",
+    "typeof",
+    "union",
+    "unless",
+    "unorm",
+    "unsafe",
+    "unsized",
+    "use",
+    "using",
+    "varying",
+    "virtual",
+    "volatile",
+    "wgsl",
+    "where",
+    "with",
+    "writeonly",
+    "yield",
+];
+
+/// Vertex and fragment stages of one file agree on what passes between them.
+#[test]
+fn stages_pass_on_the_same_struct() {
+    for (name, module, _) in shaders() {
+        let passed = |stage| {
+            let mut types: Vec<_> = module
+                .entry_points
+                .iter()
+                .filter(|entry| entry.stage == stage)
+                .map(|entry| match stage {
+                    ShaderStage::Vertex => entry.function.result.as_ref().expect("a vertex output").ty,
+                    _ => entry.function.arguments[0].ty,
+                })
+                .map(|ty| module.types[ty].name.clone().unwrap_or_default())
+                .collect();
+            types.sort();
+            types.dedup();
+            types
+        };
+        assert_eq!(passed(ShaderStage::Vertex), passed(ShaderStage::Fragment), "{name}");
+    }
+}
