@@ -25,7 +25,7 @@ export class LoadError extends Error {
  * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
  * @returns {Promise<WebAssembly.Module>}
  */
-export async function loadModule(url, env = { fetch: globalThis.fetch, wasm: globalThis.WebAssembly }) {
+export async function loadModule(url, env = { fetch: (...request) => globalThis.fetch(...request), wasm: globalThis.WebAssembly }) {
   const { wasm } = env;
   if (!wasm) throw new LoadError('no_wasm', 'This browser has WebAssembly switched off. The sampler needs it.');
   if (!wasm.validate(SIMD_PROBE)) throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
