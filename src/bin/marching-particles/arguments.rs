@@ -1,0 +1,209 @@
+//! What can be asked for.
+
+use clap::{Args, Parser, Subcommand};
+use marching_particles::math::Bounds;
+use std::path::PathBuf;
+
+/// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, long_about = LONG_ABOUT, after_long_help = AFTER, max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const LONG_ABOUT: &str = "\
+Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles.
+
+A front of particles grows over the surface, each one placing its neighbours around it in a hexagon, until the fronts \
+meet; then the particles push each other apart. The result is points with normals, almost all with six neighbours at \
+the same distance.";
+
+const AFTER: &str = "\
+Examples:
+  marching-particles surfaces
+  marching-particles sample --surface torus --out torus.ply
+  marching-particles sample --surface ellipsoid --count 55748 --json
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Sample a surface, write it to files and say how good it is
+    #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
+    Sample(Sample),
+    /// List the named surfaces
+    Surfaces(Surfaces),
+}
+
+const SAMPLE_LONG: &str = "\
+Sample a surface, write it to files and say how good it is.
+
+Name a surface or give a formula. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
+their number. Without --out nothing is written, only measured.";
+
+const SAMPLE_AFTER: &str = "\
+Formulas:
+  x y z, numbers, + - * / ^, brackets, and f = g. A product may leave out its sign where it is clear: 2x, x y, 3(x+1).
+  pi e tau phi; sqrt cbrt abs sign min max floor exp ln log10 sin cos tan asin acos atan atan2 sinh cosh tanh hypot;
+  smin(a,b,k) and smax(a,b,k) join smoothly. Negative is inside. Other names are parameters: --param a=2.
+
+Examples:
+  marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
+  marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
+  marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 4 --radius 0.05
+  marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
+
+Exit codes:
+  0  done
+  1  a file could not be written
+  2  the command, the formula or a setting cannot be understood
+  3  there is nothing to sample: no surface in the box, a constant or undefined formula
+  4  more particles than the limit; what was placed before it was reached is written";
+
+/// Arguments of `sample`.
+#[derive(Debug, Args)]
+pub(crate) struct Sample {
+    /// Named surface (see `surfaces`); the first one of them by default
+    #[arg(long, value_name = "ID", help_heading = "Surface")]
+    pub(crate) surface: Option<String>,
+
+    /// Formula of the surface; with --surface, in the place of its own
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) formula: Option<String>,
+
+    /// Value of a parameter; once for each
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
+    pub(crate) parameters: Vec<(String, f64)>,
+
+    /// Box to sample in: H for -H..H on each axis, three half-widths, or the two corners (six numbers), separated by commas.
+    /// Default: the surface's own box, 2 for a formula
+    #[arg(long = "box", value_name = "NUMBERS", value_parser = bounds, allow_hyphen_values = true, help_heading = "Surface")]
+    pub(crate) bounds: Option<Bounds>,
+
+    /// Radius of the particles: a share of the box diagonal (0.6%, the default) or a length (0.01)
+    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = radius, conflicts_with = "count", help_heading = "Sampling")]
+    pub(crate) radius: Option<Radius>,
+
+    /// Number of particles, met within 3 %
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
+    pub(crate) count: Option<u32>,
+
+    /// Relaxation steps
+    #[arg(long, value_name = "STEPS", default_value_t = defaults().relax_steps, help_heading = "Sampling")]
+    pub(crate) relax: u32,
+
+    /// Chooses where the first front begins
+    #[arg(long, value_name = "N", default_value_t = defaults().seed, help_heading = "Sampling")]
+    pub(crate) seed: u64,
+
+    /// How near, in units of two radii, a new particle must come to an old one to be the same
+    #[arg(long, value_name = "SHARE", default_value_t = defaults().match_tolerance, help_heading = "Sampling")]
+    pub(crate) match_tolerance: f64,
+
+    /// Most particles; default: 200,000, or a tenth more than --count
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
+    pub(crate) max_particles: Option<u32>,
+
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence), csv (the same), xyz
+    /// or npy (position, normal). May be given again; replaces what is there
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) out: Vec<PathBuf>,
+
+    /// Print one line of JSON instead of text
+    #[arg(long, help_heading = "Output")]
+    pub(crate) json: bool,
+
+    /// Show no progress bar (there is none without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// Arguments of `surfaces`.
+#[derive(Debug, Args)]
+pub(crate) struct Surfaces {
+    /// Print one line of JSON instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The size of the particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Radius {
+    /// Share of the box diagonal.
+    Share(f64),
+    /// In the field's units.
+    Length(f64),
+}
+
+fn defaults() -> marching_particles::sampler::Settings {
+    marching_particles::sampler::Settings::default()
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{text}` is not a number")),
+    }
+}
+
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("a parameter is given as NAME=VALUE, like a=2")?;
+    Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn radius(text: &str) -> Result<Radius, String> {
+    let radius = match text.strip_suffix('%') {
+        Some(share) => Radius::Share(number(share)? / 100.0),
+        None => Radius::Length(number(text)?),
+    };
+    match radius {
+        Radius::Share(value) | Radius::Length(value) if value > 0.0 => Ok(radius),
+        _ => Err("a radius must be positive".to_owned()),
+    }
+}
+
+fn bounds(text: &str) -> Result<Bounds, String> {
+    let numbers = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
+    let bounds = match numbers[..] {
+        [half] => Bounds::cube(half),
+        [x, y, z] => Bounds::symmetric([x, y, z]),
+        [x0, y0, z0, x1, y1, z1] => Bounds { min: [x0, y0, z0], max: [x1, y1, z1] },
+        _ => return Err(format!("a box takes one, three or six numbers, not {}", numbers.len())),
+    };
+    if bounds.is_valid() {
+        Ok(bounds)
+    } else {
+        Err("the box is empty: it needs min < max on every axis".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn command_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn radius_is_a_share_or_a_length() {
+        assert_eq!(radius("0.6%"), Ok(Radius::Share(0.006)));
+        assert_eq!(radius("2 %"), Ok(Radius::Share(0.02)));
+        assert_eq!(radius("0.01"), Ok(Radius::Length(0.01)));
+        for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
+            assert!(radius(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn box_takes_one_three_or_six_numbers() {
+        assert_eq!(bounds("1.5"), Ok(Bounds::cube(1.5)));
+        assert_eq!(bounds("1, 2,3"), Ok(Bounds::symmetric([1.0, 2.0, 3.0])));
+        assert_eq!(bounds("-1,0,0,1,2,3"), Ok(Bounds { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 3.0] }));
+        for bad in ["", "1,2", "0", "-1", "1,0,1", "0,0,0,1,1,0", "a", "1e999"] {
+            assert!(bounds(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! What can go wrong, in words, and the exit code it has.
+
+use marching_particles::field::formula::FormulaError;
+use std::fmt;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A file could not be written.
+pub(crate) const FILE: u8 = 1;
+/// The command, the formula or a setting cannot be understood. Also clap's code.
+pub(crate) const USAGE: u8 = 2;
+/// There is nothing to sample.
+pub(crate) const NOTHING: u8 = 3;
+/// More particles than the limit.
+pub(crate) const LIMIT: u8 = 4;
+
+/// Why the tool stops.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A mistake in a formula, with the text it is in.
+    Formula { text: String, error: Box<FormulaError> },
+    /// Any other mistake in the command.
+    Usage(String),
+    /// No particle could be placed.
+    Nothing(String),
+    /// More particles than the limit would be placed.
+    Limit(String),
+    /// A file could not be written.
+    File { path: PathBuf, error: std::io::Error },
+    /// Standard output is gone: whoever read it has read enough.
+    Output,
+}
+
+impl Failure {
+    pub(crate) fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Formula { .. } | Self::Usage(_) => USAGE,
+            Self::Nothing(_) => NOTHING,
+            Self::Limit(_) => LIMIT,
+            Self::File { .. } => FILE,
+            Self::Output => 0,
+        })
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            Self::Output
+        } else {
+            Self::File { path: PathBuf::from("standard output"), error }
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Formula { text, error } => formula(f, text, error),
+            Self::Usage(message) | Self::Nothing(message) | Self::Limit(message) => {
+                write!(f, "error: {message}")
+            }
+            Self::File { path, error } => {
+                write!(f, "error: {} could not be written: {error}", path.display())
+            }
+            Self::Output => Ok(()),
+        }
+    }
+}
+
+/// The message, the formula, and carets under the place.
+fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt::Result {
+    write!(f, "error: {}", error.message)?;
+    // A very long formula says nothing to the eye.
+    const LONGEST: usize = 240;
+    if !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
+        // One column per character: line breaks and tabs would shift the carets.
+        let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let before = text[..error.span.start].chars().count();
+        let marked = text.get(error.span.clone()).map_or(1, |span| span.chars().count().max(1));
+        write!(f, "\n\n  {line}\n  {:before$}{}", "", "^".repeat(marked))?;
+    }
+    if let Some(suggestion) = &error.suggestion {
+        write!(f, "\n\nhelp: try `{suggestion}` there")?;
+    }
+    if !error.names.is_empty() {
+        let parameters: Vec<String> = error.names.iter().map(|name| format!("--param {name}=1")).collect();
+        write!(f, "\n\nhelp: to make it a parameter, add {}", parameters.join(" "))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,274 @@
+//! `sample`: one run, its files and its figures.
+
+use crate::arguments::{Radius, Sample};
+use crate::failure::{Failure, LIMIT};
+use crate::summary;
+use indicatif::{ProgressBar, ProgressStyle};
+use marching_particles::export::{self, Format};
+use marching_particles::field::formula::Parameter;
+use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
+use marching_particles::sampler::{Phase, Progress, Settings, SizeMode, StopReason};
+use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Report, Session};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Units of work between two looks at the clock: about 0.1 ms, so that the times of the phases are right to that.
+const BUDGET: u32 = 256;
+/// Box of a formula without one.
+const FORMULA_BOX: Bounds = Bounds::cube(2.0);
+/// Room above a wanted count, which is met within 3 %.
+const ROOM: f64 = 1.1;
+
+/// Seconds of wall time by phase.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Seconds {
+    pub(crate) seeding: f64,
+    pub(crate) generation: f64,
+    pub(crate) relaxation: f64,
+    pub(crate) quality: f64,
+    pub(crate) writing: f64,
+}
+
+/// Everything about a run, as `--json` prints it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    pub(crate) version: &'static str,
+    pub(crate) surface: Option<&'static str>,
+    pub(crate) formula: String,
+    pub(crate) parameters: BTreeMap<String, f64>,
+    pub(crate) bounds: Bounds,
+    pub(crate) settings: Settings,
+    pub(crate) predicted_count: u64,
+    #[serde(flatten)]
+    pub(crate) report: Report,
+    pub(crate) seconds: Seconds,
+    /// Largest resident memory of the process, in 10⁶ bytes; null where the system does not say.
+    pub(crate) peak_mb: Option<f64>,
+    /// The same at the end of the sampling, before quality and files.
+    pub(crate) peak_sampling_mb: Option<f64>,
+    pub(crate) files: Vec<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
+    let formats = formats(&arguments.out)?;
+    let mut session = Session::new();
+    let answer = set_field(&mut session, arguments)?;
+    let settings = settings(arguments, &answer.bounds);
+
+    let mut seconds = Seconds::default();
+    let clock = Clock::start();
+    let start = session.start(&settings).map_err(|error| Failure::Usage(error.to_string()))?;
+    seconds.seeding += clock.seconds();
+    if start.predicted_count > u64::from(settings.max_particles) {
+        return Err(Failure::Limit(format!(
+            "about {} particles of this radius would fit on the surface, more than the limit of {}; \
+             choose a larger --radius, or allow them with --max-particles {}",
+            start.predicted_count,
+            settings.max_particles,
+            (start.predicted_count as f64 * ROOM).ceil()
+        )));
+    }
+    let bar = bar(arguments.quiet);
+    let last = sample(&mut session, &mut seconds, &bar);
+    bar.finish_and_clear();
+    let peak_sampling_mb = peak_mb();
+    let count = session.count();
+    if count == 0 {
+        let reason = last.message.unwrap_or_else(|| "no particle could be placed".to_owned());
+        return Err(Failure::Nothing(reason));
+    }
+
+    let clock = Clock::start();
+    let report = session.report();
+    seconds.quality = clock.seconds();
+    let clock = Clock::start();
+    for (path, format) in arguments.out.iter().zip(formats) {
+        write_file(path, format, &session).map_err(|error| Failure::File { path: path.clone(), error })?;
+    }
+    seconds.writing = clock.seconds();
+
+    let capped = report.stop_reason == Some(StopReason::Cap);
+    let outcome = Outcome {
+        version: env!("CARGO_PKG_VERSION"),
+        surface: answer.surface,
+        formula: answer.formula,
+        parameters: answer.parameters.into_iter().map(|p| (p.name, p.value)).collect(),
+        bounds: answer.bounds,
+        settings,
+        predicted_count: start.predicted_count,
+        report,
+        seconds,
+        peak_mb: peak_mb(),
+        peak_sampling_mb,
+        files: arguments.out.clone(),
+    };
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", serde_json::to_string(&outcome).map_err(std::io::Error::other)?)?;
+    } else {
+        summary::write(&mut out, &outcome)?;
+    }
+    if capped {
+        eprintln!(
+            "warning: stopped at the limit of {} particles; allow more with --max-particles",
+            settings.max_particles
+        );
+        return Ok(ExitCode::from(LIMIT));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The format of each file, checked before any work is done.
+fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
+    paths
+        .iter()
+        .map(|path| {
+            let extension = path.extension().unwrap_or_default().to_string_lossy();
+            Format::of_extension(&extension).ok_or_else(|| {
+                let known: Vec<&str> = Format::ALL.iter().map(|(name, _)| *name).collect();
+                Failure::Usage(format!(
+                    "{} has no extension that names a format; known are {}",
+                    path.display(),
+                    known.join(", ")
+                ))
+            })
+        })
+        .collect()
+}
+
+fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, Failure> {
+    let of_surface = arguments.surface.as_deref().and_then(gallery::find);
+    // A formula of one's own is not the default surface's: neither are its parameters and its box.
+    let declare = match of_surface {
+        Some(_) => Vec::new(),
+        None => arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
+    };
+    let own = arguments.formula.is_some() && of_surface.is_none();
+    let request = FieldRequest {
+        surface: arguments.surface.clone(),
+        formula: arguments.formula.clone(),
+        parameters: arguments.parameters.iter().cloned().collect(),
+        declare: if own { declare } else { Vec::new() },
+        bounds: arguments.bounds.or(own.then_some(FORMULA_BOX)),
+    };
+    let answer = session.set_field(&request).map_err(|error| match error {
+        FieldError::Formula(error) => {
+            Failure::Formula { text: arguments.formula.clone().unwrap_or_default(), error: Box::new(error) }
+        }
+        FieldError::UnknownSurface(id) => Failure::Usage(unknown_surface(&id)),
+        FieldError::Box => Failure::Usage(error.to_string()),
+    })?;
+    for (name, _) in &arguments.parameters {
+        if !answer.parameters.iter().any(|parameter| parameter.name == *name) {
+            let known: Vec<&str> = answer.parameters.iter().map(|p| p.name.as_str()).collect();
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            return Err(Failure::Usage(format!(
+                "the formula has no parameter `{name}`; its parameters: {known}"
+            )));
+        }
+    }
+    Ok(answer)
+}
+
+fn unknown_surface(id: &str) -> String {
+    let known: Vec<&str> = gallery::SURFACES.iter().map(|surface| surface.id).collect();
+    format!("there is no surface `{id}`; known are {}", known.join(", "))
+}
+
+fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
+    let default = Settings::default();
+    Settings {
+        size_mode: if arguments.count.is_some() { SizeMode::Count } else { SizeMode::Radius },
+        radius_share: match arguments.radius {
+            None => default.radius_share,
+            Some(Radius::Share(share)) => share,
+            Some(Radius::Length(length)) => length / bounds.diagonal(),
+        },
+        count: arguments.count.unwrap_or(default.count),
+        relax_steps: arguments.relax,
+        match_tolerance: arguments.match_tolerance,
+        seed: arguments.seed,
+        // Asking for a number of particles is asking for the room they take.
+        max_particles: arguments.max_particles.unwrap_or_else(|| {
+            let wanted = (f64::from(arguments.count.unwrap_or(0)) * ROOM).ceil() as u32;
+            wanted.max(default.max_particles)
+        }),
+    }
+}
+
+/// Steps the session to its end.
+fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
+    /// Steps between two updates of the bar.
+    const UPDATE: u32 = 64;
+    let mut phase = Phase::Seeding;
+    let mut steps = 0_u32;
+    loop {
+        let clock = Clock::start();
+        let progress = session.step(BUDGET);
+        let spent = clock.seconds();
+        match phase {
+            Phase::Relaxation => seconds.relaxation += spent,
+            Phase::Generation => seconds.generation += spent,
+            _ => seconds.seeding += spent,
+        }
+        if progress.stop_reason.is_some() || progress.phase == Phase::Done {
+            return progress;
+        }
+        phase = progress.phase;
+        if steps.is_multiple_of(UPDATE) {
+            bar.set_position((progress.fraction * 1000.0) as u64);
+            bar.set_message(match phase {
+                Phase::Relaxation => {
+                    format!("relaxation {}/{}", progress.relax_step, progress.relax_steps)
+                }
+                _ => format!("level {}, {} particles", progress.level, progress.particles),
+            });
+        }
+        steps = steps.wrapping_add(1);
+    }
+}
+
+fn bar(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(100));
+    bar
+}
+
+fn write_file(path: &Path, format: Format, session: &Session) -> std::io::Result<()> {
+    let mut out = BufWriter::new(File::create(path)?);
+    export::write(format, session.particles(), &session.measured().valence, &mut out)?;
+    out.flush()
+}
+
+struct Clock(Instant);
+
+impl Clock {
+    #[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
+    fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    fn seconds(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}
+
+/// Largest resident memory so far, in 10⁶ bytes, where /proc tells.
+fn peak_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024.0 / 1e6)
+}

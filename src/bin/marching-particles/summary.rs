@@ -1,0 +1,99 @@
+//! A run's figures as text.
+
+use crate::sample::Outcome;
+use marching_particles::session::{ReportRow, describe};
+use serde_json::Value;
+use std::io::{self, Write};
+
+/// Width of the labels.
+const LABEL: usize = 26;
+/// Width of a column of figures.
+const COLUMN: usize = 13;
+
+pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
+    let report = &outcome.report;
+    let title = outcome.surface.unwrap_or("formula");
+    writeln!(out, "{title}: {}", outcome.formula)?;
+    if !outcome.parameters.is_empty() {
+        let values: Vec<String> =
+            outcome.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        writeln!(out, "{}", values.join(", "))?;
+    }
+    writeln!(
+        out,
+        "{} particles of radius {:.6} in {} levels",
+        grouped(report.count),
+        report.radius,
+        report.levels
+    )?;
+    let s = &outcome.seconds;
+    writeln!(
+        out,
+        "seeding {}, generation {}, relaxation {}, quality {}",
+        time(s.seeding),
+        time(s.generation),
+        time(s.relaxation),
+        time(s.quality)
+    )?;
+    if let Some(peak) = outcome.peak_mb {
+        writeln!(out, "peak memory {peak:.0} MB")?;
+    }
+    writeln!(out)?;
+    table(out, outcome)?;
+    writeln!(out, "\ndigest {}", report.digest)?;
+    for warning in &report.warnings {
+        writeln!(out, "warning: {warning}")?;
+    }
+    for file in &outcome.files {
+        writeln!(out, "wrote {}", file.display())?;
+    }
+    Ok(())
+}
+
+/// The rows of the report that are about quality, before and after the relaxation.
+fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
+    let report = serde_json::to_value(&outcome.report).map_err(io::Error::other)?;
+    let compared = !report["quality_before"].is_null();
+    let first = if compared { "after front" } else { "" };
+    let second = if compared { "relaxed" } else { "" };
+    writeln!(out, "{:LABEL$}{first:>COLUMN$}{second:>COLUMN$}{:>COLUMN$}", "", "ideal")?;
+    for row in &describe().report {
+        let Some(key) = row.key.strip_prefix("quality.") else {
+            continue;
+        };
+        let before = if compared { figure(row, &report["quality_before"][key]) } else { String::new() };
+        let after = figure(row, &report["quality"][key]);
+        writeln!(out, "{:LABEL$}{before:>COLUMN$}{after:>COLUMN$}{:>COLUMN$}", row.label, row.ideal)?;
+    }
+    Ok(())
+}
+
+/// A figure with the digits and the unit that the description gives it.
+fn figure(row: &ReportRow, value: &Value) -> String {
+    let Some(value) = value.as_f64() else {
+        return "–".to_owned();
+    };
+    let (value, unit) = match row.unit {
+        "%" => (value * 100.0, " %"),
+        "°" => (value, "°"),
+        _ => (value, ""),
+    };
+    format!("{value:.*}{unit}", usize::from(row.digits))
+}
+
+/// A count with its thousands set apart.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+fn time(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.1} ms", seconds * 1e3) } else { format!("{seconds:.2} s") }
+}

@@ -1,0 +1,34 @@
+//! `surfaces`: the gallery.
+
+use crate::arguments::Surfaces;
+use crate::failure::Failure;
+use marching_particles::session::{SurfaceEntry, describe};
+use std::io::Write;
+use std::process::ExitCode;
+
+pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
+    let surfaces = describe().surfaces;
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        writeln!(out, "{}", serde_json::to_string(&surfaces).map_err(std::io::Error::other)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for surface in &surfaces {
+        write_entry(&mut out, surface)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn write_entry(out: &mut impl Write, surface: &SurfaceEntry) -> std::io::Result<()> {
+    let mut facts = Vec::new();
+    facts.extend(surface.degree.map(|degree| format!("degree {degree}")));
+    facts.extend(surface.genus.map(|genus| format!("genus {genus}")));
+    let facts = if facts.is_empty() { String::new() } else { format!(" ({})", facts.join(", ")) };
+    writeln!(out, "{}  {}{facts}", surface.id, surface.name)?;
+    writeln!(out, "    {}", surface.formula)?;
+    for p in &surface.parameters {
+        writeln!(out, "    --param {}={}  {}, {} to {}", p.name, p.value, p.label, p.min, p.max)?;
+    }
+    let [lo, hi] = [surface.bounds.min, surface.bounds.max];
+    writeln!(out, "    --box {},{},{},{},{},{}", lo[0], lo[1], lo[2], hi[0], hi[1], hi[2])
+}

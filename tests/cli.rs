@@ -1,0 +1,226 @@
+//! The command-line tool, run as its users run it.
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_marching-particles"))
+        .args(arguments)
+        .output()
+        .expect("the tool was built with this test")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text on standard output")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text on standard error")
+}
+
+/// Runs `sample --json` with `arguments`; the one line it prints.
+#[track_caller]
+fn sample(arguments: &[&str]) -> Value {
+    let output = run(&[&["sample", "--json"], arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    assert_eq!(stderr(&output), "", "no bar and no chatter without a terminal");
+    let text = stdout(&output);
+    assert_eq!(text.lines().count(), 1);
+    serde_json::from_str(&text).expect("a line of JSON")
+}
+
+/// Runs the tool; its message when it fails with `code` and prints nothing else.
+#[track_caller]
+fn fails(code: i32, arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+    assert_eq!(stdout(&output), "");
+    stderr(&output)
+}
+
+fn file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
+
+#[test]
+fn json_line_holds_the_figures_of_the_run() {
+    let run = sample(&["--surface", "ellipsoid", "--count", "3000"]);
+    let count = run["count"].as_f64().expect("a count");
+    assert!((count / 3000.0 - 1.0).abs() <= 0.03, "{count} particles");
+    assert_eq!(run["surface"], "ellipsoid");
+    assert_eq!(run["stop_reason"], "complete");
+    assert_eq!(run["parameters"]["b"], 0.7);
+    assert!(run["levels"].as_u64() > Some(10));
+    assert!(run["evaluations"].as_u64() > Some(3000));
+    for phase in ["seeding", "generation", "relaxation", "quality"] {
+        assert!(run["seconds"][phase].as_f64() > Some(0.0), "{phase}");
+    }
+    for figure in ["six", "psi6", "cover", "rho", "nn_cv", "ang_min_mean", "err_max", "quant"] {
+        assert!(run["quality"][figure].as_f64() > Some(0.0), "{figure}");
+        assert!(run["quality_before"][figure].as_f64() > Some(0.0), "{figure} before");
+    }
+    assert_eq!(run["quality"]["euler"], 2);
+    let fates = &run["fates"];
+    assert_eq!(fates["added"].as_f64(), Some(count - run["components_seeded"].as_f64().expect("seeds")));
+    let digest = run["digest"].as_str().expect("a digest");
+    assert!(digest.len() == 16 && digest.chars().all(|c| c.is_ascii_hexdigit()), "{digest}");
+    if cfg!(target_os = "linux") {
+        assert!(run["peak_mb"].as_f64() > Some(1.0));
+    }
+}
+
+#[test]
+fn same_command_gives_the_same_particles_and_another_seed_others() {
+    let digest =
+        |seed: &str| sample(&["--surface", "torus", "--count", "2000", "--seed", seed])["digest"].clone();
+    assert_eq!(digest("1"), digest("1"));
+    assert_ne!(digest("1"), digest("2"));
+}
+
+#[test]
+fn radius_as_a_share_and_as_a_length_are_the_same() {
+    // The diagonal of the box from −1.5 to 1.5 is 3√3.
+    let common = ["--formula", "x^2 + y^2 + z^2 = 1", "--box", "1.5"];
+    let share = sample(&[&common[..], &["--radius", "2%"]].concat());
+    let length = sample(&[&common[..], &["--radius", "0.103923048454132638"]].concat());
+    assert_eq!(share["digest"], length["digest"]);
+    assert_eq!(share["bounds"]["max"][0], 1.5);
+}
+
+#[test]
+fn parameters_reach_the_formula() {
+    let arguments = ["--formula", "x^2 + y^2 + z^2 = a b c d k", "--radius", "0.05"];
+    let values =
+        ["--param", "a=4", "--param", "b=0.25", "--param", "c=1", "--param", "d=1", "--param", "k=0.25"];
+    let run = sample(&[&arguments[..], &values].concat());
+    // A sphere of radius 1/2.
+    let area = run["quality"]["area"].as_f64().expect("an area");
+    assert!((area / std::f64::consts::PI - 1.0).abs() < 0.1, "area {area}");
+}
+
+#[test]
+fn files_hold_every_particle() {
+    let files = ["a.ply", "a.csv", "a.xyz", "a.npy"].map(file);
+    let mut arguments = vec!["--surface", "sphere", "--radius", "2%"];
+    for path in &files {
+        arguments.extend(["--out", path.to_str().expect("a plain path")]);
+    }
+    let run = sample(&arguments);
+    let count = run["count"].as_u64().expect("a count") as usize;
+    let [ply, csv, xyz, npy] = files.map(|path| std::fs::read(path).expect("the file was written"));
+
+    let header = ply.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+    let records: Vec<&[u8]> = ply[header..].chunks(37).collect();
+    assert_eq!(records.len(), count);
+    let float = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    let mut six = 0;
+    for record in records {
+        let v: Vec<f32> = record[..28].chunks(4).map(float).collect();
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        assert!((length - 1.0).abs() < 1e-3, "a particle at {length} from the centre");
+        let outward = v[0] * v[3] + v[1] * v[4] + v[2] * v[5];
+        assert!((outward - 1.0).abs() < 1e-3, "a normal that does not point outward: {outward}");
+        six += usize::from(record[36] == 6);
+    }
+    let share = six as f64 / count as f64;
+    assert!((share - run["quality"]["six"].as_f64().expect("a share")).abs() < 1e-9);
+
+    let lines = |bytes: &[u8]| bytes.iter().filter(|&&b| b == b'\n').count();
+    assert_eq!((lines(&csv), lines(&xyz)), (count + 1, count));
+    assert_eq!((npy.len() - 24 * count) % 64, 0);
+}
+
+#[test]
+fn existing_file_is_replaced() {
+    let path = file("replaced.csv");
+    std::fs::write(&path, "old ".repeat(1_000_000)).expect("the directory can be written");
+    sample(&["--surface", "sphere", "--radius", "5%", "--out", path.to_str().expect("a plain path")]);
+    let text = std::fs::read_to_string(&path).expect("the file is there");
+    assert!(text.starts_with("x,y,z,") && !text.contains("old"));
+}
+
+#[test]
+fn text_report_names_the_figures_before_and_after() {
+    let output = run(&["sample", "--surface", "torus", "--count", "1500"]);
+    assert!(output.status.success());
+    let text = stdout(&output);
+    for part in ["torus: ", "particles of radius", "after front", "relaxed", "Six neighbours", "digest "] {
+        assert!(text.contains(part), "no `{part}` in:\n{text}");
+    }
+    let unrelaxed = stdout(&run(&["sample", "--surface", "torus", "--count", "1500", "--relax", "0"]));
+    assert!(!unrelaxed.contains("after front"));
+}
+
+#[test]
+fn formula_error_is_shown_under_its_place() {
+    let message = fails(2, &["sample", "--formula", "x^2 + α)"]);
+    let lines: Vec<&str> = message.lines().collect();
+    assert!(lines[0].starts_with("error: "), "{message}");
+    let caret = lines.iter().position(|line| line.contains('^') && !line.contains('x')).expect("a caret");
+    let column = lines[caret].chars().position(|c| c == '^').expect("a caret");
+    let marked = lines[caret - 1].chars().nth(column);
+    assert!(marked == Some('α') || marked == Some(')'), "{message}");
+}
+
+#[test]
+fn mistakes_in_the_command_are_told_from_each_other() {
+    assert!(fails(2, &["sample", "--surface", "teapot"]).contains("ellipsoid"));
+    assert!(fails(2, &["sample", "--surface", "sphere", "--param", "q=1"]).contains("its parameters: r"));
+    assert!(fails(2, &["sample", "--param", "a"]).contains("NAME=VALUE"));
+    assert!(fails(2, &["sample", "--radius", "0"]).contains("positive"));
+    assert!(fails(2, &["sample", "--radius", "90%"]).contains("radius_share"));
+    assert!(fails(2, &["sample", "--radius", "1%", "--count", "10"]).contains("cannot be used with"));
+    assert!(fails(2, &["sample", "--box", "1,2"]).contains("one, three or six"));
+    assert!(fails(2, &["sample", "--match-tolerance", "3"]).contains("match_tolerance"));
+    let out = file("mesh.obj");
+    let message = fails(2, &["sample", "--out", out.to_str().expect("a plain path")]);
+    assert!(message.contains("ply, csv, xyz, npy"), "{message}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn nothing_to_sample_has_its_own_exit_code() {
+    for formula in ["x^2 + y^2 + z^2 + 1", "1", "x - x", "log10(-1 - x^2)"] {
+        let message = fails(3, &["sample", "--formula", formula]);
+        assert!(message.starts_with("error: ") && message.len() > 20, "{formula}: {message}");
+    }
+}
+
+#[test]
+fn more_particles_than_the_limit_are_asked_for_first() {
+    let message = fails(4, &["sample", "--surface", "sphere", "--radius", "0.05%"]);
+    let wanted = message.split("--max-particles ").nth(1).expect("advice");
+    assert!(wanted.trim().parse::<u64>().expect("a number") > 200_000, "{message}");
+    fails(4, &["sample", "--surface", "sphere", "--count", "2000", "--max-particles", "1000"]);
+}
+
+#[test]
+fn unwritable_file_is_named() {
+    let message = fails(1, &["sample", "--radius", "5%", "--out", "/nonexistent/points.ply"]);
+    assert!(message.contains("/nonexistent/points.ply"), "{message}");
+}
+
+#[test]
+fn surfaces_lists_the_gallery() {
+    let text = stdout(&run(&["surfaces"]));
+    let json: Value = serde_json::from_str(&stdout(&run(&["surfaces", "--json"]))).expect("a line of JSON");
+    let surfaces = json.as_array().expect("a list");
+    assert_eq!(surfaces.len(), marching_particles::field::gallery::SURFACES.len());
+    for surface in surfaces {
+        let id = surface["id"].as_str().expect("an identifier");
+        assert!(text.lines().any(|line| line.starts_with(&format!("{id}  "))), "no {id}");
+    }
+}
+
+#[test]
+fn help_teaches() {
+    let help = stdout(&run(&["sample", "--help"]));
+    for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
+        assert!(help.contains(part), "no `{part}` in the help");
+    }
+    // The default limit in the words is the default limit.
+    assert_eq!(marching_particles::sampler::Settings::default().max_particles, 200_000);
+    assert!(run(&["--version"]).status.success());
+    assert_eq!(run(&[]).status.code(), Some(2));
+}
