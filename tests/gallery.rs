@@ -157,3 +157,139 @@ fn every_parameter_is_used_and_starts_inside_its_range() {
         }
     }
 }
+
+/// Points on the six faces of a surface's box.
+fn faces(surface: &Surface, steps: u32) -> Vec<DVec3> {
+    let (lo, hi) = (surface.bounds.lo(), surface.bounds.hi());
+    let mut out = Vec::new();
+    for axis in 0..3 {
+        for i in 0..=steps {
+            for j in 0..=steps {
+                for end in [0.0, 1.0] {
+                    let mut unit = [f64::from(i) / f64::from(steps), f64::from(j) / f64::from(steps), 0.0];
+                    unit[2] = end;
+                    unit.rotate_right(axis);
+                    out.push(lo + (hi - lo) * DVec3::from_array(unit));
+                }
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_parameter() {
+    for surface in SURFACES.iter().filter(|surface| surface.genus.is_some() || surface.id == "klein-bottle") {
+        let mut field = surface.field();
+        let corners = 1_u32 << surface.parameters.len();
+        for corner in 0..corners {
+            for (k, p) in surface.parameters.iter().enumerate() {
+                let value = if corner >> k & 1 == 0 { p.min } else { p.max };
+                field.set_parameter(p.name, value).unwrap();
+            }
+            for p in faces(surface, 40) {
+                let value = field.jet(p).value;
+                assert!(value > 0.0, "{} with {:?}: {value} at {p}", surface.id, field.parameters());
+            }
+        }
+    }
+}
+
+/// Number of vertices − edges + faces of the surface's mesh on a grid of `n` cells a side.
+fn euler_number(surface: &Surface, n: u32) -> i64 {
+    use fast_surface_nets::ndshape::{RuntimeShape, Shape};
+    let shape = RuntimeShape::<u32, 3>::new([n + 1; 3]);
+    let mut field = surface.field();
+    let (lo, hi) = (surface.bounds.lo(), surface.bounds.hi());
+    let points: Vec<Vec3> = (0..shape.size())
+        .map(|index| {
+            let [i, j, k] = shape.delinearize(index).map(f64::from);
+            (lo + (hi - lo) * DVec3::new(i, j, k) / f64::from(n)).as_vec3()
+        })
+        .collect();
+    let mut values = vec![0.0; points.len()];
+    field.values(&points, &mut values);
+    let mut mesh = fast_surface_nets::SurfaceNetsBuffer::default();
+    fast_surface_nets::surface_nets(&values, &shape, [0; 3], [n; 3], &mut mesh);
+    let mut edges = std::collections::BTreeSet::new();
+    for triangle in mesh.indices.chunks(3) {
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            let (a, b) = (triangle[a], triangle[b]);
+            edges.insert((a.min(b), a.max(b)));
+        }
+    }
+    let (vertices, edges, faces) = (mesh.positions.len(), edges.len(), mesh.indices.len() / 3);
+    i64::try_from(vertices).unwrap() - i64::try_from(edges).unwrap() + i64::try_from(faces).unwrap()
+}
+
+#[test]
+fn closed_surfaces_have_the_genus_they_claim() {
+    for surface in SURFACES {
+        let Some(genus) = surface.genus else { continue };
+        let euler = euler_number(surface, 96);
+        assert_eq!(euler, 2 - 2 * i64::from(genus), "{}", surface.id);
+    }
+}
+
+#[test]
+fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
+    for surface in SURFACES {
+        let mut field = surface.field();
+        let (mut inside, mut outside) = (0, 0);
+        for p in points(surface, 20_000) {
+            let value = field.jet(p).value;
+            inside += usize::from(value < 0.0);
+            outside += usize::from(value > 0.0);
+        }
+        println!("{}: {inside} inside, {outside} outside", surface.id);
+        assert!(inside > 200 && outside > 200, "{}: {inside} inside, {outside} outside", surface.id);
+    }
+}
+
+/// A point of the surface near `p` by Newton's method along the gradient.
+fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
+    for _ in 0..30 {
+        let jet = field.jet(p);
+        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        if !step.is_finite() {
+            return None;
+        }
+        p -= step;
+        if step.length() < 1e-12 {
+            return Some(p);
+        }
+    }
+    None
+}
+
+#[test]
+fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
+    for surface in SURFACES {
+        let mut field = surface.field();
+        let mut slopes = Vec::new();
+        for p in points(surface, 4000) {
+            let Some(p) = on_surface(&mut field, p) else { continue };
+            if surface.bounds.contains(p.as_vec3()) {
+                slopes.push(field.jet(p).gradient.length());
+            }
+        }
+        let least = slopes.iter().copied().fold(f64::INFINITY, f64::min);
+        let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
+        println!("{}: slope {least:.3e} … mean {mean:.3e}, {} points", surface.id, slopes.len());
+        assert!(slopes.len() > 1000, "{}: {} points only", surface.id, slopes.len());
+        if surface.smooth {
+            assert!(least > 0.02 * mean, "{}: slope {least} of mean {mean}", surface.id);
+        } else {
+            assert!(least < 0.25 * mean, "{}: slope {least} of mean {mean}", surface.id);
+        }
+    }
+}
+
+#[test]
+fn stories_are_two_sentences() {
+    for surface in SURFACES {
+        let sentences = surface.story.matches(". ").count() + usize::from(surface.story.ends_with('.'));
+        assert_eq!(sentences, 2, "{}: {}", surface.id, surface.story);
+        assert!(!surface.story.contains("  "), "{}", surface.id);
+    }
+}

@@ -54,7 +54,7 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
             // A choice between branches chooses between their tangents, so that the branch not taken cannot spoil
             // the result, whatever its slope.
             Node::Binary(Binary::Min, a, b) => choose(graph, a, b, tangent[a as usize], tangent[b as usize]),
-            Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[b as usize], tangent[a as usize]),
+            Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[a as usize], tangent[b as usize]),
             Node::IfLe(a, b, v) => {
                 let tangent = tangent[v as usize];
                 graph.if_le(a, b, tangent)

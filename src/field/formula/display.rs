@@ -1,10 +1,10 @@
-//! A formula as plain text that parses back to the same tree, and as MathML.
+//! A formula as plain text that parses back to the same tree.
 
 use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
 
 /// Binding strength, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Level {
+pub(super) enum Level {
     Sum,
     /// A sign in front, as strong as a product whose first factor it may be part of.
     Sign,
@@ -13,7 +13,7 @@ enum Level {
     Atom,
 }
 
-fn level(kind: &Kind) -> Level {
+pub(super) fn level(kind: &Kind) -> Level {
     match kind {
         Kind::Sum(_) => Level::Sum,
         Kind::Negated(_) => Level::Sign,
@@ -23,6 +23,12 @@ fn level(kind: &Kind) -> Level {
             Level::Atom
         }
     }
+}
+
+/// The shortest text that reads back as `value`; with an exponent if it is very large or very small.
+pub(super) fn number(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || (1e-5..1e15).contains(&size) { format!("{value}") } else { format!("{value:e}") }
 }
 
 /// The expression as text.
@@ -55,7 +61,7 @@ fn write_at(out: &mut String, expr: &Expr, least: Level) {
 
 fn write(out: &mut String, expr: &Expr) {
     match &expr.kind {
-        Kind::Number(value) => out.push_str(&format!("{value:?}").replace(".0e", "e")),
+        Kind::Number(value) => out.push_str(&number(*value)),
         Kind::Constant(constant) => out.push_str(constant.name()),
         Kind::Coordinate(axis) => out.push_str(COORDINATES[usize::from(*axis)]),
         Kind::Parameter(name) => out.push_str(name),
@@ -86,6 +92,11 @@ fn write(out: &mut String, expr: &Expr) {
         Kind::Power(base, exponent) => {
             write_at(out, base, Level::Atom);
             out.push('^');
+            let mut exponent = &**exponent;
+            while let Kind::Negated(inner) = &exponent.kind {
+                out.push('-');
+                exponent = inner;
+            }
             write_at(out, exponent, Level::Power);
         }
         Kind::Call(function, arguments) => {
