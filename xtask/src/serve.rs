@@ -1,7 +1,7 @@
 //! The development server.
 
 use std::path::PathBuf;
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
 use anyhow::{Context, Result, bail};
@@ -15,6 +15,9 @@ use crate::step;
 
 /// How often the Rust sources are looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(400);
+
+/// Loaded into the server: it ends when its input does, that is when this process is gone, however it went.
+const END_WITH_INPUT: &str = "data:text/javascript,process.stdin.on('end',()=>process.exit()).resume()";
 
 /// What to serve, and where.
 #[derive(clap::Args)]
@@ -86,7 +89,7 @@ fn start_vite(project: &Project, options: &Options) -> Result<Child> {
         );
     }
     let mut command = Command::new(node::node()?);
-    command.arg(vite).current_dir(&project.www);
+    command.args(["--import", END_WITH_INPUT]).arg(vite).current_dir(&project.www).stdin(Stdio::piped());
     if options.release_site {
         command.arg("preview");
     }
