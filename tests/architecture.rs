@@ -36,7 +36,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ),
     // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
     ("render", &["math"]),
-    ("web/core", &["session"]),
+    ("web/core", &["field", "sampler", "session"]),
     ("web/render", &["render"]),
 ];
 

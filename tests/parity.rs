@@ -1,0 +1,73 @@
+//! The same field, parameters and seed give the same particles everywhere. This test holds the native core to the
+//! digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` holds the WebAssembly core to the same file, and the
+//! browser tests hold the page to it.
+//!
+//! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test parity`.
+
+use marching_particles::sampler::Settings;
+use marching_particles::session::{FieldRequest, Session};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The golden file.
+#[derive(Serialize, Deserialize)]
+struct Golden {
+    cases: Vec<Case>,
+}
+
+/// A run and what it must give.
+#[derive(Serialize, Deserialize)]
+struct Case {
+    name: String,
+    field: serde_json::Value,
+    settings: serde_json::Value,
+    count: usize,
+    digest: String,
+}
+
+/// Units of work per step; any other number must give the same particles, and the other side uses another.
+const BUDGET: u32 = 100_000;
+
+fn run(case: &Case) -> (usize, String) {
+    let field: FieldRequest = serde_json::from_value(case.field.clone())
+        .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
+    let settings: Settings = serde_json::from_value(case.settings.clone())
+        .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
+    let mut session = Session::new();
+    session.set_field(&field).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    while session.step(BUDGET).stop_reason.is_none() {}
+    (session.count(), format!("{:016x}", session.particles().digest()))
+}
+
+#[test]
+fn runs_have_the_digests_that_other_platforms_give() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/digests.json");
+    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
+    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
+    assert!(golden.cases.len() >= 3, "{} holds {} cases", path.display(), golden.cases.len());
+    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let mut faults = Vec::new();
+    for case in &mut golden.cases {
+        let (count, digest) = run(case);
+        assert!(count > 500, "{}: {count} particles are too few to show anything", case.name);
+        if update {
+            (case.count, case.digest) = (count, digest);
+        } else if (count, &digest) != (case.count, &case.digest) {
+            faults.push(format!(
+                "{}: {count} particles {digest}, not {} {}",
+                case.name, case.count, case.digest
+            ));
+        }
+    }
+    if update {
+        let text =
+            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
+        std::fs::write(&path, text).expect("the golden file can be written");
+    }
+    assert!(
+        faults.is_empty(),
+        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test parity\n",
+        faults.join("\n")
+    );
+}
