@@ -94,6 +94,5 @@ fn fs_box(edge: Edge) -> @location(0) vec4<f32> {
     if alpha < 0.002 {
         discard;
     }
-    let colour = mix(frame.box_colour.rgb, frame.background.rgb, frame.dim);
-    return vec4<f32>(colour * alpha, alpha);
+    return vec4<f32>(frame.box_colour.rgb * alpha, alpha);
 }

@@ -57,10 +57,17 @@ const MAX_REACH = 2.0;
 const BIRTH_SIZE = 0.6;
 // Lean of the shading normal at the rim: a low dome, so that a disc looks like a bead when it is large.
 const DOME = 0.34;
-// Discs with a half axis below the first are points, above the second full discs, in pixels.
-const POINT_PX = vec2<f32>(0.7, 1.7);
-// Coverage from which a pixel counts as core: in points, in full discs.
-const CORE = vec2<f32>(0.5, 0.96);
+// Discs with a radius below the second, in pixels, swell until at the first their gaps close: gaps of a pixel and less
+// would beat against the pixels. CLOSED is the radius, relative to the disc's, at which three neighbours meet.
+const SWELL_PX = vec2<f32>(0.8, 2.4);
+const CLOSED = 1.26;
+// The core pass writes points this many radii too deep. Their neighbours in the sheet then pass the depth test of the rim
+// pass, which blends all of them, and the far side of the surface does not: every pixel averages the points it sees.
+const POINT_DEPTH = 2.0;
+// A disc whose smaller half axis is below the first covers no pixel wholly, above the second it does, in pixels.
+const WIDE_PX = vec2<f32>(0.7, 1.7);
+// Coverage from which a pixel counts as core: in points, in narrow discs, in wide discs.
+const CORE = vec3<f32>(0.15, 0.5, 0.96);
 // Coverage below this is not worth blending: half a step of an 8-bit channel.
 const NOTHING = 0.002;
 
@@ -89,6 +96,11 @@ fn axis_px(centre: vec4<f32>, rim: vec4<f32>) -> vec2<f32> {
     return 0.5 * frame.viewport * (rim.xy / rim.w - centre.xy / centre.w);
 }
 
+// 1 for a point, 0 for a disc, by its larger half axis.
+fn pointness(axes: vec2<f32>) -> f32 {
+    return 1.0 - smoothstep(SWELL_PX.x, SWELL_PX.y, axes.x);
+}
+
 fn hidden() -> vec4<f32> {
     return vec4<f32>(0.0, 0.0, 2.0, 1.0);
 }
@@ -98,7 +110,16 @@ fn quad_corner(vertex: u32) -> vec2<f32> {
 }
 
 @vertex
-fn vs_disc(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+fn vs_core(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, POINT_DEPTH);
+}
+
+@vertex
+fn vs_rim(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, 0.0);
+}
+
+fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32) -> Disc {
     var out: Disc;
     out.clip = hidden();
     let age = select(1.0, clamp((frame.time - particle.birth) / max(frame.fade, 1e-6), 0.0, 1.0), frame.fade > 0.0);
@@ -115,8 +136,11 @@ fn vs_disc(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
     let n = select(outward, -outward, behind);
     let t = facing_axis(n, v);
     let b = cross(n, t);
-    let r = particle.radius * frame.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
-    let a_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * t, 1.0));
+    let plain_r = particle.radius * frame.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    let plain_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + plain_r * t, 1.0));
+    let swell = mix(CLOSED, 1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, length(plain_px)));
+    let r = swell * plain_r;
+    let a_px = swell * plain_px;
     let b_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * b, 1.0));
     let axes = max(vec2<f32>(length(a_px), length(b_px)), vec2<f32>(1e-4));
     let a_dir = a_px / axes.x;
@@ -130,6 +154,8 @@ fn vs_disc(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
     let world = particle.position + r * (in_plane.x * t + in_plane.y * b);
     out.clip = frame.clip_from_world * vec4<f32>(world, 1.0);
     out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.viewport * out.clip.w, 0.0, 0.0);
+    let deeper = frame.clip_from_world * vec4<f32>(world - point_depth * pointness(axes) * r * v, 1.0);
+    out.clip.z = deeper.z / deeper.w * out.clip.w;
 
     out.uv = corner * reach;
     out.colour = vec4<f32>(linear_from_srgb(particle.colour.rgb), opacity);
@@ -152,6 +178,12 @@ fn coverage(disc: Disc) -> f32 {
     return clamp(min(0.5 + inside_px, widest), 0.0, 1.0);
 }
 
+// Mixes linear colours evenly for the eye: square roots are close to sRGB's curve.
+fn fade_to(colour: vec3<f32>, other: vec3<f32>, share: f32) -> vec3<f32> {
+    let root = mix(sqrt(colour), sqrt(other), share);
+    return root * root;
+}
+
 fn shade(disc: Disc) -> vec3<f32> {
     let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
     let rho = min(length(disc.uv), 1.0);
@@ -168,20 +200,20 @@ fn shade(disc: Disc) -> vec3<f32> {
     light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
     light *= 1.0 - 0.30 * disc.sky.w * disc.sky.w * disc.sky.w;
     let front = disc.colour.rgb * light;
-    let back = mix(disc.colour.rgb * light * 0.72, frame.background.rgb, frame.dim_backfaces);
-    return mix(mix(front, back, disc.key.w), frame.background.rgb, frame.dim);
+    let seen = fade_to(front, frame.background.rgb, disc.key.w * frame.dim_backfaces);
+    return fade_to(seen, frame.background.rgb, frame.dim);
 }
 
-// How much a disc is a disc and not a point.
+// How much a disc is wide enough to cover pixels wholly.
 fn fullness(disc: Disc) -> f32 {
-    return smoothstep(POINT_PX.x, POINT_PX.y, min(disc.axes_px.x, disc.axes_px.y));
+    return smoothstep(WIDE_PX.x, WIDE_PX.y, min(disc.axes_px.x, disc.axes_px.y));
 }
 
 @fragment
 fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
     let covered = coverage(disc) * disc.colour.a;
     let full = fullness(disc);
-    if covered < mix(CORE.x, CORE.y, full) {
+    if covered < mix(mix(CORE.y, CORE.x, pointness(disc.axes_px)), CORE.z, full) {
         discard;
     }
     let alpha = mix(covered, 1.0, full);
@@ -191,7 +223,9 @@ fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
 @fragment
 fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
     let covered = coverage(disc) * disc.colour.a;
-    if covered >= mix(CORE.x, CORE.y, fullness(disc)) || covered < NOTHING {
+    // Points are drawn in both passes.
+    let core = mix(mix(CORE.y, CORE.z, fullness(disc)), 1.01, pointness(disc.axes_px));
+    if covered >= core || covered < NOTHING {
         discard;
     }
     return vec4<f32>(shade(disc) * covered, covered);

@@ -1,25 +1,49 @@
 //! Every shader, without a GPU: it is valid WGSL, translates to GLSL ES 3.00 as wgpu's WebGL2 back end
 //! translates it, and reads the bytes where the Rust side writes them.
 
-use marching_particles::render::layout::{COLOUR_ATTRIBUTES, Frame, RECORD_ATTRIBUTES, SHADERS};
+use marching_particles::render::layout::{COLOUR_ATTRIBUTES, Frame, RECORD_ATTRIBUTES};
+use marching_particles::render::shaders::{SHADERS, Shader};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ScalarKind, ShaderStage, TypeInner, VectorSize};
 use std::path::Path;
 
-/// Parses and validates all shaders; WebGL2 and WebGPU without optional features grant no capability.
+/// Parses and validates one shader; WebGL2 and WebGPU without optional features grant no capability.
+fn validated(name: &str, source: &str) -> (Module, ModuleInfo) {
+    let module = naga::front::wgsl::parse_str(source)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
+    (module, info)
+}
+
 fn shaders() -> Vec<(&'static str, Module, ModuleInfo)> {
     SHADERS
         .into_iter()
-        .map(|(name, source)| {
-            let module = naga::front::wgsl::parse_str(source)
-                .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
-            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-                .validate(&module)
-                .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
-            (name, module, info)
+        .map(|shader| {
+            let (module, info) = validated(shader.name, shader.source);
+            (shader.name, module, info)
         })
         .collect()
+}
+
+/// GLSL ES 3.00 of one entry point, with the flags of wgpu's WebGL2 back end, and the number of uniform blocks in it.
+fn glsl(name: &str, module: &Module, info: &ModuleInfo, entry: &naga::EntryPoint) -> (String, usize) {
+    let options = glsl::Options {
+        version: glsl::Version::Embedded { version: 300, is_webgl: true },
+        writer_flags: glsl::WriterFlags::ADJUST_COORDINATE_SPACE | glsl::WriterFlags::FORCE_POINT_SIZE,
+        ..glsl::Options::default()
+    };
+    let pipeline =
+        glsl::PipelineOptions { shader_stage: entry.stage, entry_point: entry.name.clone(), multiview: None };
+    let policies = naga::proc::BoundsCheckPolicies::default();
+    let mut text = String::new();
+    let reflection = glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
+        .and_then(|mut writer| writer.write())
+        .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
+    let blocks = reflection.uniforms.len();
+    (text, blocks)
 }
 
 #[test]
@@ -30,7 +54,7 @@ fn every_shader_file_is_known_and_used() {
         .map(|entry| entry.expect("an entry of shaders/").file_name().into_string().expect("a UTF-8 name"))
         .collect();
     files.sort();
-    let mut known = SHADERS.map(|(name, _)| name.to_owned()).to_vec();
+    let mut known = SHADERS.map(|shader| shader.name.to_owned()).to_vec();
     known.sort();
     assert_eq!(files, known);
     assert!(!files.is_empty());
@@ -46,32 +70,37 @@ fn every_shader_file_is_known_and_used() {
 
 #[test]
 fn every_entry_point_translates_to_glsl_es_300() {
-    let options = glsl::Options {
-        version: glsl::Version::Embedded { version: 300, is_webgl: true },
-        writer_flags: glsl::WriterFlags::ADJUST_COORDINATE_SPACE | glsl::WriterFlags::FORCE_POINT_SIZE,
-        ..glsl::Options::default()
-    };
     let mut translated = 0;
     for (name, module, info) in shaders() {
         for entry in &module.entry_points {
-            let pipeline = glsl::PipelineOptions {
-                shader_stage: entry.stage,
-                entry_point: entry.name.clone(),
-                multiview: None,
-            };
-            let mut text = String::new();
-            let policies = naga::proc::BoundsCheckPolicies::default();
-            let mut writer = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
-                .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
-            let reflection = writer.write().unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
+            let (text, blocks) = glsl(name, &module, &info, entry);
             assert!(text.starts_with("#version 300 es"), "{name}, {}", entry.name);
             assert!(!text.contains("buffer "), "{name}, {}: WebGL2 has no storage buffers", entry.name);
-            let uses_frame = reflection.uniforms.len();
-            assert!(uses_frame <= 1, "{name}, {}: {uses_frame} uniform blocks", entry.name);
+            assert!(blocks <= 1, "{name}, {}: {blocks} uniform blocks", entry.name);
             translated += 1;
         }
     }
     assert!(translated >= 2 * SHADERS.len(), "{translated} entry points");
+}
+
+/// The stripped text means the same as the file.
+#[test]
+fn lean_shaders_translate_like_their_files() {
+    for shader in SHADERS {
+        assert!(!shader.lean.contains("//") && shader.lean.len() < shader.source.len(), "{}", shader.name);
+        let (module, info) = validated(shader.name, shader.source);
+        let (lean, lean_info) = validated(shader.name, shader.lean);
+        assert_eq!(module.entry_points.len(), lean.entry_points.len(), "{}", shader.name);
+        for (entry, lean_entry) in module.entry_points.iter().zip(&lean.entry_points) {
+            assert_eq!(
+                glsl(shader.name, &module, &info, entry),
+                glsl(shader.name, &lean, &lean_info, lean_entry),
+                "{}, {}",
+                shader.name,
+                entry.name
+            );
+        }
+    }
 }
 
 #[test]
@@ -147,7 +176,7 @@ fn components(inner: &TypeInner) -> usize {
 /// Words that WGSL reserves and naga nevertheless takes as names; browsers refuse them.
 #[test]
 fn no_name_is_a_reserved_word() {
-    for (name, source) in SHADERS {
+    for Shader { name, source, .. } in SHADERS {
         let code: String =
             source.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n");
         let words: Vec<&str> = code

@@ -184,12 +184,6 @@ pub const RECORD_ATTRIBUTES: [Attribute; 4] = [
 pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
     [Attribute { location: 4, offset: 0, format: Format::Unorm8x4 }];
 
-/// `(file name, source)` of every shader. `tests/shaders.rs` checks that this lists all files of `shaders/`.
-pub const SHADERS: [(&str, &str); 2] = [
-    ("discs.wgsl", include_str!("../../shaders/discs.wgsl")),
-    ("box.wgsl", include_str!("../../shaders/box.wgsl")),
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;

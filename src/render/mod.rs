@@ -23,6 +23,7 @@
 
 pub mod layout;
 pub mod pixels;
+pub mod shaders;
 pub mod style;
 pub mod view;
 
@@ -36,4 +37,4 @@ mod renderer;
 mod store;
 
 #[cfg(feature = "render")]
-pub use renderer::{Callbacks, CreateError, Drawn, Picture, Renderer};
+pub use renderer::{Callbacks, CreateError, OnError, OnLost, Outcome, Picture, Renderer};

@@ -1,8 +1,7 @@
 //! The four pipelines and the uniform buffer they share.
 
-use super::layout::{
-    Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, Format, Frame, RECORD_ATTRIBUTES, Record, SHADERS,
-};
+use super::layout::{Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, Format, Frame, RECORD_ATTRIBUTES, Record};
+use super::shaders::{BOX, DISCS};
 
 /// Depth format of every target.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -39,10 +38,10 @@ struct Recipe<'a> {
 impl Pipelines {
     /// Compiles the pipelines for targets of `format`, which must be an sRGB format.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let [discs, edges] = SHADERS.map(|(name, source)| {
+        let [discs, edges] = [DISCS, BOX].map(|shader| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(name),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
+                label: Some(shader.name),
+                source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
             })
         });
         let frame = device.create_buffer(&wgpu::BufferDescriptor {
@@ -89,7 +88,7 @@ impl Pipelines {
         let disc = Recipe {
             label: "disc core",
             shader: &discs,
-            vertex: "vs_disc",
+            vertex: "vs_core",
             fragment: "fs_core",
             buffers: &particles,
             depth_write: true,
@@ -97,7 +96,13 @@ impl Pipelines {
         };
         let make = |recipe: Recipe<'_>| pipeline(device, &layout, format, &recipe);
         Self {
-            rim: make(Recipe { label: "disc rim", fragment: "fs_rim", depth_write: false, ..disc }),
+            rim: make(Recipe {
+                label: "disc rim",
+                vertex: "vs_rim",
+                fragment: "fs_rim",
+                depth_write: false,
+                ..disc
+            }),
             ring: make(Recipe {
                 label: "ring",
                 vertex: "vs_ring",

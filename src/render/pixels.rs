@@ -42,12 +42,12 @@ pub fn straight_rgba(padded: &[u8], width_px: u32, height_px: u32, bgra: bool, o
 
 fn decode(byte: u8) -> f32 {
     let c = f32::from(byte) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
 fn encode(linear: f32) -> u8 {
     let c = linear.clamp(0.0, 1.0);
-    let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 };
     (c * 255.0).round() as u8
 }
 

@@ -10,13 +10,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
+/// Called when the device is gone: the reason ("unknown" or "destroyed") and the driver's words.
+pub type OnLost = Arc<dyn Fn(&str, &str) + Send + Sync>;
+/// Called with what the device says when it refuses a call.
+pub type OnError = Arc<dyn Fn(&str) + Send + Sync>;
+
 /// Whom to tell what the graphics device reports between calls.
 #[derive(Clone)]
 pub struct Callbacks {
-    /// The device is gone: reason ("unknown" or "destroyed") and the driver's words. Told once.
-    pub on_lost: Arc<dyn Fn(&str, &str) + Send + Sync>,
+    /// The device is gone. Called once at most.
+    pub on_lost: OnLost,
     /// A call was refused by the device; the picture may be incomplete.
-    pub on_error: Arc<dyn Fn(&str) + Send + Sync>,
+    pub on_error: OnError,
 }
 
 /// Why there is no renderer.
@@ -38,7 +43,7 @@ pub enum CreateError {
 
 /// What became of one call to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drawn {
+pub enum Outcome {
     /// The picture is on its way to the screen.
     Drawn,
     /// Nothing to draw on now: size zero, hidden, or busy. Draw again when something changes.
@@ -282,12 +287,12 @@ impl Renderer {
     }
 
     /// Draws on the surface. `time_s` is now on the caller's clock.
-    pub fn draw(&mut self, time_s: f64) -> Drawn {
+    pub fn draw(&mut self, time_s: f64) -> Outcome {
         if self.is_lost() {
-            return Drawn::Lost;
+            return Outcome::Lost;
         }
         if self.size.contains(&0) {
-            return Drawn::Skipped;
+            return Outcome::Skipped;
         }
         if !self.configured {
             self.configure();
@@ -317,7 +322,7 @@ impl Renderer {
         let size = self.size;
         self.paint(&view, size, frame, true, false);
         self.queue.present(texture);
-        if self.is_lost() { Drawn::Lost } else { Drawn::Drawn }
+        if self.is_lost() { Outcome::Lost } else { Outcome::Drawn }
     }
 
     /// Draws the same picture into a texture of [`Renderer::picture_size`] and has it copied to where it can be read. With another shape than the
@@ -387,8 +392,8 @@ impl Renderer {
         self.configured = true;
     }
 
-    fn skipped(&self) -> Drawn {
-        if self.is_lost() { Drawn::Lost } else { Drawn::Skipped }
+    fn skipped(&self) -> Outcome {
+        if self.is_lost() { Outcome::Lost } else { Outcome::Skipped }
     }
 
     fn frame(&mut self, size: [u32; 2], time_s: f64) -> Frame {
@@ -407,7 +412,7 @@ impl Renderer {
         let scene = Scene {
             store: &self.store,
             count: self.count,
-            outline: u32::try_from(self.style.outline).ok(),
+            outline: self.style.outline,
             clip_box: self.style.clip_box.is_some(),
             frame,
             transparent,

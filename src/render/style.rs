@@ -2,13 +2,11 @@
 
 use super::layout::Frame;
 use super::view::View;
-use serde::Deserialize;
 
 /// The look of the picture. Colours are sRGB with components from 0 to 1 and opacity last.
 ///
 /// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// Background. Its opacity matters only for a transparent picture; the canvas is opaque.
     pub background: [f32; 4],
@@ -23,17 +21,16 @@ pub struct Style {
     pub dim_backfaces: f32,
     /// Seconds that a new particle takes to appear; 0 = at once.
     pub fade_s: f32,
-    /// Index of the particle with a ring around it; negative for none.
-    pub outline: i64,
+    /// Particle with a ring around it.
+    pub outline: Option<u32>,
     /// The clip box, drawn by its edges.
-    #[serde(rename = "box")]
     pub clip_box: Option<ClipBox>,
     /// Canvas pixels per page pixel: lines and rings are that much thicker.
     pub pixel_ratio: f32,
 }
 
-/// A box to draw.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// A box to draw; the default is invisible.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClipBox {
     /// Smallest corner, in world coordinates.
     pub min: [f32; 3],
@@ -52,7 +49,7 @@ impl Default for Style {
             dim: 0.0,
             dim_backfaces: 0.55,
             fade_s: 0.12,
-            outline: -1,
+            outline: None,
             clip_box: None,
             pixel_ratio: 1.0,
         }
@@ -77,7 +74,7 @@ impl Style {
         let clamp = |v: f32, lo: f32, hi: f32| if v >= lo { v.min(hi) } else { lo };
         let share = |v: f32| clamp(v, 0.0, 1.0);
         let background = linear(self.background);
-        let clip_box = self.clip_box.unwrap_or(ClipBox { min: [0.0; 3], max: [0.0; 3], colour: [0.0; 4] });
+        let clip_box = self.clip_box.unwrap_or_default();
         let scale = target.size[1].max(1) as f32 / target.canvas[1].max(1) as f32;
         Frame {
             clip_from_world: view.clip_from_world_for(target.canvas, target.size),
@@ -113,42 +110,13 @@ fn luminance(linear: [f32; 4]) -> f32 {
 #[must_use]
 pub fn linear(srgb: [f32; 4]) -> [f32; 4] {
     let [r, g, b, a] = srgb.map(|c| if c >= 0.0 { c.min(1.0) } else { 0.0 });
-    let curve = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+    let curve = |c: f32| if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) };
     [curve(r), curve(g), curve(b), a]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn missing_keys_take_their_defaults_and_all_keys_are_read() {
-        let style: Style = serde_json::from_str("{}").expect("empty style");
-        assert_eq!(style, Style::default());
-        let style: Style = serde_json::from_str(
-            r#"{"background":[0,0.5,1,0.25],"disc_scale":0.8,"key_light_view":[1,2,3],"dim":0.5,"dim_backfaces":0.3,
-                "fade_s":0,"outline":7,"box":{"min":[-1,-2,-3],"max":[1,2,3],"colour":[1,1,1,0.5]},"pixel_ratio":2}"#,
-        )
-        .expect("full style");
-        let clip_box =
-            ClipBox { min: [-1.0, -2.0, -3.0], max: [1.0, 2.0, 3.0], colour: [1.0, 1.0, 1.0, 0.5] };
-        assert_eq!(
-            style,
-            Style {
-                background: [0.0, 0.5, 1.0, 0.25],
-                disc_scale: 0.8,
-                key_light_view: [1.0, 2.0, 3.0],
-                dim: 0.5,
-                dim_backfaces: 0.3,
-                fade_s: 0.0,
-                outline: 7,
-                clip_box: Some(clip_box),
-                pixel_ratio: 2.0,
-            }
-        );
-        let style: Style = serde_json::from_str(r#"{"box":null}"#).expect("no box");
-        assert_eq!(style.clip_box, None);
-    }
 
     #[test]
     fn a_frame_is_finite_whatever_the_style_says() {
@@ -160,7 +128,7 @@ mod tests {
             dim: nan,
             dim_backfaces: -3.0,
             fade_s: nan,
-            outline: -5,
+            outline: None,
             clip_box: None,
             pixel_ratio: nan,
         };

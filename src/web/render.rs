@@ -3,10 +3,10 @@
 //! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
 //! picture may be on its way while the next frame is drawn.
 
-use crate::render::style::Style;
+use crate::render::style::{ClipBox, Style};
 use crate::render::view::View;
-use crate::render::{Callbacks, Drawn, Renderer as Inner};
-use js_sys::{Float32Array, Function, Promise, Uint8Array, Uint32Array};
+use crate::render::{Callbacks, Outcome, Renderer as Inner};
+use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -53,7 +53,6 @@ impl Renderer {
     /// # Errors
     ///
     /// Throws an `Error` where the canvas, the adapter or the device cannot be had.
-    #[allow(clippy::allow_attributes, reason = "wasm-bindgen's expansion")]
     pub async fn create(
         canvas: HtmlCanvasElement,
         on_lost: Function,
@@ -128,9 +127,9 @@ impl Renderer {
         let count = radii.length();
         if positions.length() != 3 * count || normals.length() != 3 * count || colours.length() != count {
             return Err(JsError::new(&format!(
-                "columns disagree: {} positions, {} normals, {count} radii, {} colours",
-                f64::from(positions.length()) / 3.0,
-                f64::from(normals.length()) / 3.0,
+                "columns disagree: {} numbers of positions, {} of normals, {count} radii, {} colours",
+                positions.length(),
+                normals.length(),
                 colours.length()
             )));
         }
@@ -183,13 +182,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sets the look from JSON; missing keys take their defaults. The keys are the fields of `render::style::Style`.
+    /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
+    ///
+    /// `background` [r, g, b, a] · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
+    /// `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
+    /// `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
     ///
     /// # Errors
     ///
     /// Throws for malformed JSON and for values of another type; the last style stays.
     pub fn set_style(&self, json: &str) -> Result<(), JsError> {
-        let style: Style = serde_json::from_str(json)?;
+        let style = read_style(json)?;
         self.inner.borrow_mut().set_style(style);
         Ok(())
     }
@@ -197,9 +200,9 @@ impl Renderer {
     /// Draws one picture on the canvas: "drawn", "skipped" (nothing to draw on now) or "lost" (make a new renderer).
     pub fn draw(&self, time_s: f64) -> String {
         match self.inner.borrow_mut().draw(time_s) {
-            Drawn::Drawn => "drawn",
-            Drawn::Skipped => "skipped",
-            Drawn::Lost => "lost",
+            Outcome::Drawn => "drawn",
+            Outcome::Skipped => "skipped",
+            Outcome::Lost => "lost",
         }
         .to_owned()
     }
@@ -276,4 +279,50 @@ fn copy(from: &Float32Array, to: &mut Vec<f32>) {
 fn copy_colours(from: &Uint32Array, to: &mut Vec<u32>) {
     to.resize(from.length() as usize, 0);
     from.copy_to(to);
+}
+
+/// Reads a style by the browser's own JSON parser: a parser of ours would be a tenth of the bundle.
+fn read_style(json: &str) -> Result<Style, JsError> {
+    let value = JSON::parse(json).map_err(|_| JsError::new("the style is not JSON"))?;
+    let mut style = Style::default();
+    read(&value, "background", &mut style.background)?;
+    read(&value, "disc_scale", core::array::from_mut(&mut style.disc_scale))?;
+    read(&value, "key_light_view", &mut style.key_light_view)?;
+    read(&value, "dim", core::array::from_mut(&mut style.dim))?;
+    read(&value, "dim_backfaces", core::array::from_mut(&mut style.dim_backfaces))?;
+    read(&value, "fade_s", core::array::from_mut(&mut style.fade_s))?;
+    read(&value, "pixel_ratio", core::array::from_mut(&mut style.pixel_ratio))?;
+    if let Some(index) = get(&value, "outline")?.as_f64() {
+        style.outline = (index >= 0.0).then_some(index as u32);
+    }
+    let clip_box = get(&value, "box")?;
+    if clip_box.is_object() {
+        let mut read_box = ClipBox::default();
+        read(&clip_box, "min", &mut read_box.min)?;
+        read(&clip_box, "max", &mut read_box.max)?;
+        read(&clip_box, "colour", &mut read_box.colour)?;
+        style.clip_box = Some(read_box);
+    }
+    Ok(style)
+}
+
+/// Overwrites `numbers` by the value of `key`, where it is there: a number for one, an array of as many for several.
+fn read(object: &JsValue, key: &str, numbers: &mut [f32]) -> Result<(), JsError> {
+    let value = get(object, key)?;
+    if value.is_undefined() {
+        return Ok(());
+    }
+    let array = if Array::is_array(&value) { Array::from(&value) } else { Array::of1(&value) };
+    let wrong = || JsError::new(&format!("the style's `{key}` is not of the right type"));
+    if array.length() as usize != numbers.len() {
+        return Err(wrong());
+    }
+    for (number, value) in numbers.iter_mut().zip(array.iter()) {
+        *number = value.as_f64().ok_or_else(wrong)? as f32;
+    }
+    Ok(())
+}
+
+fn get(object: &JsValue, key: &str) -> Result<JsValue, JsError> {
+    Reflect::get(object, &key.into()).map_err(|_| JsError::new("the style is not an object"))
 }

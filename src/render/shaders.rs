@@ -1,0 +1,75 @@
+//! The shaders, as text.
+
+/// One shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// File name in `shaders/`.
+    pub name: &'static str,
+    /// The file.
+    pub source: &'static str,
+    /// The file without comments and indentation: what is handed to the device, and what the bundle carries.
+    pub lean: &'static str,
+}
+
+macro_rules! shader {
+    ($name:literal) => {{
+        const SOURCE: &str = include_str!(concat!("../../shaders/", $name));
+        const LEAN: [u8; strip(SOURCE, &mut [])] = {
+            let mut bytes = [0; strip(SOURCE, &mut [])];
+            strip(SOURCE, &mut bytes);
+            bytes
+        };
+        const TEXT: &str = match core::str::from_utf8(&LEAN) {
+            Ok(text) => text,
+            Err(_) => panic!("stripping cuts at ASCII characters only"),
+        };
+        Shader { name: $name, source: SOURCE, lean: TEXT }
+    }};
+}
+/// Every shader. `tests/shaders.rs` checks that this lists all files of `shaders/`.
+pub const SHADERS: [Shader; 2] = [DISCS, BOX];
+
+/// Particles as discs, and the ring around one of them.
+pub const DISCS: Shader = shader!("discs.wgsl");
+/// The edges of the clip box.
+pub const BOX: Shader = shader!("box.wgsl");
+
+/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as it reaches; returns the length of the whole.
+const fn strip(source: &str, out: &mut [u8]) -> usize {
+    let bytes = source.as_bytes();
+    let mut length = 0;
+    let mut line_is_empty = true;
+    let mut i = 0;
+    while i < bytes.len() {
+        if bytes[i] == b'/' && i + 1 < bytes.len() && bytes[i + 1] == b'/' {
+            while i < bytes.len() && bytes[i] != b'\n' {
+                i += 1;
+            }
+            continue;
+        }
+        let is_space = bytes[i] == b' ' || bytes[i] == b'\n';
+        if !(line_is_empty && is_space) {
+            if length < out.len() {
+                out[length] = bytes[i];
+            }
+            length += 1;
+        }
+        line_is_empty = bytes[i] == b'\n' || line_is_empty && is_space;
+        i += 1;
+    }
+    length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::strip;
+
+    #[test]
+    fn stripping_keeps_the_code() {
+        let source = "// a\n\nfn f() {\n    let a = 1 / 2; // half\n    // gone\n    b\n}\n";
+        let lean = "fn f() {\nlet a = 1 / 2; \nb\n}\n";
+        let mut out = vec![0; strip(source, &mut [])];
+        strip(source, &mut out);
+        assert_eq!(String::from_utf8(out).expect("UTF-8"), lean);
+    }
+}
