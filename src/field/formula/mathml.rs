@@ -124,29 +124,35 @@ impl Writer {
 
     /// Factors from left to right; a division puts everything before it over the divisor.
     fn product(&mut self, factors: &[(Factor, Expr)]) {
-        let last_division = factors.iter().rposition(|(relation, _)| *relation == Factor::Over);
-        self.row(|out| {
-            let rest = match last_division {
-                None => factors,
-                Some(at) => {
-                    out.element("mfrac", |out| {
-                        if let [(_, only)] = &factors[..at] {
-                            out.expression(only);
-                        } else {
-                            out.product(&factors[..at]);
-                        }
-                        out.expression(&factors[at].1);
-                    });
-                    &factors[at + 1..]
-                }
+        let Some(at) = factors.iter().rposition(|(relation, _)| *relation == Factor::Over) else {
+            return match factors {
+                [(_, only)] => self.expression(only),
+                _ => self.row(|out| out.factors(factors, false)),
             };
-            for (index, (_, factor)) in rest.iter().enumerate() {
-                if index > 0 || last_division.is_some() {
-                    out.operator(if starts_with_digit(factor) { "⋅" } else { INVISIBLE_TIMES });
-                }
-                out.at(factor, Level::Product);
+        };
+        let fraction = |out: &mut Self| {
+            out.element("mfrac", |out| {
+                out.product(&factors[..at]);
+                out.expression(&factors[at].1);
+            });
+        };
+        match &factors[at + 1..] {
+            [] => fraction(self),
+            rest => self.row(|out| {
+                fraction(out);
+                out.factors(rest, true);
+            }),
+        }
+    }
+
+    /// Factors one after the other; `continued` if others stand before them.
+    fn factors(&mut self, factors: &[(Factor, Expr)], continued: bool) {
+        for (index, (_, factor)) in factors.iter().enumerate() {
+            if index > 0 || continued {
+                self.operator(if starts_with_digit(factor) { "⋅" } else { INVISIBLE_TIMES });
             }
-        });
+            self.at(factor, Level::Product);
+        }
     }
 
     fn power(&mut self, base: &Expr, exponent: &Expr) {

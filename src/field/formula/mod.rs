@@ -97,6 +97,8 @@ pub struct FormulaField {
     /// Compiled when first asked for: uniform sampling does without.
     hessian_program: Option<Program>,
     gradient: [Id; 3],
+    /// Meaningful once the Hessian is compiled.
+    hessian: [Id; 6],
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
     ranges: interval::RangeScratch,
@@ -149,6 +151,7 @@ impl FormulaField {
             gradient_program,
             hessian_program: None,
             gradient,
+            hessian: [root; 6],
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
             ranges: Vec::new(),
@@ -168,6 +171,12 @@ impl FormulaField {
     #[must_use]
     pub fn normal_form(&self) -> String {
         display::plain_equation(&self.equation)
+    }
+
+    /// Whether both formulas have the same syntax tree, wherever their symbols stand.
+    #[must_use]
+    pub fn same_tree(&self, other: &Self) -> bool {
+        self.equation == other.equation
     }
 
     /// The formula as a MathML `math` element, display style; names and numbers are escaped.
@@ -219,6 +228,23 @@ impl FormulaField {
         Ok(())
     }
 
+    /// f, ∇f and ∇∇f at `p` through the transformed graphs that the batches are compiled from, but in double
+    /// precision: equal to [`Field::jet`] up to rounding, by an independent route.
+    pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
+        self.compile_hessian();
+        let mut values: Vec<f64> = Vec::with_capacity(self.graph.len());
+        for node in self.graph.nodes() {
+            values.push(node.evaluate(&self.values, p.to_array(), |id| values[id as usize]));
+        }
+        let value = |id: Id| values[id as usize];
+        let [xx, xy, xz, yy, yz, zz] = self.hessian.map(value);
+        Jet {
+            value: value(self.root),
+            gradient: DVec3::from_array(self.gradient.map(value)),
+            hessian: Sym3 { xx, xy, xz, yy, yz, zz },
+        }
+    }
+
     fn update(&mut self) {
         self.value_program.set_parameters(&self.values);
         self.gradient_program.set_parameters(&self.values);
@@ -233,6 +259,7 @@ impl FormulaField {
             let mut outputs = vec![self.root];
             outputs.extend(self.gradient);
             outputs.extend(hessian);
+            self.hessian = hessian;
             let mut program = Program::compile(&self.graph, &outputs);
             program.set_parameters(&self.values);
             self.hessian_program = Some(program);

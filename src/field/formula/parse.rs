@@ -274,18 +274,26 @@ impl Parser<'_> {
             self.next += 1;
         } else if self.peek().token == Token::Caret {
             self.next += 1;
-            let Spanned { token, span } = self.peek().clone();
+            let negative = self.take(&Token::Minus);
+            let Spanned { token, span: raised } = self.peek().clone();
             let Token::Number(value) = token else {
                 let message = format!("Write the power of a value as `{name}(…)^n`");
-                return Err(FormulaError::new(ErrorKind::Ambiguous, span, message));
+                return Err(FormulaError::new(ErrorKind::Ambiguous, span.start..raised.end, message));
             };
             self.next += 1;
-            exponent = Some(Expr { kind: Kind::Number(value), span });
+            let value = if negative { -value } else { value };
+            exponent = Some(Expr { kind: Kind::Number(value), span: raised });
         }
-        if let Some(Expr { kind: Kind::Number(value), span: raised }) = &exponent
-            && *value < 1.0
+        let negative = |kind: &Kind| match kind {
+            Kind::Number(value) => *value < 0.0,
+            _ => true,
+        };
+        if let Some(Expr { kind, span: raised }) = &exponent
+            && negative(kind)
         {
-            let message = format!("`{name}` to a negative power has two readings: write `1/{name}(…)`");
+            let message = format!(
+                "A negative power of `{name}` has two readings: write `1/{name}(…)`, or name the inverse"
+            );
             return Err(FormulaError::new(ErrorKind::Ambiguous, span.start..raised.end, message));
         }
         if self.peek().token != Token::Open {
@@ -365,10 +373,12 @@ pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> O
         .filter_map(|word| {
             let distance = if word.eq_ignore_ascii_case(name) { 0 } else { edits(name, word) };
             let close = distance == 0 || (length >= 2 && word.len() >= 2 && distance <= allowed);
-            (close && word != name).then_some((distance, word))
+            // Slips rarely hit the first letter.
+            let start = word.chars().next() != name.chars().next();
+            (close && word != name).then_some((distance, start, word))
         })
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, word)| word)
+        .min_by_key(|&(distance, start, _)| (distance, start))
+        .map(|(_, _, word)| word)
 }
 
 /// Edit distance: insertions, deletions, substitutions and swaps of neighbours.

@@ -2,7 +2,7 @@
 //! shares nothing with the transformed graphs, and so can check them.
 
 use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH, power, smin};
-use super::operations::{Binary, Unary, sign};
+use super::operations::{Binary, Unary};
 use crate::field::Jet;
 use crate::math::Sym3;
 use glam::DVec3;
@@ -183,14 +183,18 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
     }
 }
 
-/// (a + b)/2 − max(|d| − k, 0)/2 − k (1/6 + u²/2 − |u|³/6) with d = a − b and u = d/k cut to −1 … 1.
+/// Where |a − b| < k: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k; else the lesser one.
 fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
     let value = smin(a.value, b.value, k.value);
     let k = if k.value > SMIN_LEAST_WIDTH { *k } else { Order2::uniform(SMIN_LEAST_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
-    let ratio = difference.mul(&k.reciprocal(axes));
-    let beyond = ratio.value.abs() >= 1.0;
-    let u = if beyond { Order2::uniform(sign(ratio.value)) } else { ratio };
+    let u = difference.mul(&k.reciprocal(axes));
+    if u.value >= 1.0 {
+        return Order2 { value, ..*b };
+    }
+    if u.value <= -1.0 {
+        return Order2 { value, ..*a };
+    }
     let size = u.value.abs();
     let bend = u.apply(
         [
@@ -200,10 +204,5 @@ fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
         ],
         axes,
     );
-    let mut out = a.add(b).scale(0.5).add(&k.mul(&bend).scale(-1.0));
-    if beyond {
-        let excess = difference.scale(sign(difference.value)).add(&k.scale(-1.0));
-        out = out.add(&excess.scale(-0.5));
-    }
-    Order2 { value, ..out }
+    Order2 { value, ..a.add(b).scale(0.5).add(&k.mul(&bend).scale(-1.0)) }
 }

@@ -1,0 +1,444 @@
+//! The formula language: what it accepts, what it means, and how it says no.
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::Field;
+use marching_particles::field::formula::{
+    FUNCTIONS, FormulaError, FormulaErrorKind as Kind, FormulaField, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
+    utf16_offset,
+};
+use marching_particles::math::Sym3;
+
+fn parse(text: &str) -> FormulaField {
+    FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
+}
+
+fn error(text: &str) -> FormulaError {
+    match FormulaField::parse(text, &[]) {
+        Ok(_) => panic!("{text} was accepted"),
+        Err(error) => error,
+    }
+}
+
+/// The value at (x, y, z) = (1.25, −0.5, 2).
+fn value(text: &str) -> f64 {
+    parse(text).jet(DVec3::new(1.25, -0.5, 2.0)).value
+}
+
+#[test]
+fn formulas_mean_what_a_mathematician_reads() {
+    let (x, y, z) = (1.25_f64, -0.5_f64, 2.0_f64);
+    let cases: &[(&str, f64)] = &[
+        ("x", x),
+        ("2x", 2.0 * x),
+        ("2x y", 2.0 * x * y),
+        ("xyz", x * y * z),
+        ("xy^2", x * y * y),
+        ("3(x+1)", 3.0 * (x + 1.0)),
+        ("(x+1)(y-1)", (x + 1.0) * (y - 1.0)),
+        ("x(y+1)", x * (y + 1.0)),
+        ("-x^2", -(x * x)),
+        ("2^-x^2", 2.0_f64.powf(-(x * x))),
+        ("2^3^2", 512.0),
+        ("x-y-z", x - y - z),
+        ("x/y/z", x / y / z),
+        ("x/y*z", x / y * z),
+        ("x*-y", -x * y),
+        ("x - -y", x + y),
+        ("+x", x),
+        ("--x", x),
+        ("x^2 + y^2 = z", x * x + y * y - z),
+        (
+            "pi + e + tau + phi",
+            3.0 * core::f64::consts::PI + core::f64::consts::E + f64::midpoint(1.0, 5_f64.sqrt()),
+        ),
+        ("2e3", 2000.0),
+        ("2e-1x", 0.2 * x),
+        ("2e", 2.0 * core::f64::consts::E),
+        ("2e x", 2.0 * core::f64::consts::E * x),
+        (".5x", 0.5 * x),
+        ("5.x", 5.0 * x),
+        ("sin^2(x)", x.sin().powi(2)),
+        ("sin²(x) + cos²(x)", 1.0),
+        ("sin(x)y", x.sin() * y),
+        ("x² + y³", x * x + y * y * y),
+        ("x⁻²", 1.0 / (x * x)),
+        ("z¹⁰", 1024.0),
+        ("2πx", core::f64::consts::TAU * x),
+        ("x × y · z ÷ 4 − 1", x * y * z / 4.0 - 1.0),
+        ("２ｘ＋（ｙ）", 2.0 * x + y),
+        ("x\u{00A0}+\u{2009}y", x + y),
+        ("cbrt(-8)", -2.0),
+        ("sqrt(z)", 2.0_f64.sqrt()),
+        ("abs(y)", 0.5),
+        ("sign(y)", -1.0),
+        ("floor(y)", -1.0),
+        ("min(x, y, z)", y),
+        ("max(x, y, z)", z),
+        ("exp(ln(z))", 2.0),
+        ("log10(1000)", 3.0),
+        ("atan2(y, x)", y.atan2(x)),
+        ("asin(y) + acos(y)", core::f64::consts::FRAC_PI_2),
+        ("atan(tan(y))", y),
+        ("cosh(x)^2 - sinh(x)^2", 1.0),
+        ("tanh(x)", x.tanh()),
+        ("hypot(3, 4)", 5.0),
+        ("hypot(x, y, z)", (x * x + y * y + z * z).sqrt()),
+        ("smin(x, y, 0)", y),
+        ("smin(x, x, 0.6)", x - 0.1),
+        ("smax(x, x, 0.6)", x + 0.1),
+        ("x^0.5", x.sqrt()),
+        ("z^-1.5", 2.0_f64.powf(-1.5)),
+        ("z^0.3", 2.0_f64.powf(0.3)),
+        ("y^3", y * y * y),
+        ("y^0", 1.0),
+        ("x^y", x.powf(y)),
+        ("-0", 0.0),
+        ("1e-320 + x", x),
+    ];
+    for &(text, wanted) in cases {
+        let got = value(text);
+        assert!((got - wanted).abs() <= 1e-13 * wanted.abs().max(1.0), "{text} = {got}, not {wanted}");
+    }
+}
+
+#[test]
+fn every_error_names_its_kind_its_place_and_its_remedy() {
+    let cases: &[(&str, Kind, core::ops::Range<usize>, Option<&str>)] = &[
+        ("", Kind::Empty, 0..0, None),
+        (" \t\n ", Kind::Empty, 0..0, None),
+        ("x^2+", Kind::UnexpectedEnd, 4..4, None),
+        ("x^2 + ", Kind::UnexpectedEnd, 6..6, None),
+        (")(", Kind::UnexpectedSymbol, 0..1, None),
+        ("(x", Kind::UnexpectedEnd, 2..2, Some(")")),
+        ("x)", Kind::UnexpectedSymbol, 1..2, None),
+        ("()", Kind::UnexpectedSymbol, 1..2, None),
+        ("sin x", Kind::MissingBrackets, 0..5, Some("sin(x)")),
+        ("2 sin x^2 + 1", Kind::MissingBrackets, 2..9, Some("sin(x^2)")),
+        ("sin", Kind::MissingBrackets, 0..3, Some("sin(…)")),
+        ("x = y = z", Kind::TooManyEquations, 6..7, None),
+        ("= x", Kind::UnexpectedSymbol, 0..1, None),
+        ("x =", Kind::UnexpectedEnd, 3..3, None),
+        ("x * / y", Kind::UnexpectedSymbol, 4..5, None),
+        ("x ** 2", Kind::UnexpectedSymbol, 2..4, Some("^")),
+        ("x 2", Kind::UnexpectedSymbol, 2..3, None),
+        ("2 3", Kind::UnexpectedSymbol, 2..3, None),
+        ("[x]", Kind::UnexpectedSymbol, 0..1, Some("(")),
+        ("0,5 x", Kind::DecimalComma, 0..3, Some("0.5")),
+        ("min(x, 0,5)", Kind::DecimalComma, 7..10, Some("0.5")),
+        ("x, y", Kind::UnexpectedSymbol, 1..2, None),
+        ("1/2x", Kind::Ambiguous, 2..4, Some("(2 x)")),
+        ("x²^3", Kind::Ambiguous, 0..4, None),
+        ("sin^-1(x)", Kind::Ambiguous, 0..6, None),
+        ("sin⁻¹(x)", Kind::Ambiguous, 0..8, None),
+        ("sin^n(x)", Kind::Ambiguous, 0..5, None),
+        ("1.2.3", Kind::BadNumber, 0..4, None),
+        (".", Kind::BadNumber, 0..1, None),
+        ("1e999", Kind::NotFinite, 0..5, None),
+        ("0/0", Kind::NotFinite, 2..3, None),
+        ("x + 1/0", Kind::NotFinite, 6..7, None),
+        ("x/(2 - 2)", Kind::NotFinite, 2..9, None),
+        ("x + ln(0)", Kind::NotFinite, 4..9, None),
+        ("sqrt(-1) x", Kind::NotFinite, 0..8, None),
+        ("10^400", Kind::NotFinite, 0..6, None),
+        ("sn(x)", Kind::UnknownFunction, 0..2, Some("sin")),
+        ("foo(x)", Kind::UnknownFunction, 0..3, Some("foo*")),
+        ("Sin(x)", Kind::UnknownFunction, 0..3, Some("sin")),
+        ("atan2(x)", Kind::WrongArity, 0..8, None),
+        ("sin(x, y)", Kind::WrongArity, 0..9, None),
+        ("sin()", Kind::WrongArity, 0..5, None),
+        ("smin(x, y)", Kind::WrongArity, 0..10, None),
+        ("X + 1", Kind::UnknownName, 0..1, Some("x")),
+        ("2Pi x", Kind::UnknownName, 1..3, Some("pi")),
+        ("cosx", Kind::UnknownName, 0..4, Some("cos(x)")),
+        ("x2 + y2", Kind::UnknownName, 0..2, Some("x^2")),
+        ("sim + x", Kind::UnknownName, 0..3, Some("sin")),
+        ("x | y", Kind::UnexpectedCharacter, 2..3, None),
+        ("√x", Kind::UnexpectedCharacter, 0..3, Some("sqrt")),
+        ("x\0", Kind::UnexpectedCharacter, 1..2, Some("")),
+        ("x \u{202E}y", Kind::UnexpectedCharacter, 2..5, Some("")),
+        ("x ☃", Kind::UnexpectedCharacter, 2..5, None),
+        ("x < 1", Kind::UnexpectedCharacter, 2..3, Some("=")),
+        ("<img onerror=alert(1)>", Kind::UnexpectedCharacter, 0..1, Some("=")),
+    ];
+    for (text, kind, span, suggestion) in cases {
+        let error = error(text);
+        assert_eq!(error.kind, *kind, "{text}: {error:?}");
+        assert_eq!(error.span, *span, "{text}: {error:?}");
+        assert_eq!(error.suggestion.as_deref(), *suggestion, "{text}: {error:?}");
+        assert!(error.message.len() > 15, "{text}: {error:?}");
+    }
+}
+
+#[test]
+fn strange_characters_are_named_by_their_code_points() {
+    assert!(error("x\0").message.contains("U+0000"));
+    assert!(error("x + \u{202E}y").message.contains("U+202E"));
+    assert!(error("x + ☃").message.contains("U+2603"));
+}
+
+#[test]
+fn spans_convert_to_the_units_of_a_text_field() {
+    // One byte, two bytes and one unit, four bytes and two units.
+    let text = "aπ𝛼b";
+    let units: Vec<usize> = (0..=text.len()).map(|byte| utf16_offset(text, byte)).collect();
+    assert_eq!(units, [0, 1, 1, 2, 2, 2, 2, 4, 5]);
+    assert_eq!(utf16_offset(text, 99), 5);
+    let text = "π × 𝛼";
+    let error = error(text);
+    assert_eq!((error.kind, error.utf16_span(text)), (Kind::UnexpectedCharacter, 4..6));
+}
+
+#[test]
+fn a_suggestion_put_in_place_of_the_span_mends_the_formula() {
+    for text in
+        ["sin x", "2 sin x^2 + 1", "0,5 x", "1/2x", "(x", "cosx", "x2 + y2", "X + 1", "x ** 2", "sn(x)"]
+    {
+        let mut mended = text.to_owned();
+        for _ in 0..3 {
+            let Err(error) = FormulaField::parse(&mended, &[]) else { break };
+            mended.replace_range(error.span, &error.suggestion.unwrap());
+        }
+        parse(&mended);
+    }
+}
+
+// Bad input, case by case.
+
+#[test]
+fn an_empty_formula_is_an_error_of_its_own_kind() {
+    assert_eq!(error("").kind, Kind::Empty);
+    assert_eq!(error("\u{00A0} \n").kind, Kind::Empty);
+}
+
+#[test]
+fn up_to_four_unknown_names_become_parameters_and_a_fifth_asks_for_a_slider() {
+    let field = parse("a x + b y + k z = r");
+    assert_eq!(field.auto(), ["a", "b", "k", "r"]);
+    assert_eq!(field.parameters().len(), 4);
+    assert!(field.parameters().iter().all(|p| p.value == 1.0 && p.min < p.value && p.value < p.max));
+
+    let text = "a x + b y + k z = r + s";
+    let fifth = error(text);
+    assert_eq!((fifth.kind, &text[fifth.span.clone()]), (Kind::UnknownName, "s"));
+    assert_eq!(fifth.names, ["a", "b", "k", "r", "s"]);
+    assert!(fifth.message.contains("add a slider `s`"), "{}", fifth.message);
+
+    let declared = [Parameter::automatic("s")];
+    let field = FormulaField::parse(text, &declared).unwrap();
+    assert_eq!(field.auto(), ["a", "b", "k", "r"]);
+    assert_eq!(field.parameters()[0].name, "s");
+}
+
+#[test]
+fn a_likely_slip_is_not_made_a_parameter_unless_it_is_declared() {
+    let slip = error("alpha x + sim y");
+    assert_eq!((slip.kind, slip.names.as_slice()), (Kind::UnknownName, ["sim".to_owned()].as_slice()));
+    assert!(slip.message.contains("did you mean `sin`") && slip.message.contains("add a slider `sim`"));
+    assert!(FormulaField::parse("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
+    let near = FormulaField::parse("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
+    assert_eq!(near.suggestion.as_deref(), Some("radius"));
+    // Indexed names, single letters and Greek ones are meant as they are.
+    for text in ["phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
+        parse(text);
+    }
+}
+
+#[test]
+fn parameters_can_be_declared_and_changed_without_parsing_again() {
+    let declared = [
+        Parameter { name: "a".into(), label: "Length".into(), value: 2.0, min: 0.5, max: 4.0, step: 0.1 },
+        Parameter::automatic("unused"),
+    ];
+    let mut field = FormulaField::parse("x^2/a^2 - b", &declared).unwrap();
+    let names: Vec<&str> = field.parameters().iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    let point = [Vec3::new(3.0, 0.0, 0.0)];
+    let mut value = [0.0];
+    let mut gradient = [Vec3::ZERO];
+    let mut hessian = [Sym3::default()];
+    for (a, b) in [(2.0, 1.0), (0.5, -3.0), (5.0, 0.25)] {
+        field.set_parameter("a", a).unwrap();
+        field.set_parameter("b", b).unwrap();
+        field.hessians(&point, &mut value, &mut gradient, &mut hessian);
+        let exact = field.jet(DVec3::new(3.0, 0.0, 0.0));
+        assert!((exact.value - (9.0 / (a * a) - b)).abs() < 1e-12);
+        assert!((f64::from(value[0]) - exact.value).abs() < 1e-5);
+        assert!((f64::from(gradient[0].x) - 6.0 / (a * a)).abs() < 1e-5);
+        assert!((f64::from(hessian[0].xx) - 2.0 / (a * a)).abs() < 1e-5);
+        assert_eq!(field.parameters()[0].value, a);
+    }
+    assert!(field.set_parameter("unused", 1.0).is_ok());
+    assert_eq!(field.set_parameter("c", 1.0).unwrap_err().kind, Kind::BadParameter);
+    assert_eq!(field.set_parameter("a", f64::NAN).unwrap_err().kind, Kind::BadParameter);
+    assert_eq!(field.parameters()[0].value, 5.0);
+}
+
+#[test]
+fn declarations_that_make_no_sense_are_refused() {
+    let with = |name: &str, value: f64, min: f64, max: f64| {
+        let parameter = Parameter { name: name.into(), label: String::new(), value, min, max, step: 0.1 };
+        FormulaField::parse("x", &[parameter]).map(|_| ()).map_err(|error| error.kind)
+    };
+    assert_eq!(with("a", 1.0, 0.0, 2.0), Ok(()));
+    for name in ["x", "pi", "sin", "", "2a", "a b", "<b>", "a-b"] {
+        assert_eq!(with(name, 1.0, 0.0, 2.0), Err(Kind::BadParameter), "{name}");
+    }
+    assert_eq!(with("a", f64::NAN, 0.0, 2.0), Err(Kind::BadParameter));
+    assert_eq!(with("a", 1.0, 2.0, 0.0), Err(Kind::BadParameter));
+    assert_eq!(with("a", 1.0, 0.0, f64::INFINITY), Err(Kind::BadParameter));
+    let twice = [Parameter::automatic("a"), Parameter::automatic("a")];
+    assert_eq!(FormulaField::parse("x", &twice).unwrap_err().kind, Kind::BadParameter);
+}
+
+#[test]
+fn deep_nesting_is_refused_before_it_can_overflow_a_stack() {
+    for unit in ["(", "-", "+", "sin(", "2^", "x^-", "abs(-("] {
+        // Within the limit of length, so that it is the limit of depth that answers.
+        let text = unit.repeat(MAX_FORMULA_BYTES / unit.len());
+        assert_eq!(error(&text).kind, Kind::TooDeep, "{unit}");
+        // And beyond both.
+        assert_eq!(error(&unit.repeat(100_000)).kind, Kind::TooLong, "{unit}");
+    }
+    let nested = |n: usize| format!("{}x{}", "(".repeat(n), ")".repeat(n));
+    parse(&nested(MAX_DEPTH));
+    assert_eq!(error(&nested(MAX_DEPTH + 1)).kind, Kind::TooDeep);
+}
+
+#[test]
+fn a_megabyte_is_refused_before_parsing() {
+    let text = "x+".repeat(500_000);
+    let error = error(&text);
+    assert_eq!((error.kind, error.span), (Kind::TooLong, MAX_FORMULA_BYTES..text.len()));
+    // The cut does not fall inside a character.
+    let text = "π".repeat(3000);
+    let error = FormulaField::parse(&text[..], &[]).unwrap_err();
+    assert!(text.is_char_boundary(error.span.start), "{:?}", error.span);
+}
+
+#[test]
+fn swelling_expressions_are_bounded() {
+    let tower = format!("{}x", "x^".repeat(1000));
+    assert_eq!(error(&tower).kind, Kind::TooDeep);
+    // Each power needs some thirty products.
+    let powers: Vec<String> = (0..200).map(|k| format!("(x+{k})^{}", 1_073_741_823 - k)).collect();
+    assert_eq!(error(&powers.join("+")).kind, Kind::TooComplex);
+    // As long a sum as fits: fine, and evaluated without trouble.
+    let long = format!("x{}", "+y^2".repeat(1000));
+    let mut field = parse(&long);
+    assert_eq!(field.jet(DVec3::new(1.0, 2.0, 0.0)).value, 4001.0);
+    let terms: Vec<String> = (1..400).map(|k| format!("sin({k}x)")).collect();
+    let mut field = parse(&terms.join("+"));
+    let mut value = [0.0];
+    let mut gradient = [Vec3::ZERO];
+    let mut hessian = [Sym3::default()];
+    field.hessians(&[Vec3::splat(0.001)], &mut value, &mut gradient, &mut hessian);
+    assert!(value[0].is_finite() && hessian[0].xx.is_finite());
+}
+
+#[test]
+fn extreme_numbers_are_errors_where_constant_and_harmless_elsewhere() {
+    for text in ["1e999", "0/0", "x + 0/0", "1/(1-1)", "exp(1000) x", "x^(1/0)"] {
+        assert_eq!(error(text).kind, Kind::NotFinite, "{text}");
+    }
+    assert_eq!(parse("x^1e9").jet(DVec3::ONE).value, 1.0);
+    assert_eq!(parse("x^1e9").jet(DVec3::splat(2.0)).value, f64::INFINITY);
+    assert_eq!(parse("x^1e300").jet(DVec3::ONE).value, 1.0);
+    assert_eq!(parse("x*1e-310").jet(DVec3::ONE).value, 1e-310);
+    assert_eq!(parse("-0 + x").jet(DVec3::ONE).value, 1.0);
+    // Too large for single precision: infinite there, never a false zero.
+    let mut value = [0.0];
+    parse("x - 1e300").values(&[Vec3::ONE], &mut value);
+    assert_eq!(value[0], f32::NEG_INFINITY);
+}
+
+#[test]
+fn a_decimal_comma_is_never_taken_for_two_arguments() {
+    for text in ["0,5", "x^2 = 0,5", "max(1,5 x)", "min(1,5)", "atan2(1,2)"] {
+        assert_eq!(error(text).kind, Kind::DecimalComma, "{text}");
+    }
+    assert_eq!(value("min(1, 5)"), 1.0);
+    assert_eq!(value("min(x,5)"), 1.25);
+}
+
+#[test]
+fn a_field_without_a_zero_is_seen_by_its_interval() {
+    let mut field = parse("x^2 + y^2 + z^2 + 1");
+    let bounds = field.interval(DVec3::splat(-10.0), DVec3::splat(10.0));
+    assert!(bounds.lo > 0.9 && bounds.hi < 302.0 && bounds.defined, "{bounds:?}");
+}
+
+#[test]
+fn constant_fields_are_recognised() {
+    for text in ["0", "1", "a - a", "x - x", "x*0", "(x+y)^2 - x^2 - 2x y - y^2 + 0x", "x = x", "k + 2"] {
+        let expanded = text.contains("2x y");
+        assert_eq!(parse(text).is_constant(), !expanded, "{text}");
+    }
+    for text in ["x", "floor(x)", "sign(x)", "abs(x)", "x*y - y*x + z", "k x"] {
+        assert!(!parse(text).is_constant(), "{text}");
+    }
+}
+
+#[test]
+fn undefined_regions_are_nan_and_poles_are_infinite() {
+    let probe = |text: &str, x: f32| {
+        let mut value = [0.0];
+        let mut gradient = [Vec3::ZERO];
+        parse(text).gradients(&[Vec3::new(x, 0.3, 0.4)], &mut value, &mut gradient);
+        (value[0], gradient[0])
+    };
+    for text in
+        ["ln(x)", "sqrt(x)", "x^0.3", "asin(x + 3)", "acos(x + 2)", "log10(x)", "0*ln(x)", "min(ln(x), y)"]
+    {
+        let at = if text.starts_with('a') { 1.5 } else { -1.5 };
+        assert!(probe(text, at).0.is_nan(), "{text}");
+    }
+    assert_eq!(probe("1/x", 0.0).0, f32::INFINITY);
+    assert_eq!(probe("1/x^2 - 5", 0.0).0, f32::INFINITY);
+    assert_eq!(probe("ln(x)", 0.0).0, f32::NEG_INFINITY);
+    assert!(probe("x/x", 0.0).0.is_nan());
+    assert!(probe("tan(x)", core::f32::consts::FRAC_PI_2).0.abs() > 1e7);
+    // The apex of a cone: defined, with no direction.
+    let (value, gradient) = {
+        let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
+        parse("hypot(x, y) - abs(z)").gradients(&[Vec3::ZERO], &mut value, &mut gradient);
+        (value[0], gradient[0])
+    };
+    assert!(value == 0.0 && gradient.is_nan(), "{value} {gradient}");
+}
+
+#[test]
+fn a_branch_not_taken_does_not_spoil_the_interval_or_the_value() {
+    let mut field = parse("min(x, exp(x^4))");
+    assert_eq!(field.jet(DVec3::new(10.0, 0.0, 0.0)).value, 10.0);
+    let mut value = [0.0];
+    field.values(&[Vec3::new(10.0, 0.0, 0.0)], &mut value);
+    assert_eq!(value[0], 10.0);
+}
+
+#[test]
+fn kinks_have_the_documented_slopes() {
+    let slope = |text: &str, p: DVec3| {
+        let mut field = parse(text);
+        let exact = field.jet(p).gradient;
+        let mut value = [0.0];
+        let mut gradient = [Vec3::ZERO];
+        field.gradients(&[p.as_vec3()], &mut value, &mut gradient);
+        assert_eq!(gradient[0].as_dvec3(), exact, "{text}");
+        exact
+    };
+    assert_eq!(slope("abs(x)", DVec3::ZERO), DVec3::ZERO);
+    assert_eq!(slope("sign(x) + floor(y)", DVec3::splat(0.5)), DVec3::ZERO);
+    assert_eq!(slope("min(x, 2y)", DVec3::ZERO), DVec3::X);
+    assert_eq!(slope("max(2y, x)", DVec3::ZERO), DVec3::Y * 2.0);
+    // The smooth minimum has no kink: at a tie it takes half of either slope.
+    assert_eq!(slope("smin(x, 2y, 1)", DVec3::ZERO), DVec3::new(0.5, 1.0, 0.0));
+}
+
+#[test]
+fn every_function_is_documented_with_its_own_name() {
+    assert!(FUNCTIONS.len() >= 23);
+    for function in FUNCTIONS {
+        assert!(function.signature.starts_with(&format!("{}(", function.name)), "{function:?}");
+        assert!(function.help.ends_with('.'), "{function:?}");
+    }
+}

@@ -1,0 +1,284 @@
+//! Claims about any formula at all: nothing panics, printing and parsing are inverse, the readings of one formula
+//! agree, and its MathML is well formed.
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES};
+use marching_particles::field::gallery::SURFACES;
+use marching_particles::field::{Field, Jet};
+use marching_particles::math::Sym3;
+use proptest::prelude::*;
+
+/// Text of a formula, with every construct of the language; `a` and `b_1` are parameters.
+fn formulas() -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        6 => prop::sample::select(vec!["x", "y", "z"]).prop_map(str::to_owned),
+        2 => prop::sample::select(vec!["pi", "e", "tau", "phi", "a", "b_1", "xy"]).prop_map(str::to_owned),
+        3 => (0_u32..40, 0_u32..100).prop_map(|(whole, part)| format!("{whole}.{part}")),
+        1 => prop::sample::select(vec!["1e3", "2.5e-7", "1e21", ".5", "0"]).prop_map(str::to_owned),
+    ];
+    leaf.prop_recursive(5, 40, 4, |inner| {
+        let calls: Vec<(&str, usize)> = FUNCTIONS
+            .iter()
+            .map(|f| {
+                (f.name, if f.signature.contains('…') { 3 } else { f.signature.matches(',').count() + 1 })
+            })
+            .collect();
+        let call = (prop::sample::select(calls), prop::collection::vec(inner.clone(), 3))
+            .prop_map(|((name, arity), arguments)| format!("{name}({})", arguments[..arity].join(", ")));
+        let operators = vec![" + ", " - ", "*", "/", "^", " (", ")(", "^-", "*-", " × ", "−"];
+        let binary = (inner.clone(), prop::sample::select(operators), inner.clone()).prop_map(
+            |(left, operator, right)| match operator {
+                " (" => format!("({left}) ({right})"),
+                ")(" => format!("({left} + 1)({right})"),
+                "^" | "^-" => format!("({left}){operator}({right})"),
+                "/" => format!("{left}/({right})"),
+                _ => format!("({left}){operator}({right})"),
+            },
+        );
+        let powers =
+            (inner.clone(), prop::sample::select(vec!["²", "³", "⁻¹", "^2", "^5", "^-3", "^0.5", "^1.5"]));
+        prop_oneof![
+            3 => call,
+            5 => binary,
+            2 => powers.prop_map(|(base, power)| format!("({base}){power}")),
+            1 => inner.prop_map(|inner| format!("-({inner})")),
+        ]
+    })
+}
+
+proptest! {
+    // The same formulas in every run; `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for others.
+    #![proptest_config(ProptestConfig {
+        rng_seed: match std::env::var("PROPTEST_RNG_SEED") {
+            Ok(_) => ProptestConfig::default().rng_seed,
+            Err(_) => proptest::test_runner::RngSeed::Fixed(2),
+        },
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn no_text_makes_the_parser_panic(text in "\\PC{0,200}") {
+        check_error(&text);
+    }
+
+    #[test]
+    fn no_text_of_formula_characters_makes_the_parser_panic(
+        text in "[xyzabersincotapqhl0-9.,+*/^()=²³⁻¹−×π \u{202E}\\-]{0,120}"
+    ) {
+        check_error(&text);
+    }
+
+    #[test]
+    fn damaged_formulas_make_no_trouble(text in formulas(), cut in 0.0..1.0_f64, insert in any::<char>()) {
+        let characters: Vec<char> = text.chars().collect();
+        let at = (cut * characters.len() as f64) as usize;
+        let mut damaged: String = characters[..at].iter().collect();
+        damaged.push(insert);
+        damaged.extend(&characters[(at + 1).min(characters.len())..]);
+        check_error(&damaged);
+    }
+
+    #[test]
+    fn printing_and_parsing_are_inverse(text in formulas()) {
+        if let Ok(field) = FormulaField::parse(&text, &[]) {
+            let printed = field.normal_form();
+            let again = FormulaField::parse(&printed, &[]).unwrap_or_else(|e| panic!("{text} → {printed}: {e}"));
+            prop_assert_eq!(again.normal_form(), printed);
+            prop_assert!(field.same_tree(&again), "{} → {}", text, field.normal_form());
+        }
+    }
+
+    #[test]
+    fn mathml_is_well_formed(text in formulas()) {
+        if let Ok(field) = FormulaField::parse(&text, &[]) {
+            check_mathml(&field.mathml());
+        }
+    }
+
+    #[test]
+    fn the_value_lies_within_the_interval_of_any_box_around_the_point(
+        text in formulas(),
+        point in prop::array::uniform3(-3.0..3.0_f64),
+        below in prop::array::uniform3(0.0..2.0_f64),
+        above in prop::array::uniform3(0.0..2.0_f64),
+        exponent in 0..12_i32,
+        a in -2.0..2.0_f64,
+    ) {
+        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        for name in field.auto().to_vec() {
+            field.set_parameter(&name, a).unwrap();
+        }
+        let p = DVec3::from_array(point);
+        let scale = 0.25_f64.powi(exponent);
+        let lo = p - DVec3::from_array(below) * scale;
+        let hi = p + DVec3::from_array(above) * scale;
+        let bounds = field.interval(lo, hi);
+        let value = field.jet(p).value;
+        prop_assert!(!bounds.lo.is_nan() && !bounds.hi.is_nan(), "{:?}", bounds);
+        // A pole may give an infinity of either sign, by the sign of a zero.
+        if value.is_nan() || value.is_infinite() && !bounds.defined {
+            prop_assert!(!bounds.defined, "{text} = {value} at {p} but {bounds:?}");
+        } else {
+            prop_assert!(bounds.lo <= value && value <= bounds.hi, "{text} = {value} at {p}, not in {bounds:?}");
+        }
+    }
+
+    #[test]
+    fn a_point_gives_the_same_bits_wherever_it_stands_in_a_batch(
+        text in formulas(),
+        first in prop::array::uniform3(-2.0..2.0_f32),
+        length in 1..200_usize,
+    ) {
+        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let first = Vec3::from_array(first);
+        let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
+        let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
+        let mut hessian = vec![Sym3::default(); length];
+        field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+        let k = length / 2;
+        let (mut value1, mut gradient1, mut hessian1) = ([0.0], [Vec3::ZERO], [Sym3::default()]);
+        field.hessians(&points[k..=k], &mut value1, &mut gradient1, &mut hessian1);
+        let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+        prop_assert!(same(value[k], value1[0]), "{} {}", value[k], value1[0]);
+        for axis in 0..3 {
+            prop_assert!(same(gradient[k][axis], gradient1[0][axis]));
+        }
+        prop_assert!(same(hessian[k].xy, hessian1[0].xy) && same(hessian[k].zz, hessian1[0].zz));
+    }
+
+    #[test]
+    fn transformed_derivatives_agree_with_forward_jets(
+        text in formulas(),
+        point in prop::array::uniform3(-2.0..2.0_f64),
+    ) {
+        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let p = DVec3::from_array(point);
+        let other = field.transformed_jet(p);
+        let jet = field.jet(p);
+        // How much rounding may cost depends on the formula: take as a measure how much the result changes when the
+        // point moves by some thousand roundings.
+        let near = field.jet(p * (1.0 + 1e-12));
+        let (exact, moved, other) = (numbers(&jet), numbers(&near), numbers(&other));
+        let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();
+        let steady = exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size);
+        if steady && size < 1e9 {
+            for (a, b) in exact.iter().zip(&other) {
+                // Where a branch that is not taken overflows, the transformed derivative may be NaN, never wrong.
+                prop_assert!(b.is_nan() || (a - b).abs() < 1e-6 * size, "{text}: {exact:?} but {other:?}");
+            }
+        }
+    }
+}
+
+/// Value, gradient and Hessian in a row.
+fn numbers(jet: &Jet) -> [f64; 10] {
+    let (g, h) = (jet.gradient, jet.hessian);
+    [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]
+}
+
+/// Parses `text`; if that fails, the error must be usable.
+fn check_error(text: &str) {
+    if let Err(error) = FormulaField::parse(text, &[]) {
+        assert!(error.span.start <= error.span.end && error.span.end <= text.len().max(MAX_FORMULA_BYTES));
+        assert!(
+            text.is_char_boundary(error.span.start) && text.is_char_boundary(error.span.end),
+            "{error:?}"
+        );
+        let units = error.utf16_span(text);
+        assert!(units.start <= units.end && units.end <= text.encode_utf16().count());
+        assert!(!error.message.is_empty());
+    }
+}
+
+/// Panics unless `markup` is one balanced `math` element with the numbers of children that MathML prescribes.
+fn check_mathml(markup: &str) {
+    assert!(markup.starts_with("<math ") && markup.ends_with("</math>"), "{markup}");
+    let mut open: Vec<(String, usize)> = Vec::new();
+    let mut rest = markup;
+    while let Some(at) = rest.find('<') {
+        let (text, tag) = rest.split_at(at);
+        let leaf = matches!(open.last(), Some((name, _)) if ["mi", "mn", "mo"].contains(&name.as_str()));
+        assert_eq!(text.is_empty(), !leaf || tag.starts_with("<m"), "{markup}");
+        assert!(!text.contains(['>', '"']), "{markup}");
+        let end = tag.find('>').unwrap_or_else(|| panic!("{markup}"));
+        if let Some(name) = tag[..end].strip_prefix("</") {
+            let (opened, children) = open.pop().unwrap_or_else(|| panic!("{markup}"));
+            assert_eq!(opened, name, "{markup}");
+            let wanted = match name {
+                "mfrac" | "msup" | "msub" | "mroot" => 2..=2,
+                "math" | "msqrt" => 1..=usize::MAX,
+                "mrow" => 2..=usize::MAX,
+                _ => 0..=0,
+            };
+            assert!(wanted.contains(&children), "{name} with {children} children in {markup}");
+        } else {
+            let name = tag[1..end].split(' ').next().unwrap_or_default();
+            if let Some((_, children)) = open.last_mut() {
+                *children += 1;
+            }
+            open.push((name.to_owned(), 0));
+        }
+        rest = &tag[end + 1..];
+    }
+    assert!(rest.is_empty() && open.is_empty(), "{markup}");
+}
+
+#[test]
+fn mathml_of_the_gallery_is_well_formed() {
+    for surface in SURFACES {
+        check_mathml(&surface.field().mathml());
+    }
+}
+
+#[test]
+fn mathml_is_set_as_one_writes_by_hand() {
+    let body = |text: &str| {
+        let markup = FormulaField::parse(text, &[]).unwrap().mathml();
+        let inner = markup.split_once("><mrow>").unwrap().1;
+        inner.split_once("</mrow></math>").unwrap().0.replace('\u{2062}', "⁢").replace('\u{2061}', "")
+    };
+    let zero = "<mo>=</mo><mn>0</mn>";
+    let cases = [
+        ("x = 1", "<mi>x</mi><mo>=</mo><mn>1</mn>".to_owned()),
+        ("x/2", format!("<mfrac><mi>x</mi><mn>2</mn></mfrac>{zero}")),
+        ("x^2", format!("<msup><mi>x</mi><mn>2</mn></msup>{zero}")),
+        ("(x + 1)^2", {
+            let sum = "<mrow><mi>x</mi><mo>+</mo><mn>1</mn></mrow>";
+            format!("<msup><mrow><mo>(</mo>{sum}<mo>)</mo></mrow><mn>2</mn></msup>{zero}")
+        }),
+        ("sqrt(pi)x", format!("<mrow><msqrt><mi>π</mi></msqrt><mo>⁢</mo><mi>x</mi></mrow>{zero}")),
+        ("2*3x", format!("<mrow><mn>2</mn><mo>⋅</mo><mn>3</mn><mo>⁢</mo><mi>x</mi></mrow>{zero}")),
+        ("alpha_1 x", {
+            format!("<mrow><msub><mi>α</mi><mn>1</mn></msub><mo>⁢</mo><mi>x</mi></mrow>{zero}")
+        }),
+        ("sin(x)^2", {
+            let power = "<msup><mi>sin</mi><mn>2</mn></msup>";
+            format!("<mrow>{power}<mo></mo><mrow><mo>(</mo><mi>x</mi><mo>)</mo></mrow></mrow>{zero}")
+        }),
+        ("exp(-x)", { format!("<msup><mi>e</mi><mrow><mo>−</mo><mi>x</mi></mrow></msup>{zero}") }),
+        ("abs(x)", format!("<mrow><mo>|</mo><mi>x</mi><mo>|</mo></mrow>{zero}")),
+    ];
+    for (text, wanted) in cases {
+        assert_eq!(body(text), wanted, "{text}");
+    }
+}
+
+#[test]
+fn the_normal_form_is_readable() {
+    for (text, wanted) in [
+        ("2x y", "2*x*y"),
+        ("x² + −y", "x^2 + -y"),
+        ("((x))", "x"),
+        ("(x*y)*z", "(x*y)*z"),
+        ("x-(y-z)", "x - (y - z)"),
+        ("-(x*y)", "-x*y"),
+        ("x^-2", "x^-2"),
+        ("(-x)^2", "(-x)^2"),
+        ("(x^y)^z", "(x^y)^z"),
+        ("x^(y^z)", "x^y^z"),
+        ("1e21 x = .5", "1e21*x = 0.5"),
+    ] {
+        assert_eq!(FormulaField::parse(text, &[]).unwrap().normal_form(), wanted);
+    }
+}
