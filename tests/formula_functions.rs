@@ -139,7 +139,7 @@ fn powers_are_good_to_one_ulp_at_any_size() {
         7.0,
         40.25,
         1e4,
-        16_777_217.0,
+        8_388_609.0,
         3e9,
         -1e30,
     ];
@@ -224,7 +224,9 @@ fn nan_is_never_lost() {
 #[test]
 fn the_loops_give_the_bits_of_the_single_calls_at_any_length() {
     let numbers: Vec<f32> = all_sizes().into_iter().step_by(997).collect();
-    let pairs: [(fn(&mut [f32]), fn(f32) -> f32); 4] = [
+    type Loop = fn(&mut [f32]);
+    type Single = fn(f32) -> f32;
+    let pairs: [(Loop, Single); 4] = [
         (single::sin_all, single::sin),
         (single::exp_all, single::exp),
         (single::cbrt_all, single::cbrt),

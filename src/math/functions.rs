@@ -10,6 +10,10 @@
 //! The minimax coefficients of exp, ln, sin, cos, asin, atan, sinh and tanh are those of Moshier, *Methods and
 //! Programs for Mathematical Functions* (1989), single precision.
 
+#![expect(clippy::excessive_precision, reason = "a coefficient's digits are those of its source, or exact")]
+
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
 /// 1.5 · 2²³: adding it to a number below 2²² in size rounds that number to an integer, which then stands in the
 /// low bits of the sum.
 const ROUNDER: f32 = 12_582_912.0;
@@ -162,7 +166,7 @@ fn quadrant(a: f32) -> (u32, f32) {
     let n = t - ROUNDER_F64;
     let r = (a - n * HALF_PI[0]) - n * HALF_PI[1];
     // Past 10¹⁵ the rounding fails; the cut keeps sine and cosine within −1 … 1 there.
-    (t.to_bits() as u32, cut(r as f32, -0.785_398_2, 0.785_398_2))
+    (t.to_bits() as u32, cut(r as f32, -FRAC_PI_4, FRAC_PI_4))
 }
 
 /// sin r for |r| ≤ π/4.
@@ -236,7 +240,7 @@ fn asin_core(a: f32) -> f32 {
 pub fn asin(a: f32) -> f32 {
     let size = a.abs();
     let p = asin_core(size);
-    let result = if size > 0.5 { core::f32::consts::FRAC_PI_2 - (2.0 * p - HALF_PI_REST) } else { p };
+    let result = if size > 0.5 { FRAC_PI_2 - (2.0 * p - HALF_PI_REST) } else { p };
     result.copysign(a)
 }
 
@@ -247,7 +251,7 @@ pub fn acos(a: f32) -> f32 {
     let size = a.abs();
     let p = asin_core(size);
     let far = if a > 0.0 { 2.0 * p } else { core::f32::consts::PI - 2.0 * p };
-    let near = core::f32::consts::FRAC_PI_2 - (p.copysign(a) - HALF_PI_REST);
+    let near = FRAC_PI_2 - (p.copysign(a) - HALF_PI_REST);
     if size > 0.5 { far } else { near }
 }
 
@@ -270,8 +274,8 @@ pub fn atan(a: f32) -> f32 {
     let above = if far { -1.0 } else { above };
     let below = if middle { size + 1.0 } else { 1.0 };
     let below = if far { size } else { below };
-    let base = if middle { core::f32::consts::FRAC_PI_4 } else { 0.0 };
-    let base = if far { core::f32::consts::FRAC_PI_2 } else { base };
+    let base = if middle { FRAC_PI_4 } else { 0.0 };
+    let base = if far { FRAC_PI_2 } else { base };
     (base + atan_polynomial(above / below)).copysign(a)
 }
 
@@ -290,9 +294,9 @@ pub fn atan2(up: f32, across: f32) -> f32 {
     let middle = quotient > STEP;
     let above = if middle { quotient - 1.0 } else { quotient };
     let below = if middle { quotient + 1.0 } else { 1.0 };
-    let base = if middle { core::f32::consts::FRAC_PI_4 } else { 0.0 };
+    let base = if middle { FRAC_PI_4 } else { 0.0 };
     let angle = base + atan_polynomial(above / below);
-    let angle = if steep { core::f32::consts::FRAC_PI_2 - angle } else { angle };
+    let angle = if steep { FRAC_PI_2 - angle } else { angle };
     let angle = if across.is_sign_negative() { core::f32::consts::PI - angle } else { angle };
     let angle = angle.copysign(up);
     if up.is_nan() || across.is_nan() { f32::NAN } else { angle }

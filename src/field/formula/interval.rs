@@ -128,7 +128,7 @@ impl Range {
 
     /// x^n for n ≥ 1.
     fn natural_power(self, n: u32) -> Self {
-        let base = if n % 2 == 0 { self.abs() } else { self };
+        let base = if n.is_multiple_of(2) { self.abs() } else { self };
         let bound = |x: f64, outward: fn(f64) -> f64| {
             // By repeated products, each rounded away from zero or towards it so that the result is a bound.
             let mut result: f64 = 1.0;
@@ -180,7 +180,7 @@ impl Range {
         let size = self.lo.abs().max(self.hi.abs());
         let slack = 1e-15 * size + 1e-15;
         let branch = |angle: f64| libm::floor(angle / core::f64::consts::PI + 0.5);
-        let pole = !(size <= TRUSTED_ANGLE)
+        let pole = size > TRUSTED_ANGLE
             || libm::floor(self.hi / core::f64::consts::PI + 0.5 + slack)
                 > libm::floor(self.lo / core::f64::consts::PI + 0.5 - slack);
         if pole || branch(self.lo) != branch(self.hi) { EVERYTHING } else { self.increasing(libm::tan) }

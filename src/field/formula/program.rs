@@ -171,7 +171,7 @@ fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
         }
         let half = product(low, x, n / 2);
         let square = low.intern(Node::Unary(Unary::Square, half));
-        if n % 2 == 0 { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
+        if n.is_multiple_of(2) { square } else { low.intern(Node::Binary(Binary::Mul, square, x)) }
     }
     let live = graph.live(outputs);
     let mut low = Graph::default();
