@@ -30,7 +30,7 @@ Examples:
 pub(crate) enum Command {
     /// Sample a surface, write it to files and say how good it is
     #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
-    Sample(Sample),
+    Sample(Box<Sample>),
     /// List the named surfaces
     Surfaces(Surfaces),
 }

@@ -1,0 +1,225 @@
+//! The whole job and its parts on the ellipsoid with semi-axes 1, 0.7 and 0.5, and a mesher beside it.
+//!
+//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` the million, no argument
+//! both. Either way it ends with the ratio of the whole job to naive surface nets (`fast-surface-nets`) with as many
+//! vertices on the same field, timed by turns so that a busy machine disturbs both alike.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
+#![allow(missing_docs, reason = "the macros' items have none")]
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group};
+use fast_surface_nets::ndshape::{RuntimeShape, Shape};
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
+use glam::Vec3;
+use marching_particles::field::Field;
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
+use marching_particles::quality::{Options, measure};
+use marching_particles::sampler::{Sampler, Settings, SizeMode, StopReason};
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// Sizes of the quick set: those of the paper's uniform ellipsoids.
+const QUICK: [u32; 2] = [13_923, 55_748];
+const FULL: u32 = 1_000_000;
+/// Half-widths of the ellipsoid.
+const HALF: [f32; 3] = [1.0, 0.7, 0.5];
+
+struct Job {
+    field: FormulaField,
+    bounds: Bounds,
+    settings: Settings,
+}
+
+impl Job {
+    /// A job whose radius gives about `count` particles: found by a run that meets the count, so that the timed runs
+    /// do the front once.
+    fn new(count: u32) -> Self {
+        let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
+        let by_count = Settings {
+            size_mode: SizeMode::Count,
+            count,
+            relax_steps: 0,
+            max_particles: count + count / 10,
+            ..Settings::default()
+        };
+        let mut job = Self { field: surface.field(), bounds: surface.bounds, settings: by_count };
+        let found = job.run();
+        let radius_share = found.radius() / job.bounds.diagonal();
+        job.settings = Settings { size_mode: SizeMode::Radius, radius_share, relax_steps: 10, ..by_count };
+        job
+    }
+
+    fn run(&mut self) -> Sampler {
+        let mut sampler = Sampler::new();
+        sampler.start(&mut self.field, &self.bounds, &self.settings).expect("valid settings");
+        finish(&mut sampler, &mut self.field);
+        sampler
+    }
+}
+
+fn finish(sampler: &mut Sampler, field: &mut FormulaField) {
+    let reason = loop {
+        if let Some(reason) = sampler.step(field, 65_536).stop_reason {
+            break reason;
+        }
+    };
+    assert_eq!(reason, StopReason::Complete);
+}
+
+/// The mesher: samples the field on a grid with the same batched evaluation, and extracts the surface.
+struct Mesher {
+    field: FormulaField,
+    shape: RuntimeShape<u32, 3>,
+    size: [u32; 3],
+    step: f32,
+    points: Vec<Vec3>,
+    values: Vec<f32>,
+    buffer: SurfaceNetsBuffer,
+}
+
+impl Mesher {
+    /// The grid on the ellipsoid's own box, one cell wider, with `resolution` cells along x.
+    fn new(resolution: u32) -> Self {
+        let step = 2.0 * HALF[0] / resolution as f32;
+        let size = HALF.map(|half| (2.0 * half / step).ceil() as u32 + 3);
+        let shape = RuntimeShape::<u32, 3>::new(size);
+        Self {
+            field: gallery::find("ellipsoid").expect("the gallery has the ellipsoid").field(),
+            points: vec![Vec3::ZERO; size[0] as usize],
+            values: vec![0.0; shape.usize()],
+            shape,
+            size,
+            step,
+            buffer: SurfaceNetsBuffer::default(),
+        }
+    }
+
+    /// The mesher with about `count` vertices.
+    fn with_vertices(count: u32) -> Self {
+        // The number of vertices grows with the square of the resolution.
+        let mut resolution = 100.0;
+        for _ in 0..4 {
+            let found = Self::new(resolution as u32).run();
+            resolution *= (f64::from(count) / found as f64).sqrt();
+        }
+        Self::new(resolution.round() as u32)
+    }
+
+    /// Evaluates, extracts, and counts the vertices.
+    fn run(&mut self) -> usize {
+        let [nx, ny, nz] = self.size;
+        let place = |k: u32, half: f32| (k as f32 - 1.0) * self.step - half;
+        for (row, values) in self.values.chunks_exact_mut(nx as usize).enumerate() {
+            let (y, z) = (place(row as u32 % ny, HALF[1]), place(row as u32 / ny, HALF[2]));
+            for (i, point) in self.points.iter_mut().enumerate() {
+                *point = Vec3::new(place(i as u32, HALF[0]), y, z);
+            }
+            self.field.values(&self.points, values);
+        }
+        surface_nets(&self.values, &self.shape, [0; 3], [nx - 1, ny - 1, nz - 1], &mut self.buffer);
+        self.buffer.positions.len()
+    }
+}
+
+fn parts(criterion: &mut Criterion, set: &str, count: u32) {
+    let mut group = criterion.benchmark_group(format!("{set}/{count}"));
+    group.sample_size(10).warm_up_time(Duration::from_millis(500));
+    let mut job = Job::new(count);
+    let sampled = job.run();
+    let particles = sampled.particles();
+    group.throughput(Throughput::Elements(particles.len() as u64));
+
+    let whole = job.settings;
+    job.settings.relax_steps = 0;
+    group.bench_function("front", |bencher| bencher.iter(|| black_box(job.run())));
+    group.bench_function("ten relaxation steps", |bencher| {
+        let mut field = job.field.clone();
+        bencher.iter_batched(
+            || job.run(),
+            |mut sampler| {
+                sampler.relax(10);
+                finish(&mut sampler, &mut field);
+                sampler
+            },
+            BatchSize::PerIteration,
+        );
+    });
+    job.settings = whole;
+    group.bench_function("whole job", |bencher| bencher.iter(|| black_box(job.run())));
+    job.settings = Settings { size_mode: SizeMode::Count, ..whole };
+    group.bench_function("whole job by count", |bencher| bencher.iter(|| black_box(job.run())));
+    let options = Options::default();
+    group.bench_function("quality", |bencher| {
+        let (field, bounds) = (&mut job.field, &job.bounds);
+        bencher.iter(|| measure(&particles.position, &particles.normal, field, Some(bounds), &options));
+    });
+    let mut mesher = Mesher::with_vertices(count);
+    group.bench_function("surface nets", |bencher| bencher.iter(|| mesher.run()));
+    group.finish();
+}
+
+fn quick(criterion: &mut Criterion) {
+    for count in QUICK {
+        parts(criterion, "quick", count);
+    }
+}
+
+fn full(criterion: &mut Criterion) {
+    // Setting the job up takes seconds: not when it is filtered out.
+    if !std::env::args().any(|argument| argument == "quick") {
+        parts(criterion, "full", FULL);
+    }
+}
+
+/// Seconds of processor time this thread has had, where the system tells, else of wall time: other work on the machine
+/// does not count.
+fn processor_seconds(start: Instant) -> f64 {
+    std::fs::read_to_string("/proc/thread-self/schedstat")
+        .ok()
+        .and_then(|text| text.split(' ').next()?.parse::<f64>().ok())
+        .map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
+}
+
+/// Prints the median over rounds of the processor time of the whole job, of the mesher, and of their ratio.
+fn ratio(count: u32, rounds: usize) {
+    /// The mesher runs this often in a round: the system counts time by its ticks of a few milliseconds.
+    const REPEAT: u32 = 8;
+    let mut job = Job::new(count);
+    let mut mesher = Mesher::with_vertices(count);
+    let start = Instant::now();
+    let mut times: Vec<[f64; 3]> = Vec::new();
+    let (mut particles, mut vertices) = (0, 0);
+    for _ in 0..rounds {
+        let before = processor_seconds(start);
+        particles = black_box(job.run()).particles().len();
+        let between = processor_seconds(start);
+        for _ in 0..REPEAT {
+            vertices = black_box(mesher.run());
+        }
+        let theirs = (processor_seconds(start) - between) / f64::from(REPEAT);
+        let ours = between - before;
+        times.push([ours, theirs, ours / theirs]);
+    }
+    let [ours, theirs, ratio] = [0, 1, 2].map(|k| {
+        let mut column: Vec<f64> = times.iter().map(|row| row[k]).collect();
+        column.sort_by(f64::total_cmp);
+        column[rounds / 2]
+    });
+    println!(
+        "{count}: whole job {:.1} ms ({particles} particles, {:.2} µs each), surface nets {:.2} ms ({vertices} vertices), ratio {ratio:.1}",
+        ours * 1e3,
+        ours * 1e6 / particles as f64,
+        theirs * 1e3
+    );
+}
+
+criterion_group!(sets, quick, full);
+
+fn main() {
+    sets();
+    for count in QUICK {
+        ratio(count, 15);
+    }
+    Criterion::default().configure_from_args().final_summary();
+}

@@ -1,0 +1,75 @@
+//! How much memory a run takes beyond the particles it gives.
+#![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
+
+use marching_particles::field::gallery;
+use marching_particles::sampler::{Sampler, Settings};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The system's allocator, counting the bytes in use and their peak.
+struct Counting;
+
+static USED: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let used = USED.fetch_add(layout.size(), Ordering::Relaxed) + layout.size();
+        PEAK.fetch_max(used, Ordering::Relaxed);
+        // SAFETY: as promised by our own caller.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        USED.fetch_sub(layout.size(), Ordering::Relaxed);
+        // SAFETY: as promised by our own caller.
+        unsafe { System.dealloc(memory, layout) }
+    }
+
+    // The system grows large blocks in place or moves their pages: old and new are not both in use.
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        let used = USED.fetch_add(size, Ordering::Relaxed) + size - layout.size();
+        USED.fetch_sub(layout.size(), Ordering::Relaxed);
+        PEAK.fetch_max(used, Ordering::Relaxed);
+        // SAFETY: as promised by our own caller.
+        unsafe { System.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Most bytes per particle beyond the output. The aim is 64; the neighbour lists of the relaxation, the two sets of vectors it
+/// keeps and the grid take about 126.
+const MOST: f64 = 136.0;
+
+/// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
+const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
+
+/// Particles of a run with the given radius, and the peak of the memory it takes.
+fn peak_of(radius_share: f64) -> (usize, usize) {
+    let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
+    let mut field = surface.field();
+    let settings = Settings { radius_share, max_particles: 4_000_000, ..Settings::default() };
+    let before = USED.load(Ordering::Relaxed);
+    PEAK.store(before, Ordering::Relaxed);
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    while sampler.step(&mut field, 65_536).stop_reason.is_none() {}
+    (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
+}
+
+#[test]
+fn run_takes_few_bytes_per_particle_beyond_its_output() {
+    // The survey, which does not grow with the number of particles, is in both runs.
+    let (few, fixed) = peak_of(0.02);
+    let mut worst = 0.0_f64;
+    for radius_share in [0.004, 0.0028, 0.002, 0.0014, 0.001] {
+        let (many, peak) = peak_of(radius_share);
+        let beyond = (peak - fixed) as f64 / (many - few) as f64 - COLUMNS as f64;
+        println!("{many} particles: {beyond:.1} bytes each beyond the {COLUMNS} of the output");
+        worst = worst.max(beyond);
+    }
+    assert!(worst <= MOST, "{worst:.1} bytes per particle");
+}
