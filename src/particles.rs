@@ -90,6 +90,27 @@ impl Particles {
         self.position.is_empty()
     }
 
+    /// Makes room for exactly `count` particles in all.
+    pub fn reserve(&mut self, count: usize) {
+        let more = count.saturating_sub(self.len());
+        self.position.reserve_exact(more);
+        self.normal.reserve_exact(more);
+        self.radius.reserve_exact(more);
+        self.parent.reserve_exact(more);
+        self.level.reserve_exact(more);
+        self.slots.reserve_exact(more);
+    }
+
+    /// Keeps the first `len` particles.
+    pub fn truncate(&mut self, len: usize) {
+        self.position.truncate(len);
+        self.normal.truncate(len);
+        self.radius.truncate(len);
+        self.parent.truncate(len);
+        self.level.truncate(len);
+        self.slots.truncate(len);
+    }
+
     /// Removes every particle and keeps the memory.
     pub fn clear(&mut self) {
         self.position.clear();

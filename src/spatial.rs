@@ -19,11 +19,13 @@ const EMPTY: u64 = u64::MAX;
 #[derive(Clone, Copy)]
 struct Brick {
     key: u64,
+    /// Which of the eight cells have a block, a bit each.
+    occupied: u32,
     /// First block of each of the eight cells.
     head: [u32; 8],
 }
 
-const EMPTY_BRICK: Brick = Brick { key: EMPTY, head: [NONE; 8] };
+const EMPTY_BRICK: Brick = Brick { key: EMPTY, occupied: 0, head: [NONE; 8] };
 
 #[derive(Clone, Copy)]
 struct Block {
@@ -39,66 +41,15 @@ struct Block {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place(u32);
 
-/// Points found by [`CellGrid::gather`]: columns that share an index, offsets measured from the centre of the query.
-///
-/// The columns are longer than [`Neighbours::len`]; what stands behind it is of no meaning.
-#[derive(Clone, Debug, Default)]
-pub struct Neighbours {
-    len: usize,
+/// A point found by [`CellGrid::gather`].
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbour {
     /// Index given at insertion.
-    pub index: Vec<u32>,
-    /// Point minus centre, x.
-    pub x: Vec<f32>,
-    /// Point minus centre, y.
-    pub y: Vec<f32>,
-    /// Point minus centre, z.
-    pub z: Vec<f32>,
-    /// Squared distance.
-    pub distance_sq: Vec<f32>,
-}
-
-impl Neighbours {
-    /// Number of points found.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Whether nothing was found.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// Point `i` minus the centre of the query.
-    #[inline(always)]
-    #[must_use]
-    pub fn offset(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x[i], self.y[i], self.z[i])
-    }
-
-    /// Adds a point by its offset from the centre.
-    #[inline]
-    pub fn append(&mut self, index: u32, offset: Vec3, distance_sq: f32) {
-        self.reserve_block();
-        let m = self.len;
-        self.index[m] = index;
-        (self.x[m], self.y[m], self.z[m]) = (offset.x, offset.y, offset.z);
-        self.distance_sq[m] = distance_sq;
-        self.len += 1;
-    }
-
-    /// Makes room for one more block behind the points found so far.
-    #[inline(always)]
-    fn reserve_block(&mut self) {
-        if self.index.len() < self.len + LANES {
-            let capacity = (2 * self.len + LANES).next_multiple_of(16 * LANES);
-            self.index.resize(capacity, 0);
-            for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.distance_sq] {
-                column.resize(capacity, 0.0);
-            }
-        }
-    }
+    pub index: u32,
+    /// Squared distance from the centre of the query.
+    pub distance_sq: f32,
+    /// Point minus centre.
+    pub offset: Vec3,
 }
 
 /// A sparse grid of cubic cells.
@@ -148,12 +99,15 @@ impl CellGrid {
         self.bricks = 0;
     }
 
-    /// Cell coordinate of `x`, offset so that it is never negative; saturates far outside any sensible box.
+    /// Cell coordinate of `x`: non-decreasing in `x`, and never negative.
     #[inline(always)]
     fn coordinate(&self, x: f32) -> u32 {
-        const CENTRE: f32 = (1 << (COORDINATE_BITS - 1)) as f32;
-        // A conversion from float to integer truncates; after the shift the operand is positive, so it is a floor.
-        (x * self.inverse_cell + CENTRE) as u32
+        // Added to 3 · 2²², a number is rounded to an integer that stands in the low bits of the sum: cheaper than a
+        // conversion, which saturates. Cell sides are far above the spacing of the coordinates, so 22 bits suffice.
+        const INTEGER: f32 = 12_582_912.0;
+        const CENTRE: u32 = 1 << (COORDINATE_BITS - 1);
+        ((x * self.inverse_cell + INTEGER).to_bits().wrapping_sub(INTEGER.to_bits()).wrapping_add(CENTRE))
+            & COORDINATE_MASK as u32
     }
 
     /// Inserts a point and returns its place. `index` is handed back by queries.
@@ -176,6 +130,7 @@ impl CellGrid {
             head = self.blocks.len() as u32;
             self.blocks.push(block);
             self.table[entry].head[cell] = head;
+            self.table[entry].occupied |= 1 << cell;
         }
         let block = &mut self.blocks[head as usize];
         let lane = block.len as usize;
@@ -213,23 +168,22 @@ impl CellGrid {
 
     /// Collects every point within `radius` of `centre` (boundary included), in an order that depends only on the
     /// history of insertions. Replaces the content of `found`.
-    pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Neighbours) {
-        found.len = 0;
+    pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
+        found.clear();
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
         let hi = (centre + radius).to_array().map(|x| self.coordinate(x));
         for bz in lo[2] >> 1..=hi[2] >> 1 {
+            let in_z = in_range(bz, lo[2], hi[2], [0b0000_1111, 0b1111_0000]);
             for by in lo[1] >> 1..=hi[1] >> 1 {
+                let in_yz = in_z & in_range(by, lo[1], hi[1], [0b0011_0011, 0b1100_1100]);
                 for bx in lo[0] >> 1..=hi[0] >> 1 {
                     let Some(brick) = self.find(key(bx, by, bz)) else { continue };
-                    for cell in 0..8u32 {
-                        let head = brick.head[cell as usize];
-                        let (cx, cy, cz) =
-                            (2 * bx + (cell & 1), 2 * by + (cell >> 1 & 1), 2 * bz + (cell >> 2));
-                        let outside =
-                            cx < lo[0] || cx > hi[0] || cy < lo[1] || cy > hi[1] || cz < lo[2] || cz > hi[2];
-                        if head != NONE && !outside {
-                            self.gather_cell(head, centre, radius, found);
-                        }
+                    let in_x = in_range(bx, lo[0], hi[0], [0b0101_0101, 0b1010_1010]);
+                    let mut cells = brick.occupied & in_x & in_yz;
+                    while cells != 0 {
+                        let cell = cells.trailing_zeros() as usize & 7;
+                        cells &= cells - 1;
+                        self.gather_cell(brick.head[cell], centre, radius, found);
                     }
                 }
             }
@@ -237,7 +191,7 @@ impl CellGrid {
     }
 
     #[inline]
-    fn gather_cell(&self, head: u32, centre: Vec3, radius: f32, found: &mut Neighbours) {
+    fn gather_cell(&self, head: u32, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let radius_sq = radius * radius;
         let mut next = head;
         while next != NONE {
@@ -250,19 +204,14 @@ impl CellGrid {
             for lane in 0..LANES {
                 near |= u32::from(distance_sq.0[lane] <= radius_sq) << lane;
             }
-            if near != 0 {
-                found.reserve_block();
-            }
             while near != 0 {
-                let lane = near.trailing_zeros() as usize;
+                let lane = near.trailing_zeros() as usize & (LANES - 1);
                 near &= near - 1;
-                let m = found.len;
-                found.index[m] = block.index[lane];
-                found.x[m] = dx.0[lane];
-                found.y[m] = dy.0[lane];
-                found.z[m] = dz.0[lane];
-                found.distance_sq[m] = distance_sq.0[lane];
-                found.len += 1;
+                found.push(Neighbour {
+                    index: block.index[lane],
+                    distance_sq: distance_sq.0[lane],
+                    offset: Vec3::new(dx.0[lane], dy.0[lane], dz.0[lane]),
+                });
             }
             next = block.next;
         }
@@ -327,6 +276,14 @@ impl CellGrid {
     }
 }
 
+/// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower and the upper half.
+#[inline(always)]
+fn in_range(brick: u32, lo: u32, hi: u32, halves: [u32; 2]) -> u32 {
+    let lower = if 2 * brick >= lo { halves[0] } else { 0 };
+    let upper = if 2 * brick < hi { halves[1] } else { 0 };
+    lower | upper
+}
+
 #[inline(always)]
 fn key(x: u32, y: u32, z: u32) -> u64 {
     (u64::from(x) & COORDINATE_MASK)
@@ -362,11 +319,11 @@ mod tests {
             for (i, &p) in points.iter().enumerate() {
                 grid.insert(p, i as u32);
             }
-            let mut found = Neighbours::default();
+            let mut found = Vec::new();
             for &centre in points.iter().step_by(37) {
                 for radius in [0.0, 0.1, 0.4] {
                     grid.gather(centre, radius, &mut found);
-                    let mut got = found.index[..found.len()].to_vec();
+                    let mut got: Vec<u32> = found.iter().map(|n| n.index).collect();
                     got.sort_unstable();
                     assert_eq!(got, gather_naive(&points, centre, radius), "side {side} radius {radius}");
                 }
@@ -388,10 +345,10 @@ mod tests {
                 grid.update(place, points[i], i as u32);
             }
         }
-        let mut found = Neighbours::default();
+        let mut found = Vec::new();
         for &centre in points.iter().filter(|p| p.is_finite()) {
             grid.gather(centre, 0.5, &mut found);
-            let mut got = found.index[..found.len()].to_vec();
+            let mut got: Vec<u32> = found.iter().map(|n| n.index).collect();
             got.sort_unstable();
             assert_eq!(got, gather_naive(&points, centre, 0.5));
         }
@@ -402,7 +359,7 @@ mod tests {
         let mut grid = CellGrid::new(1.0);
         grid.insert(Vec3::ONE, 7);
         grid.reset(0.5);
-        let mut found = Neighbours::default();
+        let mut found = Vec::new();
         grid.gather(Vec3::ONE, 1.0, &mut found);
         assert!(found.is_empty());
     }

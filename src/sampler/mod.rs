@@ -4,6 +4,7 @@
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
+mod pairs;
 mod project;
 mod relax;
 mod settings;
@@ -16,6 +17,7 @@ pub use uniform::FateCounts;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
+use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
 use relax::Relaxation;
@@ -31,6 +33,9 @@ const PACKING: f64 = 1.08;
 const PILOT_FROM: f64 = 8_000.0;
 /// Size of a pilot run as a share of the wanted count.
 const PILOT_SHARE: f64 = 1.0 / 20.0;
+
+/// Room made in advance, as a multiple of the expected count: the first guess of the packing is that uncertain.
+const RESERVE: f64 = 1.08;
 
 /// A wanted count counts as met within this share.
 const COUNT_TOLERANCE: f64 = 0.03;
@@ -154,6 +159,7 @@ pub struct Sampler {
     projector: Projector,
     front: Front,
     relaxation: Relaxation,
+    pairs: Pairs,
     particles: Particles,
     counts: Counts,
     moved: bool,
@@ -184,6 +190,7 @@ impl Sampler {
             projector: Projector::new(),
             front: Front::new(),
             relaxation: Relaxation::new(),
+            pairs: Pairs::default(),
             particles: Particles::default(),
             counts: Counts::default(),
             moved: false,
@@ -280,6 +287,11 @@ impl Sampler {
     fn begin_attempt(&mut self) {
         self.moved = true;
         self.particles.clear();
+        self.pairs.clear();
+        // Growing by doubling would hold twice the columns, and four times while they are copied.
+        let expected = (self.expected_count() * RESERVE).min(f64::from(self.settings.max_particles)) as usize;
+        self.particles.reserve(expected);
+        self.pairs.reserve(expected);
         self.tolerance = tolerance(self.radius as f32, self.survey.resolution, self.survey.gradient_scale);
         self.front.reset(
             self.radius as f32,
@@ -299,18 +311,18 @@ impl Sampler {
         };
     }
 
+    /// Particles that a front of the present radius is expected to place.
+    fn expected_count(&self) -> f64 {
+        self.survey.area * PACKING / (2.0 * SQRT_3 * self.radius * self.radius)
+    }
+
     /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
     pub fn relax(&mut self, steps: u32) {
         if self.phase == Phase::Done && self.particles.len() > 1 {
             self.settings.relax_steps = self.relaxation.steps_done() + steps;
             self.stop_reason = None;
             self.phase = Phase::Relaxation;
-            self.relaxation.begin(
-                self.radius as f32,
-                self.tolerance,
-                &self.bounds,
-                self.settings.relax_steps,
-            );
+            self.begin_relaxation();
         }
     }
 
@@ -336,10 +348,16 @@ impl Sampler {
                 Phase::Seeding => left = self.seed(left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
-                    left = self.front.step(field, &mut self.projector, &mut self.particles, left);
+                    left = self.front.step(
+                        field,
+                        &mut self.projector,
+                        &mut self.pairs,
+                        &mut self.particles,
+                        left,
+                    );
                     self.counts.generation_evaluations += self.projector.evaluations - start;
                     if self.front.is_done() {
-                        self.front.drop_lone_seed(&mut self.particles);
+                        self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
                         if self.front.capped {
                             self.end_generation();
                         } else {
@@ -353,6 +371,7 @@ impl Sampler {
                         field,
                         &mut self.projector,
                         &mut self.front.grid,
+                        &mut self.pairs,
                         &mut self.particles,
                         left,
                     );
@@ -376,7 +395,7 @@ impl Sampler {
             Phase::Generation => self.front.settled(),
             _ => self.particles.len(),
         };
-        let expected = self.survey.area * PACKING / (2.0 * SQRT_3 * self.radius * self.radius);
+        let expected = self.expected_count();
         let relax_steps = f64::from(self.settings.relax_steps);
         // A relaxation step costs about a quarter of the generation per particle.
         let generation = 1.0 / (1.0 + 0.25 * relax_steps);
@@ -493,13 +512,19 @@ impl Sampler {
             self.finish(if self.front.capped { StopReason::Cap } else { StopReason::Complete });
         } else {
             self.phase = Phase::Relaxation;
-            self.relaxation.begin(
-                self.radius as f32,
-                self.tolerance,
-                &self.bounds,
-                self.settings.relax_steps,
-            );
+            self.begin_relaxation();
         }
+    }
+
+    fn begin_relaxation(&mut self) {
+        self.relaxation.begin(
+            self.radius as f32,
+            self.tolerance,
+            &self.bounds,
+            self.settings.relax_steps,
+            self.particles.len(),
+            &mut self.pairs,
+        );
     }
 
     fn finish(&mut self, reason: StopReason) {

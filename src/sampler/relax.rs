@@ -9,25 +9,28 @@
 //! * The step is not the fixed dt = 0.03 of Witkin and Heckbert but as large as stays stable: a step that does not lower
 //!   the energy is taken back and halved, so the energy falls at every step.
 
+use super::pairs::Pairs;
 use super::project::{BATCH, Projector, Tolerance};
+use super::uniform::CELL_PER_REACH;
 use crate::field::Field;
-use crate::math::{Bounds, LANES, Lanes};
+use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::{CellGrid, Neighbours};
+use crate::spatial::{CellGrid, Neighbour};
 use glam::Vec3;
 
 /// Range of the repulsion in σ.
-const CUT_OFF: f32 = 3.0;
-/// The neighbour lists reach this much farther, in σ, so that they serve while particles move. The second ring of the
-/// lattice begins at 3.46.
-const SKIN: f32 = 0.4;
-/// First step size, in units of σ²: the stiffest wave of the hexagonal lattice has the eigenvalue 2.2 / σ², so
-/// steps below 0.9 are stable.
-const FIRST_STEP: f32 = 0.7;
-/// Step sizes grow by this factor after a success and halve after a failure.
+pub(super) const CUT_OFF: f32 = 3.0;
+/// The neighbour lists reach this much farther, in σ, so that they serve while particles move. It was chosen by counting
+/// instructions: a wider one lengthens every list, a narrower one has more of them made anew.
+pub(super) const SKIN: f32 = 0.7;
+/// First step size, in units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ²,
+/// so steps below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in
+/// ten steps and set the squeezed rows trembling.
+const FIRST_STEP: f32 = 0.6;
+/// Step sizes halve after a failure and grow back by this factor after a success.
 const GROWTH: f32 = 1.05;
 /// Largest step size.
-const MAX_STEP: f32 = 0.8;
+const MAX_STEP: f32 = FIRST_STEP;
 /// No particle moves farther than this in one step, in σ.
 const MAX_MOVE: f32 = 0.35;
 /// Failures in a row after which the configuration counts as being at its minimum.
@@ -37,11 +40,18 @@ const MAX_NEWTON: u32 = 6;
 /// A Newton correction shorter than this, in σ, leaves a residual of the order of its square.
 const TRUSTED_CORRECTION: f32 = 0.02;
 
+/// Where more than this share of the particles have gone far, all lists are made anew.
+const MANY: f32 = 0.1;
+
 /// What a relaxation does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
+    /// Put every particle into the grid.
     Grid,
-    Lists,
+    /// Mark the lists that those who have gone far may be missing in.
+    Mark,
+    /// Make the marked lists anew.
+    Refresh,
     Forces,
     Judge,
     Move,
@@ -60,22 +70,23 @@ pub(super) struct Relaxation {
     done: u32,
     stage: Stage,
     next: usize,
-    /// Neighbours of particle i: `list[start[i]..start[i + 1]]`.
-    start: Vec<u32>,
+    found: Vec<Neighbour>,
     list: Vec<u32>,
-    found: Neighbours,
-    /// Sum of (p_i − p_j) exp(−d²/2σ²) over the neighbours, in the tangent plane.
+    /// Particles that have gone far since their lists were made.
+    far: Vec<u32>,
+    /// Lists to be made anew.
+    marked: Vec<bool>,
+    /// Length of each particle's way since its lists were made.
+    way: Vec<f32>,
+    /// Sum of (p_i − p_j) exp(−d²/2σ²) over the neighbours.
     force: Vec<Vec3>,
     /// Positions before the step under judgement; empty before the first.
     previous: Vec<Vec3>,
     has_previous: bool,
     step_size: f32,
     failures: u32,
-    /// Twice the energy of the positions whose forces are being computed.
+    /// Energy of the positions whose forces are being computed.
     sum: f64,
-    /// Largest distance any particle has gone since the lists were made.
-    travelled: f32,
-    largest_move: f32,
     pub(super) energy: Vec<f64>,
 }
 
@@ -89,17 +100,17 @@ impl Relaxation {
             done: 0,
             stage: Stage::Done,
             next: 0,
-            start: Vec::new(),
+            found: Vec::new(),
             list: Vec::new(),
-            found: Neighbours::default(),
+            far: Vec::new(),
+            marked: Vec::new(),
+            way: Vec::new(),
             force: Vec::new(),
             previous: Vec::new(),
             has_previous: false,
             step_size: FIRST_STEP,
             failures: 0,
             sum: 0.0,
-            travelled: 0.0,
-            largest_move: 0.0,
             energy: Vec::new(),
         }
     }
@@ -112,8 +123,16 @@ impl Relaxation {
         self.step_size = FIRST_STEP;
     }
 
-    /// Goes on until `target` steps are done in all.
-    pub(super) fn begin(&mut self, radius: f32, tolerance: Tolerance, bounds: &Bounds, target: u32) {
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short.
+    pub(super) fn begin(
+        &mut self,
+        radius: f32,
+        tolerance: Tolerance,
+        bounds: &Bounds,
+        target: u32,
+        particles: usize,
+        pairs: &mut Pairs,
+    ) {
         self.radius = radius;
         self.tolerance = tolerance;
         self.bounds = *bounds;
@@ -121,7 +140,18 @@ impl Relaxation {
         self.has_previous = false;
         self.failures = 0;
         self.energy.truncate(self.done as usize);
-        self.enter(Stage::Grid);
+        self.way.clear();
+        self.way.resize(particles, 0.0);
+        self.marked.clear();
+        self.marked.resize(particles, false);
+        self.far.clear();
+        if pairs.len() == particles && self.done == 0 {
+            self.begin_forces(particles);
+        } else {
+            pairs.extend_to(particles);
+            self.marked.fill(true);
+            self.enter(Stage::Grid);
+        }
     }
 
     pub(super) fn is_done(&self) -> bool {
@@ -153,12 +183,13 @@ impl Relaxation {
         field: &mut dyn Field,
         projector: &mut Projector,
         grid: &mut CellGrid,
+        pairs: &mut Pairs,
         particles: &mut Particles,
         mut budget: u32,
     ) -> (u32, bool) {
         let mut moved = false;
         while budget > 0 && self.stage != Stage::Done {
-            let n = particles.len();
+            let n = if self.stage == Stage::Mark { self.far.len() } else { particles.len() };
             let last = n.min(self.next + budget as usize);
             let range = self.next..last;
             budget -= range.len() as u32;
@@ -166,34 +197,46 @@ impl Relaxation {
             match self.stage {
                 Stage::Grid => {
                     if range.start == 0 {
-                        grid.reset((CUT_OFF + SKIN) * 1.2 * self.radius);
+                        grid.reset(CELL_PER_REACH * self.list_reach());
                     }
                     for i in range {
                         grid.insert(particles.position[i], i as u32);
                     }
                     if last == n {
-                        self.start.clear();
-                        self.list.clear();
-                        self.start.reserve_exact(n + 1);
-                        self.start.push(0);
-                        self.enter(Stage::Lists);
+                        if self.far.len() as f32 > MANY * n as f32 {
+                            self.marked.fill(true);
+                        }
+                        self.enter(Stage::Mark);
                     }
                 }
-                Stage::Lists => {
+                Stage::Mark => {
+                    for k in range {
+                        let i = self.far[k] as usize;
+                        self.way[i] = 0.0;
+                        grid.gather(particles.position[i], self.list_reach(), &mut self.found);
+                        for near in &self.found {
+                            self.marked[near.index as usize] = true;
+                        }
+                    }
+                    if last == n {
+                        self.far.clear();
+                        self.enter(Stage::Refresh);
+                    }
+                }
+                Stage::Refresh => {
                     for i in range {
-                        self.collect(grid, particles, i);
+                        if core::mem::take(&mut self.marked[i]) {
+                            self.refresh(grid, pairs, particles, i);
+                        }
                     }
                     if last == n {
                         grid.release();
-                        self.travelled = 0.0;
-                        self.force.resize(n, Vec3::ZERO);
-                        self.sum = 0.0;
-                        self.enter(Stage::Forces);
+                        self.begin_forces(n);
                     }
                 }
                 Stage::Forces => {
                     for i in range {
-                        self.repel(particles, i);
+                        self.repel(pairs, particles, i);
                     }
                     if last == n {
                         self.enter(Stage::Judge);
@@ -206,22 +249,19 @@ impl Relaxation {
                     }
                     moved |= !range.is_empty();
                     if last == n {
-                        self.travelled += self.largest_move;
-                        self.sum = 0.0;
-                        // Two particles may have approached each other by twice what each has travelled.
-                        let stale = 2.0 * self.travelled > SKIN * self.radius;
-                        self.enter(if stale { Stage::Grid } else { Stage::Forces });
+                        self.after_moving(n);
                     }
                 }
                 Stage::Restore => {
-                    particles.position[range.clone()].copy_from_slice(&self.previous[range]);
+                    for i in range {
+                        let back = (particles.position[i] - self.previous[i]).length();
+                        particles.position[i] = self.previous[i];
+                        self.went(i, back);
+                    }
                     moved = true;
                     if last == n {
-                        self.travelled += self.largest_move;
                         self.has_previous = false;
-                        self.sum = 0.0;
-                        let stale = 2.0 * self.travelled > SKIN * self.radius;
-                        self.enter(if stale { Stage::Grid } else { Stage::Forces });
+                        self.after_moving(n);
                     }
                 }
                 Stage::Polish => {
@@ -239,61 +279,77 @@ impl Relaxation {
         (budget, moved)
     }
 
-    /// Neighbour list of particle `i`: those of its sheet within the cut-off and the skin.
-    fn collect(&mut self, grid: &CellGrid, particles: &Particles, i: usize) {
-        let reach = (CUT_OFF + SKIN) * self.radius;
-        grid.gather(particles.position[i], reach, &mut self.found);
+    fn begin_forces(&mut self, n: usize) {
+        self.force.clear();
+        self.force.resize(n, Vec3::ZERO);
+        self.sum = 0.0;
+        self.enter(Stage::Forces);
+    }
+
+    /// Goes on to the forces, by way of new lists where the old ones may miss a pair.
+    fn after_moving(&mut self, n: usize) {
+        if self.far.is_empty() {
+            self.begin_forces(n);
+        } else {
+            self.enter(Stage::Grid);
+        }
+    }
+
+    /// Radius within which the lists hold every pair.
+    fn list_reach(&self) -> f32 {
+        (CUT_OFF + SKIN) * self.radius
+    }
+
+    /// Notes that particle `i` has gone some way: two particles that have each gone half the skin may have come within
+    /// the cut-off without being listed.
+    #[inline]
+    fn went(&mut self, i: usize, distance: f32) {
+        let before = self.way[i];
+        let after = before + distance;
+        self.way[i] = after;
+        let limit = 0.5 * SKIN * self.radius;
+        if after > limit && before <= limit {
+            self.far.push(i as u32);
+        }
+    }
+
+    /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the cut-off and the skin.
+    fn refresh(&mut self, grid: &CellGrid, pairs: &mut Pairs, particles: &Particles, i: usize) {
+        grid.gather(particles.position[i], self.list_reach(), &mut self.found);
         let normal = particles.normal[i];
-        for &j in &self.found.index[..self.found.len()] {
-            if j as usize != i && particles.normal[j as usize].dot(normal) > 0.0 {
+        self.list.clear();
+        for &Neighbour { index: j, .. } in &self.found {
+            if (j as usize) < i && particles.normal[j as usize].dot(normal) > 0.0 {
                 self.list.push(j);
             }
         }
-        self.start.push(self.list.len() as u32);
+        pairs.replace(i, &self.list);
     }
 
-    /// Force on particle `i` and its part of the energy.
+    /// Adds the repulsion between particle `i` and its listed neighbours to the forces on both, and to the energy.
     #[inline]
-    fn repel(&mut self, particles: &Particles, i: usize) {
-        let list = &self.list[self.start[i] as usize..self.start[i + 1] as usize];
+    fn repel(&mut self, pairs: &Pairs, particles: &Particles, i: usize) {
         let p = particles.position[i];
-        // Distances are measured in σ.
-        let inverse_radius = 1.0 / self.radius;
-        let (mut fx, mut fy, mut fz) = (Lanes::splat(0.0), Lanes::splat(0.0), Lanes::splat(0.0));
-        let mut energy = Lanes::splat(0.0);
-        for chunk in list.chunks(LANES) {
-            // Lanes without a neighbour hold a point beyond the cut-off.
-            let far = CUT_OFF * 2.0 * self.radius;
-            let (mut dx, mut dy, mut dz) = (Lanes::splat(far), Lanes::splat(0.0), Lanes::splat(0.0));
-            for (lane, &j) in chunk.iter().enumerate() {
-                let d = p - particles.position[j as usize];
-                (dx.0[lane], dy.0[lane], dz.0[lane]) = (d.x, d.y, d.z);
-            }
-            let scale = Lanes::splat(inverse_radius);
-            let (dx, dy, dz) = (dx * scale, dy * scale, dz * scale);
-            let half_sq = (dx * dx + dy * dy + dz * dz) * Lanes::splat(0.5);
-            let weight = gaussian(half_sq);
-            let shifted = weight - Lanes::splat(CUT_OFF_ENERGY);
-            let near = |w: Lanes| {
-                Lanes(core::array::from_fn(
-                    |k| if half_sq.0[k] < 0.5 * CUT_OFF * CUT_OFF { w.0[k] } else { 0.0 },
-                ))
-            };
-            let weight = near(weight);
-            energy += near(shifted);
-            fx += dx * weight;
-            fy += dy * weight;
-            fz += dz * weight;
+        // Squared distances are measured in σ² = r².
+        let scale = 0.5 / (self.radius * self.radius);
+        let mut force = Vec3::ZERO;
+        let mut energy = 0.0;
+        for &j in pairs.of(i) {
+            let d = p - particles.position[j as usize];
+            let half_sq = d.length_squared() * scale;
+            let near = half_sq < 0.5 * CUT_OFF * CUT_OFF;
+            let weight = if near { gaussian(half_sq) } else { 0.0 };
+            energy += if near { weight - CUT_OFF_ENERGY } else { 0.0 };
+            force += d * weight;
+            self.force[j as usize] -= d * weight;
         }
-        let force = Vec3::new(fx.sum(), fy.sum(), fz.sum()) * self.radius;
-        let normal = particles.normal[i];
-        self.force[i] = force - normal * force.dot(normal);
-        self.sum += f64::from(energy.sum());
+        self.force[i] += force;
+        self.sum += f64::from(energy);
     }
 
     /// Accepts the last step or has it taken back.
     fn judge(&mut self, particles: &Particles) {
-        let energy = 0.5 * self.sum / particles.len() as f64;
+        let energy = self.sum / particles.len() as f64;
         if self.has_previous {
             let before = self.energy.last().copied().unwrap_or(f64::INFINITY);
             if energy >= before {
@@ -312,9 +368,8 @@ impl Relaxation {
             self.has_previous = false;
             return self.enter(Stage::Polish);
         }
-        self.has_previous = true;
         self.previous.resize(particles.len(), Vec3::ZERO);
-        self.largest_move = 0.0;
+        self.has_previous = true;
         self.enter(Stage::Move);
     }
 
@@ -333,8 +388,10 @@ impl Relaxation {
         let longest = MAX_MOVE * self.radius;
         for (point, i) in points.iter_mut().zip(range.clone()) {
             let p = particles.position[i];
+            let normal = particles.normal[i];
+            let force = self.force[i] - normal * normal.dot(self.force[i]);
             self.previous[i] = p;
-            *point = p + (self.force[i] * self.step_size).clamp_length_max(longest);
+            *point = p + (force * self.step_size).clamp_length_max(longest);
         }
         projector.land_along_gradient(
             field,
@@ -349,8 +406,7 @@ impl Relaxation {
         for (k, i) in range.enumerate() {
             // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
             if ok[k] && self.bounds.contains(points[k]) && normals[k].dot(particles.normal[i]) > 0.0 {
-                let travelled = (points[k] - self.previous[i]).length();
-                self.largest_move = self.largest_move.max(travelled);
+                self.went(i, (points[k] - self.previous[i]).length());
                 particles.position[i] = points[k];
                 particles.normal[i] = normals[k];
             }
@@ -396,11 +452,9 @@ const CUT_OFF_ENERGY: f32 = 0.011_108_997;
 ///
 /// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
 #[inline(always)]
-fn gaussian(x: Lanes) -> Lanes {
-    let y = x * Lanes::splat(-1.0 / 16.0);
-    let c = |value: f32| Lanes::splat(value);
-    let e =
-        c(1.0) + y * (c(1.0) + y * (c(0.5) + y * (c(1.0 / 6.0) + y * (c(1.0 / 24.0) + y * c(1.0 / 120.0)))));
+fn gaussian(x: f32) -> f32 {
+    let y = x * (-1.0 / 16.0);
+    let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
     let e2 = e * e;
     let e4 = e2 * e2;
     let e8 = e4 * e4;
@@ -416,7 +470,7 @@ mod tests {
         for k in 0..=450 {
             let x = k as f32 * 0.01;
             let exact = libm::exp(-f64::from(x));
-            let got = f64::from(gaussian(Lanes::splat(x)).0[0]);
+            let got = f64::from(gaussian(x));
             assert!((got / exact - 1.0).abs() < 3e-5, "x = {x}: {got} against {exact}");
         }
         let end = libm::exp(-0.5 * f64::from(CUT_OFF * CUT_OFF));

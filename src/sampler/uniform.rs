@@ -11,11 +11,13 @@
 //!   field, and compared with the particles there at that place. Only a free child is projected, at about two
 //!   evaluations, and then compared again at its final place. All free children of a level are projected together.
 
+use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
+use super::relax::{CUT_OFF, SKIN};
 use crate::field::Field;
 use crate::math::{Bounds, LANES, Lanes, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::spatial::{CellGrid, Neighbours, Place};
+use crate::spatial::{CellGrid, Neighbour, Place};
 use glam::Vec3;
 
 /// Directions of the six slots in the frame (V̂⁰, N̂ × V̂⁰): paper §4.2.
@@ -43,7 +45,7 @@ const RISE_SLACK: f32 = 0.5;
 
 /// A gathered neighbourhood holds every particle within 2r plus the match radius of the parent. The grid's cells are
 /// this much larger, which makes a query read about 16 cells of five particles.
-const CELL_PER_REACH: f32 = 1.2;
+pub(super) const CELL_PER_REACH: f32 = 1.2;
 
 /// Fates of children, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -106,8 +108,8 @@ pub(super) struct Front {
     bounds: Bounds,
     max_particles: usize,
     pub(super) grid: CellGrid,
-    found: Neighbours,
-    normals: NormalColumns,
+    found: Vec<Neighbour>,
+    around: Surroundings,
     stage: Stage,
     next: usize,
     seed_place: Place,
@@ -125,12 +127,11 @@ pub(super) struct Front {
     pub(super) capped: bool,
 }
 
-/// Normals of a gathered neighbourhood, column by column, and which of it is on the parent's side.
+/// The particles around a parent in lanes: offset x, y, z from the parent and normal x, y, z.
 #[derive(Clone, Debug, Default)]
-struct NormalColumns {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    z: Vec<f32>,
+struct Surroundings {
+    len: usize,
+    chunks: Vec<[Lanes; 6]>,
 }
 
 /// Second fundamental form in the frame (V̂⁰, N̂ × V̂⁰): the normal turns by `[a b; b c] · offset`.
@@ -150,8 +151,8 @@ impl Front {
             bounds: Bounds::cube(1.0),
             max_particles: 0,
             grid: CellGrid::new(1.0),
-            found: Neighbours::default(),
-            normals: NormalColumns::default(),
+            found: Vec::new(),
+            around: Surroundings::default(),
             stage: Stage::Place,
             next: 0,
             seed_place: Place::default(),
@@ -193,9 +194,9 @@ impl Front {
         self.capped = false;
     }
 
-    /// Everything that a child can collide with is within this distance of its parent.
+    /// Everything that a child can collide with, and every neighbour that repels a particle, is within this distance.
     fn reach(&self) -> f32 {
-        (2.0 * self.radius + self.match_radius).max(RING * self.radius)
+        (2.0 * self.radius + self.match_radius).max((CUT_OFF + SKIN) * self.radius)
     }
 
     /// Whether every particle has placed its children.
@@ -217,18 +218,19 @@ impl Front {
         distance: f32,
     ) -> bool {
         self.grid.gather(position, distance, &mut self.found);
-        self.found.index[..self.found.len()].iter().any(|&j| particles.normal[j as usize].dot(normal) > 0.0)
+        self.found.iter().any(|near| particles.normal[near.index as usize].dot(normal) > 0.0)
     }
 
     /// Takes the last seed back if it stayed alone and any other particle, of whatever sheet, is within 2r: a lone
     /// particle there is the far side of something too small for the radius.
-    pub(super) fn drop_lone_seed(&mut self, particles: &mut Particles) {
+    pub(super) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
         let last = particles.len() - 1;
         if particles.parent[last] == Particles::NO_PARENT {
             self.grid.gather(particles.position[last], 2.0 * self.radius, &mut self.found);
             if self.found.len() > 1 {
                 self.grid.remove(self.seed_place);
-                truncate(particles, last);
+                particles.truncate(last);
+                pairs.truncate(last);
                 self.settled = last;
                 self.level = last..last;
             }
@@ -252,6 +254,7 @@ impl Front {
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
+        pairs: &mut Pairs,
         particles: &mut Particles,
         mut budget: u32,
     ) -> u32 {
@@ -259,7 +262,7 @@ impl Front {
             match self.stage {
                 Stage::Place => {
                     if self.next < self.level.end {
-                        self.place_children(field, particles, self.next);
+                        self.place_children(field, pairs, particles, self.next);
                         self.next += 1;
                         budget -= 1;
                     } else {
@@ -284,7 +287,7 @@ impl Front {
                         self.next += 1;
                         budget -= 1;
                     } else {
-                        truncate(particles, self.settled);
+                        particles.truncate(self.settled);
                         self.children.clear();
                         self.level = self.level.end..self.settled;
                         (self.stage, self.next) = (Stage::Place, self.level.start);
@@ -300,18 +303,25 @@ impl Front {
 
     /// Ends the front where it is: provisional children are dropped.
     pub(super) fn stop(&mut self, particles: &mut Particles) {
-        truncate(particles, self.settled);
+        particles.truncate(self.settled);
         self.children.clear();
         self.level = self.settled..self.settled;
     }
 
     /// Finds the free slots of particle `parent` and enters a provisional child in each: paper §4.2 and §4.4.
-    fn place_children(&mut self, field: &mut dyn Field, particles: &mut Particles, parent: usize) {
+    fn place_children(
+        &mut self,
+        field: &mut dyn Field,
+        pairs: &mut Pairs,
+        particles: &mut Particles,
+        parent: usize,
+    ) {
         let (p, n) = (particles.position[parent], particles.normal[parent]);
         let reach = self.reach();
         let mut found = core::mem::take(&mut self.found);
         self.grid.gather(p, reach, &mut found);
-        self.normals.fill(&found, particles);
+        self.around.fill(&found, particles);
+        self.list_pairs(&found, pairs, particles, parent);
 
         let grandparent = particles.parent[parent];
         let is_seed = grandparent == Particles::NO_PARENT;
@@ -329,7 +339,6 @@ impl Front {
         let (distance, slack_sq) = (2.0 * self.radius, self.slack_sq());
         let level = particles.level[parent] + 1;
         let mut slots = particles.slots[parent];
-        let mut count = found.len();
         if !is_seed {
             slots.set(0, SlotFate::Parent);
         }
@@ -343,7 +352,7 @@ impl Front {
             let offset = (direction * cos_theta + n * sin_theta) * distance;
             let normal = (n + (u * su + w * sw) * (distance * cos_theta)).try_normalize().unwrap_or(n);
 
-            let nearest_sq = self.normals.nearest_sq(&found, count, offset, normal, slack_sq);
+            let nearest_sq = self.around.nearest_sq(offset, normal, slack_sq);
             if nearest_sq <= self.match_radius * self.match_radius {
                 slots.set(k, SlotFate::Matched);
                 self.fates.count(SlotFate::Matched);
@@ -370,23 +379,40 @@ impl Front {
                 place: self.grid.insert(position, index),
                 clearance: nearest_sq.sqrt(),
             });
-            found.append(index, offset, nearest_sq);
-            self.normals.append(count, normal);
-            count += 1;
+            self.around.push(offset, normal);
         }
         particles.slots[parent] = slots;
         self.found = found;
     }
 
+    /// Lists the particles before `parent` that repel it: all of them are final, so the list is complete.
+    fn list_pairs(&self, found: &[Neighbour], pairs: &mut Pairs, particles: &Particles, parent: usize) {
+        let reach = (CUT_OFF + SKIN) * self.radius;
+        let normal = particles.normal[parent];
+        pairs.push(found.iter().filter_map(|near| {
+            let j = near.index as usize;
+            let listed =
+                j < parent && near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0;
+            listed.then_some(near.index)
+        }));
+    }
+
     /// Least-squares fit of the second fundamental form to the normals of the settled particles around `parent`.
-    fn fit_shape(&self, found: &Neighbours, particles: &Particles, parent: usize, u: Vec3, w: Vec3) -> Shape {
+    fn fit_shape(
+        &self,
+        found: &[Neighbour],
+        particles: &Particles,
+        parent: usize,
+        u: Vec3,
+        w: Vec3,
+    ) -> Shape {
         // Summed in the order of the indices, so that the result does not depend on how the grid is made.
         let mut ring = [(u32::MAX, 0_u32); RING_CAPACITY];
         let mut count = 0;
         let reach_sq = (RING * self.radius) * (RING * self.radius);
-        for m in 0..found.len() {
-            let j = found.index[m];
-            if found.distance_sq[m] <= reach_sq && (j as usize) < self.settled && j as usize != parent {
+        for (m, near) in found.iter().enumerate() {
+            let j = near.index;
+            if near.distance_sq <= reach_sq && (j as usize) < self.settled && j as usize != parent {
                 let mut at = count.min(RING_CAPACITY - 1);
                 if count == RING_CAPACITY && ring[at].0 < j {
                     continue;
@@ -403,7 +429,7 @@ impl Front {
         let (mut xx, mut xy, mut yy) = (0.0_f32, 0.0, 0.0);
         let (mut xp, mut yp, mut xq, mut yq) = (0.0_f32, 0.0, 0.0, 0.0);
         for &(j, m) in &ring[..count] {
-            let offset = found.offset(m as usize);
+            let offset = found[m as usize].offset;
             let turn = particles.normal[j as usize] - n;
             // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
             if turn.length_squared() > 1.0 {
@@ -507,47 +533,55 @@ impl Front {
     fn collides(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
         self.grid.gather(position, self.match_radius, &mut self.found);
         let settled = self.settled;
-        (0..self.found.len()).any(|m| {
-            let j = self.found.index[m] as usize;
-            j < settled && self.same_sheet(self.found.offset(m), normal, particles.normal[j])
+        self.found.iter().any(|near| {
+            let j = near.index as usize;
+            j < settled && self.same_sheet(near.offset, normal, particles.normal[j])
         })
     }
 }
 
-impl NormalColumns {
-    /// Reads the normals of `found`; the columns are padded to whole lanes with normals that belong to no sheet.
-    fn fill(&mut self, found: &Neighbours, particles: &Particles) {
-        // Room for the neighbours, six children and the padding.
-        let capacity = (found.len() + 6).next_multiple_of(LANES);
-        for column in [&mut self.x, &mut self.y, &mut self.z] {
-            column.clear();
-            column.resize(capacity, 0.0);
-        }
-        for (m, &j) in found.index[..found.len()].iter().enumerate() {
-            let n = particles.normal[j as usize];
-            (self.x[m], self.y[m], self.z[m]) = (n.x, n.y, n.z);
+impl Surroundings {
+    /// Reads the gathered particles.
+    fn fill(&mut self, found: &[Neighbour], particles: &Particles) {
+        self.len = 0;
+        for near in found {
+            self.push(near.offset, particles.normal[near.index as usize]);
         }
     }
 
-    fn append(&mut self, m: usize, n: Vec3) {
-        (self.x[m], self.y[m], self.z[m]) = (n.x, n.y, n.z);
-    }
-
-    /// Squared distance from `offset` to the nearest of the first `count` neighbours that are on its sheet.
     #[inline(always)]
-    fn nearest_sq(&self, found: &Neighbours, count: usize, offset: Vec3, normal: Vec3, slack_sq: f32) -> f32 {
-        let (ox, oy, oz) = (Lanes::splat(offset.x), Lanes::splat(offset.y), Lanes::splat(offset.z));
-        let (nx, ny, nz) = (Lanes::splat(normal.x), Lanes::splat(normal.y), Lanes::splat(normal.z));
+    fn push(&mut self, offset: Vec3, normal: Vec3) {
+        let (chunk, lane) = (self.len / LANES, self.len % LANES);
+        if chunk == self.chunks.len() {
+            self.chunks.push([Lanes::splat(0.0); 6]);
+        }
+        let columns = &mut self.chunks[chunk];
+        if lane == 0 {
+            // Lanes without a particle have no normal and belong to no sheet.
+            *columns = [Lanes::splat(0.0); 6];
+        }
+        for (column, value) in
+            columns.iter_mut().zip([offset.x, offset.y, offset.z, normal.x, normal.y, normal.z])
+        {
+            column.0[lane] = value;
+        }
+        self.len += 1;
+    }
+
+    /// Squared distance from `offset` to the nearest particle on the sheet of a point with the normal `normal`.
+    #[inline(always)]
+    fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> f32 {
+        let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
+        let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
         let mut nearest = Lanes::splat(f32::INFINITY);
-        let chunk = |column: &[f32], m: usize| Lanes(column.as_chunks::<LANES>().0[m]);
-        for m in 0..count.div_ceil(LANES) {
-            let (dx, dy, dz) = (chunk(&found.x, m) - ox, chunk(&found.y, m) - oy, chunk(&found.z, m) - oz);
+        for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
+            let (dx, dy, dz) = (x - ox, y - oy, z - oz);
             let distance_sq = dx * dx + dy * dy + dz * dz;
             let rise = dx * nx + dy * ny + dz * nz;
-            let along = nx * chunk(&self.x, m) + ny * chunk(&self.y, m) + nz * chunk(&self.z, m);
+            let along = nx * mx + ny * my + nz * mz;
             let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * Lanes::splat(MAX_RISE_SQ);
             for lane in 0..LANES {
-                let same = along.0[lane] > 0.0 && excess.0[lane] <= 0.0;
+                let same = (along.0[lane] > 0.0) & (excess.0[lane] <= 0.0);
                 let d = if same { distance_sq.0[lane] } else { f32::INFINITY };
                 nearest.0[lane] = if d < nearest.0[lane] { d } else { nearest.0[lane] };
             }
@@ -590,13 +624,4 @@ fn push(
     particles.parent.push(parent);
     particles.level.push(level);
     particles.slots.push(slots);
-}
-
-fn truncate(particles: &mut Particles, len: usize) {
-    particles.position.truncate(len);
-    particles.normal.truncate(len);
-    particles.radius.truncate(len);
-    particles.parent.truncate(len);
-    particles.level.truncate(len);
-    particles.slots.truncate(len);
 }
