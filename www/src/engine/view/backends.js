@@ -79,7 +79,7 @@ export async function openDevice(kind, host, events) {
     } else {
       const { default: init, Renderer: Made } = await bundle(kind);
       await init();
-      renderer = await Made.create(canvas, lost, (message) => {
+      renderer = await Made.create(canvas, lost, (/** @type {string} */ message) => {
         queueMicrotask(() => {
           if (!closed) events.onError(message);
         });

@@ -1,0 +1,97 @@
+/** What the browser tests share: opening the page with an eye on its requests and errors, and looking at its pixels. */
+import { expect } from '@playwright/test';
+
+/** @typedef {import('@playwright/test').Page} Page */
+
+/** A link to a state. @param {object} state */
+export const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
+
+/** A coarse ellipsoid: some 1,300 particles, quick to draw in software. */
+export const coarse = { settings: { radius_share: 0.02 } };
+
+/**
+ * Opens the page and waits for its first picture.
+ * @param {Page} page
+ * @param {string} [address]  below the root of the host
+ * @returns {Promise<{errors: string[], strangers: string[]}>}  what it complained of, and whom else it asked
+ */
+export async function open(page, address = `./${link(coarse)}`) {
+  const errors = /** @type {string[]} */ ([]);
+  const strangers = /** @type {string[]} */ ([]);
+  page.on('console', (message) => {
+    if (message.type() === 'error') errors.push(message.text());
+  });
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('request', (request) => {
+    const url = new URL(request.url());
+    if (url.protocol !== 'data:' && url.protocol !== 'blob:' && url.hostname !== 'localhost') strangers.push(request.url());
+  });
+  await page.goto(address);
+  await page.waitForFunction(() => 'marchingParticles' in window);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  return { errors, strangers };
+}
+
+/** @param {Page} page @returns {Promise<any>} */
+export const status = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.status());
+
+/** @param {Page} page @returns {Promise<any>} */
+export const counts = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts());
+
+/**
+ * What is in the picture: the share of pixels that differ from its corner, and how many of 12 hues there are.
+ * @param {Page} page
+ * @param {number} [width] @param {number} [height]
+ */
+export function picture(page, width = 160, height = 120) {
+  return page.evaluate(async ([w, h]) => {
+    const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
+    const corner = [pixels[0], pixels[1], pixels[2]];
+    const hues = new Array(12).fill(0);
+    let drawn = 0;
+    for (let i = 0; i < pixels.length; i += 4) {
+      const [r, g, b] = [pixels[i], pixels[i + 1], pixels[i + 2]];
+      if (Math.abs(r - corner[0]) + Math.abs(g - corner[1]) + Math.abs(b - corner[2]) < 24) continue;
+      drawn += 1;
+      const most = Math.max(r, g, b);
+      const chroma = most - Math.min(r, g, b);
+      if (chroma < 20) continue;
+      const hue = most === r ? (g - b) / chroma + 6 : most === g ? (b - r) / chroma + 2 : (r - g) / chroma + 4;
+      hues[Math.floor(hue * 2) % 12] += 1;
+    }
+    const middle = 4 * (Math.floor(ph / 2) * pw + Math.floor(pw / 2));
+    return {
+      width: pw, height: ph, drawn: drawn / (pw * ph), hues: hues.filter((n) => n > 4).length,
+      corner, middle: [...pixels.subarray(middle, middle + 4)],
+    };
+  }, [width, height]);
+}
+
+/** The picture shows a surface in many colours, not a blank or a flat one. @param {Page} page */
+export async function expectSurface(page) {
+  const seen = await picture(page);
+  expect(seen.drawn).toBeGreaterThan(0.12);
+  expect(seen.drawn).toBeLessThan(0.85);
+  expect(seen.hues).toBeGreaterThanOrEqual(6);
+  expect(seen.middle.slice(0, 3)).not.toEqual(seen.corner);
+}
+
+/**
+ * The canvas itself, as the screen shows it, holds as many colours. (Not for WebGPU in software: its canvas cannot be
+ * photographed.)
+ * @param {Page} page
+ */
+export async function expectCanvasShown(page) {
+  const shot = await page.locator('#canvas-host canvas').screenshot();
+  const colours = await page.evaluate(async (base64) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    context.drawImage(bitmap, 0, 0);
+    const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    const seen = new Set();
+    for (let i = 0; i < data.length; i += 4) seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
+    return seen.size;
+  }, shot.toString('base64'));
+  expect(colours).toBeGreaterThan(40);
+}

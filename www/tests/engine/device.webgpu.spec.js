@@ -1,0 +1,40 @@
+/** The page in a browser with WebGPU (in software). */
+import { expect, test } from '@playwright/test';
+import { counts, expectSurface, open, picture, status } from './browser.js';
+
+test('WebGPU draws the surface', async ({ page }) => {
+  const { errors } = await open(page);
+  expect((await status(page)).backend).toBe('webgpu');
+  await expectSurface(page);
+  expect(errors).toEqual([]);
+});
+
+test('a lost device is rebuilt from the columns, with the same picture', async ({ page }) => {
+  await open(page);
+  const before = await picture(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.loseDevice());
+  await expect.poll(async () => (await counts(page)).opened).toBe(2);
+  await expect.poll(async () => (await status(page)).notice?.text).toContain('is back');
+  expect((await status(page)).backend).toBe('webgpu');
+  expect(await picture(page)).toEqual(before);
+});
+
+test('after three losses in a row WebGL2 takes over, on a new canvas', async ({ page }) => {
+  await open(page);
+  for (let k = 2; k <= 5; k += 1) {
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.loseDevice());
+    await expect.poll(async () => (await counts(page)).opened).toBe(k);
+  }
+  expect((await status(page)).backend).toBe('webgl2');
+  await expectSurface(page);
+  await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
+});
+
+test('without navigator.gpu WebGL2 draws', async ({ page }) => {
+  await page.addInitScript(() => {
+    Object.defineProperty(Navigator.prototype, 'gpu', { value: undefined });
+  });
+  await open(page);
+  expect((await status(page)).backend).toBe('webgl2');
+  await expectSurface(page);
+});

@@ -1,0 +1,381 @@
+/** The page as a visitor meets it in a browser with WebGL2 only: first load, links, faults, files. */
+import { existsSync, readFileSync } from 'node:fs';
+import { expect, test } from '@playwright/test';
+import { coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
+
+/** @param {import('@playwright/test').Page} page @param {string} expression  of `p`, the console interface */
+const on = (page, expression) => page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
+
+for (const place of ['/', '/sub/path/']) {
+  test(`the ellipsoid appears by itself at ${place}, and nobody else is asked for anything`, async ({ page }) => {
+    const { errors, strangers } = await open(page, place);
+    expect((await status(page)).backend).toBe('webgl2');
+    await expectSurface(page);
+    await expectCanvasShown(page);
+    const report = /** @type {any} */ (await on(page, 'p.report()'));
+    expect(report.count).toBeGreaterThan(10_000);
+    expect(report.stop_reason).toBe('complete');
+    expect(report.quality.six).toBeGreaterThan(0.9);
+    for (const phase of ['generation', 'relaxation', 'quality']) expect(report.seconds[phase]).toBeGreaterThan(0);
+    expect(strangers).toEqual([]);
+    expect(errors).toEqual([]);
+  });
+}
+
+test('the page forbids itself every other host', async ({ page }) => {
+  await open(page);
+  const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content');
+  expect(policy).toContain("default-src 'none'");
+  expect(policy).toContain("connect-src 'self'");
+  const refused = await page.evaluate(() => new Promise((resolve) => {
+    document.addEventListener('securitypolicyviolation', (event) => resolve(event.violatedDirective), { once: true });
+    fetch('https://example.org/').catch(() => {});
+  }));
+  expect(refused).toBe('connect-src');
+});
+
+test('the same state gives the same particles as the native core', async ({ page }) => {
+  const file = new URL('../../../tests/golden/digests.json', import.meta.url);
+  test.skip(!existsSync(file), 'no native digests to compare with');
+  await open(page);
+  const golden = JSON.parse(readFileSync(file, 'utf8'));
+  const runs = golden.runs ?? golden;
+  expect(runs.length).toBeGreaterThan(0);
+  for (const { field, settings, digest, count } of runs.slice(0, 4)) {
+    const report = /** @type {any} */ (await page.evaluate(
+      ([f, s]) => /** @type {any} */ (window).marchingParticles.set({ parameters: {}, declared: [], bounds: null, ...f, settings: s }),
+      [field, settings],
+    ));
+    expect({ ...field, digest: report.digest, count: report.count }).toEqual({ ...field, digest, count });
+  }
+});
+
+test('nothing is drawn while nothing happens', async ({ page }) => {
+  await open(page);
+  await page.waitForTimeout(400);
+  const { frames } = await counts(page);
+  await page.waitForTimeout(700);
+  expect((await counts(page)).frames).toBe(frames);
+});
+
+test('a drag turns the surface, a wheel comes nearer, F shows all of it again', async ({ page }) => {
+  await open(page);
+  const camera = async () => /** @type {any} */ (await on(page, 'p.engine.state.value.view.camera'));
+  const host = page.locator('#canvas-host');
+  const box = /** @type {{x: number, y: number, width: number, height: number}} */ (await host.boundingBox());
+  // The part that no panel covers.
+  const [x, y] = await page.evaluate(() => {
+    const host_element = document.querySelector('#canvas-host');
+    for (let v = 0.1; v < 0.9; v += 0.1) {
+      for (let u = 0.1; u < 0.9; u += 0.1) {
+        const at = [innerWidth * u, innerHeight * v];
+        if (host_element?.contains(document.elementFromPoint(at[0], at[1]))) return at;
+      }
+    }
+    return [0, 0];
+  });
+  const before = await camera();
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + 20, { steps: 5 });
+  await page.mouse.up();
+  await expect.poll(async () => (await camera()).yaw).not.toBe(before.yaw);
+  await page.mouse.wheel(0, -300);
+  await expect.poll(async () => (await camera()).distance).toBeLessThan(before.distance * 0.9);
+  expect((await camera()).fit).toBe(false);
+  await host.focus();
+  await page.keyboard.press('f');
+  await expect.poll(async () => (await camera()).fit).toBe(true);
+  expect(box.width).toBeGreaterThan(0);
+});
+
+test('a lost pointer ends the drag', async ({ page }) => {
+  await open(page);
+  const after = await page.evaluate(async () => {
+    const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const fire = (/** @type {string} */ type, /** @type {number} */ x) => host.dispatchEvent(new PointerEvent(type, { pointerId: 7, clientX: x, clientY: 100, button: 0, isPrimary: true, bubbles: true }));
+    fire('pointerdown', 100);
+    fire('pointermove', 140);
+    fire('pointercancel', 140);
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    const { yaw } = engine.state.value.view.camera;
+    fire('pointermove', 240);
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    return engine.state.value.view.camera.yaw - yaw;
+  });
+  expect(after).toBe(0);
+});
+
+test('pointing at the middle tells of the particle there', async ({ page }) => {
+  await open(page);
+  const hover = /** @type {any} */ (await page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
+    engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+    const [x, y] = [host.clientWidth / 2, host.clientHeight / 2];
+    const { left, top } = host.getBoundingClientRect();
+    host.dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', clientX: x + left, clientY: y + top, bubbles: true }));
+    return new Promise((resolve) => {
+      const stop = engine.hover.subscribe((/** @type {any} */ value) => {
+        if (value) setTimeout(() => {
+          stop();
+          resolve({ ...value, picked: engine.pick(x, y) });
+        });
+      });
+    });
+  }));
+  expect(hover.index).toBe(hover.picked);
+  expect(hover.valence).toBeGreaterThanOrEqual(3);
+  expect(hover.residual).toBeLessThan(1e-3);
+  expect(Math.hypot(...hover.normal)).toBeCloseTo(1, 4);
+});
+
+test.describe('links', () => {
+  test('bring back surface, settings and view', async ({ page }) => {
+    await open(page, `/${link({ surface: 'torus', settings: { radius_share: 0.02 }, view: { colour: 'valence', theme: 'dark' } })}`);
+    const state = /** @type {any} */ (await on(page, 'p.state'));
+    expect(state).toMatchObject({ surface: 'torus', settings: { radius_share: 0.02 }, view: { colour: 'valence', theme: 'dark' } });
+    const report = /** @type {any} */ (await on(page, 'p.report()'));
+    expect(report.quality.euler).toBe(0);
+    const shared = String(await on(page, 'p.engine.shareUrl()'));
+    await page.evaluate(() => history.replaceState(null, '', '#'));
+    await page.evaluate((hash) => {
+      location.hash = hash;
+    }, new URL(shared).hash);
+    await expect.poll(async () => /** @type {any} */ (await on(page, 'p.state')).surface).toBe('torus');
+  });
+
+  test('with a mistake in them say what was reset, and the page works', async ({ page }) => {
+    await open(page, `/${link({ surface: 'nowhere', settings: { radius_share: 9 } })}`);
+    const { notice } = await status(page);
+    expect(notice.id).toBe('link');
+    expect(notice.text).toContain('surface');
+    expect(notice.text).toContain('radius_share');
+  });
+
+  test('that are broken lead to the standard surface', async ({ page }) => {
+    await open(page, '/#v99.j.AAAA');
+    expect((await status(page)).notice.text).toContain('another version');
+    expect(/** @type {any} */ (await on(page, 'p.state')).surface).toBe('ellipsoid');
+  });
+
+  test('carry markup as text only', async ({ page }) => {
+    const formula = '<img src=x onerror="window.hit=1">';
+    await open(page, `/${link({ ...coarse, formula })}`);
+    expect((await status(page)).fieldError).not.toBe(null);
+    expect(await page.evaluate(() => document.querySelectorAll('img[src="x"]').length + Number('hit' in window))).toBe(0);
+  });
+});
+
+test.describe('a sampler that fails', () => {
+  for (const fault of ['panic', 'overflow', 'hang']) {
+    test(`by ${fault} is replaced, with the state intact`, async ({ page }) => {
+      await open(page);
+      const before = await on(page, 'p.state');
+      await on(page, `p.debug.${fault}()`);
+      if (fault === 'hang') await on(page, '(p.engine.setParameter("a", 1.25), 0)');
+      await expect.poll(async () => (await status(page)).notice?.id, { timeout: 15_000 }).toBe(fault === 'hang' ? 'hang' : 'panic');
+      expect((await counts(page)).restarts).toBe(1);
+      const report = /** @type {any} */ (await on(page, 'p.run()'));
+      expect(report.count).toBeGreaterThan(500);
+      const { notice } = await status(page);
+      expect(notice.details).toContain('Marching Particles');
+      if (fault !== 'hang') expect(await on(page, 'p.state')).toEqual(before);
+      await expectSurface(page);
+    });
+  }
+
+  test('four times in a minute is left alone until it is asked for again', async ({ page }) => {
+    await open(page);
+    for (let k = 1; k <= 4; k += 1) {
+      await on(page, 'p.debug.panic()');
+      await expect.poll(async () => (await counts(page)).restarts).toBe(k);
+    }
+    await expect.poll(async () => (await status(page)).notice.id).toBe('safe-mode');
+    await expectSurface(page);
+    await on(page, '(p.engine.notice.value.action.run(), 0)');
+    await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+    expect((await status(page)).notice).toBe(null);
+  });
+});
+
+test('a stop keeps the partial surface, and says so', async ({ page }) => {
+  await open(page);
+  const outcome = /** @type {any} */ (await page.evaluate(async () => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    p.engine.setSetting('max_particles', 1_000_000);
+    p.engine.setSetting('radius_share', 0.001);
+    await new Promise((resolve) => {
+      const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
+        if (v.phase === 'generation' && v.particles > 0) setTimeout(() => resolve(off()));
+      });
+    });
+    p.engine.stop();
+    await new Promise((resolve) => {
+      const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
+        if (!busy) setTimeout(() => resolve(off()));
+      });
+    });
+    return { partial: p.engine.partial.value, count: p.particles().count, reason: p.engine.progress.value.stop_reason };
+  }));
+  expect(outcome).toMatchObject({ partial: true, reason: 'cancelled' });
+  expect(outcome.count).toBeGreaterThan(0);
+  expect(outcome.count).toBeLessThan(400_000);
+});
+
+test('a message of an old run changes nothing', async ({ page }) => {
+  await open(page);
+  const before = await status(page);
+  await on(page, 'p.debug.stale(0)');
+  const after = await status(page);
+  expect(after.progress).toEqual(before.progress);
+  expect((await counts(page)).stale).toBeGreaterThan(0);
+});
+
+test('a slider dragged at 120 Hz ends at its last value, with one surface on screen', async ({ page }) => {
+  await open(page);
+  const end = /** @type {any} */ (await page.evaluate(async () => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    for (let k = 0; k < 120; k += 1) {
+      p.engine.setParameter('a', 0.6 + 0.005 * k, { live: true });
+      await new Promise((resolve) => setTimeout(resolve, 8));
+    }
+    p.engine.setParameter('a', 1.2);
+    await new Promise((resolve) => {
+      const off = p.engine.report.subscribe((/** @type {any} */ report) => {
+        if (report) setTimeout(() => resolve(off()));
+      });
+    });
+    const { positions, count } = p.particles();
+    let widest = 0;
+    for (let i = 0; i < count; i += 1) widest = Math.max(widest, Math.abs(positions[3 * i]));
+    return { widest, drag: p.engine.lastDrag.value, queued: p.engine.busy.value };
+  }));
+  expect(end.widest).toBeCloseTo(1.2, 1);
+  expect(end.drag.requested).toBe(120);
+  expect(end.drag.shown).toBeGreaterThan(3);
+  expect(end.queued).toBe(false);
+});
+
+test('a mistake in the formula keeps the last surface, dimmed; mending it brings it back', async ({ page }) => {
+  await open(page);
+  const clear = await picture(page);
+  await on(page, '(p.engine.setFormula("x^2 +"), 0)');
+  await expect.poll(async () => (await status(page)).fieldError?.message).toBeTruthy();
+  expect(/** @type {any} */ (await on(page, 'p.particles().count'))).toBeGreaterThan(500);
+  await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 = 0.5"), 0)');
+  await expect.poll(async () => (await status(page)).fieldError).toBe(null);
+  await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+  expect((await picture(page)).drawn).not.toBe(clear.drawn);
+});
+
+test('a formula without a surface empties the picture and says why', async ({ page }) => {
+  await open(page);
+  await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 + 1"), 0)');
+  await expect.poll(async () => (await status(page)).empty).toBe(true);
+  expect((await status(page)).progress.message).toBeTruthy();
+  await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 = 1"), 0)');
+  await expect.poll(async () => (await status(page)).empty).toBe(false);
+});
+
+test('a lost WebGL context is replaced, with the same picture', async ({ page }) => {
+  await open(page);
+  const before = await picture(page);
+  await page.evaluate(() => {
+    const canvas = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
+    canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
+  });
+  await expect.poll(async () => (await counts(page)).opened).toBe(2);
+  await expect.poll(async () => (await status(page)).notice?.text).toContain('is back');
+  const after = await picture(page);
+  expect(after.drawn).toBeCloseTo(before.drawn, 2);
+  await expect(page.locator('#canvas-host canvas')).toHaveCount(1);
+});
+
+test('a device that the page destroys itself is not mended', async ({ page }) => {
+  await open(page);
+  await on(page, 'p.debug.loseDevice("destroyed")');
+  await page.waitForTimeout(1500);
+  expect((await counts(page)).opened).toBe(1);
+});
+
+test('a canvas of no size and back again draws', async ({ page }) => {
+  await open(page);
+  const host = page.locator('#canvas-host');
+  await host.evaluate((element) => {
+    element.style.display = 'none';
+  });
+  await page.waitForTimeout(100);
+  await host.evaluate((element) => {
+    element.style.display = '';
+  });
+  await page.setViewportSize({ width: 333, height: 257 });
+  await page.waitForTimeout(200);
+  await expectSurface(page);
+  await expectCanvasShown(page);
+});
+
+test.describe('files', () => {
+  test('PLY and CSV hold every particle', async ({ page }) => {
+    await open(page);
+    const files = /** @type {any} */ (await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      const text = new TextDecoder('latin1').decode(await (await p.engine.exportFile('ply')).arrayBuffer());
+      const csv = await (await p.engine.exportFile('csv')).text();
+      return { count: p.particles().count, header: text.slice(0, text.indexOf('end_header')), csv: csv.trimEnd().split('\n').length };
+    }));
+    expect(files.header).toContain(`element vertex ${files.count}\n`);
+    expect(files.header).toContain('property uchar valence');
+    expect(files.csv).toBe(files.count + 1);
+  });
+
+  test('PNG is the picture, at any size and on no ground', async ({ page }) => {
+    await open(page);
+    const image = /** @type {any} */ (await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      const blob = await p.engine.savePng({ width: 300, height: 200, transparent: true });
+      const bitmap = await createImageBitmap(blob);
+      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+      const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+      context.drawImage(bitmap, 0, 0);
+      const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+      let solid = 0;
+      for (let i = 3; i < data.length; i += 4) if (data[i] > 250) solid += 1;
+      return { type: blob.type, width: bitmap.width, height: bitmap.height, corner: data[3], solid: solid / (bitmap.width * bitmap.height) };
+    }));
+    expect(image).toMatchObject({ type: 'image/png', width: 300, height: 200, corner: 0 });
+    expect(image.solid).toBeGreaterThan(0.1);
+    expect(image.solid).toBeLessThan(0.8);
+  });
+});
+
+test.describe('a sampler that does not load', () => {
+  /** @type {[string, (route: import('@playwright/test').Route) => Promise<void>, RegExp][]} */
+  const faults = [
+    ['is missing', (route) => route.fulfill({ status: 404, body: 'not found' }), /404/],
+    ['is blocked', (route) => route.abort('blockedbyclient'), /could not be fetched/],
+    ['is damaged', (route) => route.fulfill({ contentType: 'application/wasm', body: Buffer.from([0, 97, 115, 109, 1, 0, 0, 0, 255, 1]) }), /damaged/],
+    ['is a page', (route) => route.fulfill({ contentType: 'text/html', body: '<!doctype html><title>Hello</title>' }), /page in its place/],
+  ];
+  for (const [what, answer, words] of faults) {
+    test(`because its file ${what} is named, and another try helps`, async ({ page }) => {
+      await page.route('**/core_bg*.wasm', answer);
+      await page.goto('/');
+      await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().notice?.id === 'load');
+      expect((await status(page)).notice.text).toMatch(words);
+      await page.unroute('**/core_bg*.wasm');
+      await on(page, '(p.engine.notice.value.action.run(), 0)');
+      await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+    });
+  }
+
+  test('under a wrong media type loads all the same', async ({ page }) => {
+    await page.route('**/core_bg*.wasm', async (route) => {
+      const response = await route.fetch();
+      await route.fulfill({ response, headers: { ...response.headers(), 'content-type': 'application/octet-stream' } });
+    });
+    await open(page);
+    await expectSurface(page);
+  });
+});
