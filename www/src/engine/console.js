@@ -5,6 +5,9 @@
  */
 import { effect } from '@preact/signals-core';
 
+/** The state follows the camera at this pace. */
+export const CAMERA_MS = 120;
+
 /**
  * @typedef {import('./types.js').Engine} Engine
  * @typedef {import('./types.js').Report} Report
@@ -71,10 +74,12 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
       if ((!idle && !failed) || over) return;
       over = true;
       const report = engine.report.peek();
-      // Two frames: the one that was asked for, and the one after it is surely on screen.
-      const show = () => requestAnimationFrame(() => requestAnimationFrame(() => resolve(report)));
-      if (document.hidden) resolve(report);
-      else show();
+      // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
+      const show = () => {
+        if (viewer.asked !== 0 && !document.hidden) requestAnimationFrame(show);
+        else setTimeout(() => resolve(report), CAMERA_MS + 10);
+      };
+      show();
       queueMicrotask(() => stop());
     });
   });

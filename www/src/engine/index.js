@@ -6,7 +6,7 @@
  */
 import { batch, effect } from '@preact/signals-core';
 import { Columns } from './columns.js';
-import { installConsole } from './console.js';
+import { CAMERA_MS, installConsole } from './console.js';
 import { SamplingClient } from './sampling/client.js';
 import { decode, encode } from './share/codec.js';
 import { csv, LARGEST_PICTURE_PX, ply, png } from './share/exports.js';
@@ -26,7 +26,6 @@ import { Viewer } from './view/viewer.js';
 const REST_MS = 250;
 /** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
 const ADDRESS_MS = 500;
-const CAMERA_MS = 120;
 /** Ceiling for particles that a person may confirm. */
 const MOST_PARTICLES = 4_000_000;
 

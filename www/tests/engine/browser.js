@@ -6,8 +6,8 @@ import { expect } from '@playwright/test';
 /** A link to a state. @param {object} state */
 export const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
 
-/** A coarse ellipsoid: some 1,300 particles, quick to draw in software. */
-export const coarse = { settings: { radius_share: 0.02 } };
+/** A coarse ellipsoid: some 1,100 particles, quick to draw in software. */
+export const coarse = { settings: { radius_share: 0.01 } };
 
 /**
  * Opens the page and waits for its first picture.

@@ -13,7 +13,7 @@ for (const place of ['/', '/sub/path/']) {
     await expectSurface(page);
     await expectCanvasShown(page);
     const report = /** @type {any} */ (await on(page, 'p.report()'));
-    expect(report.count).toBeGreaterThan(10_000);
+    expect(report.count).toBeGreaterThan(1000);
     expect(report.stop_reason).toBe('complete');
     expect(report.quality.six).toBeGreaterThan(0.9);
     for (const phase of ['generation', 'relaxation', 'quality']) expect(report.seconds[phase]).toBeGreaterThan(0);
@@ -80,6 +80,7 @@ test('a drag turns the surface, a wheel comes nearer, F shows all of it again', 
   await page.mouse.move(x + 60, y + 20, { steps: 5 });
   await page.mouse.up();
   await expect.poll(async () => (await camera()).yaw).not.toBe(before.yaw);
+  await page.mouse.move(x, y);
   await page.mouse.wheel(0, -300);
   await expect.poll(async () => (await camera()).distance).toBeLessThan(before.distance * 0.9);
   expect((await camera()).fit).toBe(false);
@@ -204,8 +205,7 @@ test('a stop keeps the partial surface, and says so', async ({ page }) => {
   await open(page);
   const outcome = /** @type {any} */ (await page.evaluate(async () => {
     const p = /** @type {any} */ (window).marchingParticles;
-    p.engine.setSetting('max_particles', 1_000_000);
-    p.engine.setSetting('radius_share', 0.001);
+    void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001 } });
     await new Promise((resolve) => {
       const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
         if (v.phase === 'generation' && v.particles > 0) setTimeout(() => resolve(off()));

@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { BEAT_MS } from './protocol.js';
+import { PROGRESS_MS } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').Job} Job
@@ -163,7 +163,7 @@ export async function runJob(core, job, env, memory) {
     if (due()) {
       sendColumns();
       beat_ms = env.now_ms();
-    } else if (env.now_ms() - beat_ms > BEAT_MS) {
+    } else if (env.now_ms() - beat_ms > PROGRESS_MS) {
       env.post({ type: 'progress', id, progress });
       beat_ms = env.now_ms();
     }

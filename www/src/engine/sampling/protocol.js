@@ -98,7 +98,9 @@
  *   | {type: 'crashed', id: number, message: string, stack: string}} FromWorker
  */
 
-/** The worker speaks at least this often while it is busy. */
+/** A job without columns to show tells how far it is at this pace. */
+export const PROGRESS_MS = 60;
+/** The worker speaks at least this often while it loads. */
 export const BEAT_MS = 250;
 /** Silence after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;
