@@ -82,6 +82,10 @@ export async function expectSurface(page) {
  * @param {Page} page
  */
 export async function expectCanvasShown(page) {
+  // Panels and the poster must not lend the picture their colours.
+  await page.evaluate(() => {
+    for (const element of document.querySelectorAll('#shell, #poster, #toasts')) /** @type {HTMLElement} */ (element).style.visibility = 'hidden';
+  });
   const shot = await page.locator('#canvas-host canvas').screenshot();
   const colours = await page.evaluate(async (base64) => {
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));

@@ -57,6 +57,19 @@ describe('the view', () => {
     for (let k = 0; k < 3; k += 1) expect(ray[k]).toBeCloseTo(view.forward[k], 6);
   });
 
+  test('survives panels that cover everything', () => {
+    for (const insets of [{ left: 900, right: 900, top: 600, bottom: 0 }, { left: Number.NaN, right: -50, top: 0, bottom: 1e9 }]) {
+      const view = viewOf(state, ...size, scene, insets);
+      const c = project(view, state.target);
+      expect(c.x).toBeGreaterThan(0);
+      expect(c.x).toBeLessThan(800);
+      expect(c.y).toBeGreaterThan(0);
+      expect(c.y).toBeLessThan(600);
+      const edge = project(view, state.target.map((t, k) => t + 0.5 * view.right[k]));
+      expect(edge.x - c.x).toBeGreaterThan(30);
+    }
+  });
+
   test('rays go through what is drawn at their pixel', () => {
     const view = viewOf(state, ...size, scene, { left: 120, right: 0, top: 10, bottom: 50 });
     const p = [1.1, -0.4, 0.8];

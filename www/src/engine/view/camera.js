@@ -54,13 +54,15 @@ export function axes({ yaw, pitch }) {
 export function viewOf(camera, width_px, height_px, scene, insets = { left: 0, right: 0, top: 0, bottom: 0 }) {
   const w = Math.max(1, width_px);
   const h = Math.max(1, height_px);
-  const free_w = Math.max(1, w - insets.left - insets.right);
-  const free_h = Math.max(1, h - insets.top - insets.bottom);
+  const [left, right_px] = fair(insets.left, insets.right, w);
+  const [top, bottom] = fair(insets.top, insets.bottom, h);
+  const free_w = w - left - right_px;
+  const free_h = h - top - bottom;
   const world_per_px = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(free_w, free_h);
   const tan_x = (world_per_px * w) / 2;
   const tan_y = (world_per_px * h) / 2;
-  const shift_x = (insets.left - insets.right) / w;
-  const shift_y = (insets.bottom - insets.top) / h;
+  const shift_x = (left - right_px) / w;
+  const shift_y = (bottom - top) / h;
   const { right, up, forward } = axes(camera);
   const { target, distance } = camera;
   /** @type {Vec3} */
@@ -91,6 +93,16 @@ export function viewOf(camera, width_px, height_px, scene, insets = { left: 0, r
   packed.set(forward, 19);
   packed[22] = world_per_px;
   return { clip_from_world, eye, forward, right, up, tan_x, tan_y, shift_x, shift_y, world_per_px, packed };
+}
+
+/** However much panels cover, this share of a side counts as free. */
+const LEAST_FREE = 0.4;
+
+/** Two insets of one side, shrunk together until they leave enough free. @param {number} a @param {number} b @param {number} side */
+function fair(a, b, side) {
+  const [p, q] = [Math.max(0, a) || 0, Math.max(0, b) || 0];
+  const scale = Math.min(1, ((1 - LEAST_FREE) * side) / (p + q || 1));
+  return [p * scale, q * scale];
 }
 
 /** @param {readonly number[]} p @param {readonly number[]} q */

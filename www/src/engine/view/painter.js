@@ -15,6 +15,11 @@ const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * enc
 /** Discs smaller than this on screen are drawn as single pixels. */
 const POINT_PX = 0.7;
 
+/** Discs larger than this on screen have a darker rim. */
+const RIM_FROM_PX = 4;
+/** How far discs seen from behind fade towards the ground. */
+const DIM_BACKFACES = 0.55;
+
 /**
  * @typedef {object} Style
  * @property {[number, number, number, number]} background  sRGB 0 … 1
@@ -218,13 +223,21 @@ export class Painter {
         ny = -ny;
         nz = -nz;
       }
-      const lambert = Math.max(0, nx * key[0] + ny * key[1] + nz * key[2]);
-      const shade = (0.42 + 0.16 * (nx * up[0] + ny * up[1] + nz * up[2]) + 0.5 * lambert) * (back ? 0.55 : 1);
-      const mix = (/** @type {number} */ byte, /** @type {number} */ k) => Math.min(1, LINEAR[byte] * shade) * (1 - dim) + ground[k] * dim;
+      // The same light as in shaders/discs.wgsl: a wrapped key light, a hemisphere, dimmer at the silhouette.
+      const key_wrapped = Math.max(0, (nx * key[0] + ny * key[1] + nz * key[2] + 0.25) / 1.25);
+      const skyward = nx * up[0] + ny * up[1] + nz * up[2];
+      const edge_on = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
+      const shade = (0.56 + 0.1 * skyward + 0.52 * key_wrapped * key_wrapped) * (1 - 0.3 * edge_on ** 3) * (back ? 0.72 : 1);
+      const away = back ? 1 - (1 - DIM_BACKFACES) * (1 - dim) : dim;
       const colour = colours[i];
-      const value = i === outline
-        ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2])
-        : packed(mix(colour & 255, 0), mix((colour >> 8) & 255, 1), mix((colour >> 16) & 255, 2));
+      const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ light_here) =>
+        Math.min(1, LINEAR[byte] * light_here) * (1 - away) + ground[k] * away;
+      const lit = (/** @type {number} */ light_here) =>
+        packed(mix(colour & 255, 0, light_here), mix((colour >> 8) & 255, 1, light_here), mix((colour >> 16) & 255, 2, light_here));
+      const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
+      const rim = i === outline ? value : lit(shade * 0.78);
+      // A rim of a tenth of the radius shows the order; on small discs it would only be noise.
+      const core_sq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
       if (px < POINT_PX) {
         const at = (sy | 0) * width + (sx | 0);
         if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
@@ -255,10 +268,12 @@ export class Painter {
         const x0 = Math.max(0, Math.ceil(sx + (-half - s) / qa - 0.5));
         const x1 = Math.min(width - 1, Math.floor(sx + (-half + s) / qa - 0.5));
         for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
-          const near = inv - (ka * (ix + 0.5 - sx) + kb * dy) * depth_per_px;
+          const dx = ix + 0.5 - sx;
+          const dz = -(ka * dx + kb * dy);
+          const near = inv + dz * depth_per_px;
           if (near > depth[at]) {
             depth[at] = near;
-            out[at] = value;
+            out[at] = dx * dx + dy * dy + dz * dz > core_sq ? rim : value;
           }
         }
       }
