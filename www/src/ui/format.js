@@ -61,7 +61,7 @@ export function formatStep(value, step) {
 export function formatSignificant(value, digits = 3) {
   if (!isNumber(value)) return MISSING;
   if (!Number.isFinite(value)) return value > 0 ? '∞' : `${MINUS}∞`;
-  if (value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e7)) return formatPower(value);
+  if (value !== 0 && (Math.abs(value) < 1e-3 || Math.abs(value) >= 1e7)) return formatPower(value);
   return write(value, { maximumSignificantDigits: digits });
 }
 
@@ -71,7 +71,7 @@ const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({ '-': '⁻', 0: '�
 function formatPower(value) {
   const [mantissa, exponent] = value.toExponential(1).split('e');
   const power = String(Number(exponent)).replace(/./g, (sign) => SUPERSCRIPTS[sign] ?? sign);
-  return `${write(Number(mantissa), { maximumFractionDigits: 1 })}${THIN_NO_BREAK}·${THIN_NO_BREAK}10${power}`;
+  return `${write(Number(mantissa), { maximumFractionDigits: 1 })}·10${power}`;
 }
 
 /** A share as per cent. @param {unknown} value @param {number} [digits] */

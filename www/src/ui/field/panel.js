@@ -40,7 +40,7 @@ function createStory(engine, description) {
     fill(
       section,
       h('div', { class: 'section-head' }, h('h2', null, entry ? entry.name : 'Your own formula'), facts ? h('span', { class: 'quiet' }, facts) : null),
-      h('p', { class: 'quiet' }, entry ? entry.story : 'The surface where the formula below is zero. Names other than x, y and z become sliders.'),
+      entry && !entry.story ? null : h('p', { class: 'quiet' }, entry ? entry.story : 'The surface where the formula below is zero. Names other than x, y and z become sliders.'),
     );
   });
   return section;

@@ -1,5 +1,5 @@
 /** Figures of a report by their path, and how they are written. Pure. */
-import { formatCount, formatFixed, MISSING } from '../format.js';
+import { formatCount, formatFixed, formatSignificant, MISSING } from '../format.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
@@ -34,11 +34,16 @@ export function figuresOf(report, key) {
   };
 }
 
+/** More decimals than this are not written out. */
+const TINY_DIGITS = 4;
+
 /** @param {ReportRow} row @param {unknown} value */
 export function writeFigure({ digits, unit }, value) {
   if (typeof value === 'string') return value;
   if (typeof value !== 'number') return MISSING;
   if (unit === '%') return formatFixed(value * 100, digits);
+  // So many decimals are there for very small figures, which read better as powers of ten.
+  if (digits > TINY_DIGITS) return value === 0 ? '0' : formatSignificant(value, 2);
   return digits === 0 ? formatCount(value) : formatFixed(value, digits);
 }
 

@@ -8,7 +8,7 @@ import { compare, figuresOf, groupRows, writeFigure } from './rows.js';
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
 
 /**
- * One table, so that every figure stands in the same column; the unit has its own.
+ * One table, so that every figure stands in the same column; units go with the names.
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
  */
@@ -27,7 +27,6 @@ export function createTable(report, rows) {
         h('th', { scope: 'rowgroup' }, group),
         h('td', null, i === headed ? 'Front' : null),
         h('td', null, i === headed ? 'Relaxed' : null),
-        h('td'),
       ),
       members.map((row) => createRow(report, row)),
     )),
@@ -45,7 +44,7 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  * @param {ReportRow} row
  */
 function createRow(report, row) {
-  const term = h('button', { type: 'button', class: 'term' }, row.label);
+  const term = h('button', { type: 'button', class: 'term' }, row.label, row.unit ? h('span', { class: 'unit' }, ` ${row.unit}`) : null);
   explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row) }), { tap: true, side: 'left' });
   const before = h('td');
   const now = h('td', { class: 'now' });
@@ -57,7 +56,7 @@ function createRow(report, row) {
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
   });
   const paired = isPaired(row);
-  return h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now, h('td', { class: 'unit' }, row.unit));
+  return h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now);
 }
 
 /** @param {ReportRow} row */

@@ -22,7 +22,7 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
   const text = computed(() => (engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
-    partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: engine.timing.value?.total ?? null,
+    partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: secondsOf(engine.timing.value),
   })));
   bindText(caption, () => text.value);
   announce(spoken, text, computed(() => engine.busy.value || engine.reveal.value !== null));
@@ -48,6 +48,9 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
   // The last good surface stays, dimmed, while the formula is wrong; an empty one is no error.
   effect(() => { stage.classList.toggle('faulty', engine.fieldError.value !== null && engine.state.value.formula.trim() !== ''); });
 }
+
+/** How long the sampling itself took, without the figures. @param {import('../../engine/types.js').Timing | null} timing */
+const secondsOf = (timing) => timing && timing.seconds.seeding + timing.seconds.generation + timing.seconds.relaxation;
 
 /** @param {Engine} engine */
 function emptyState(engine) {
