@@ -14,7 +14,7 @@ const PICTURE_PX = 160;
 const DRAWN_PX = 480;
 const POSTER_PX = 720;
 /** Dots of the poster: its radius as a share of the box's diagonal. */
-const POSTER_SHARE = 0.0135;
+const POSTER_SHARE = 0.008;
 
 const base = process.argv[2] ?? 'http://localhost:4517/';
 const folder = fileURLToPath(new URL('../../public/', import.meta.url));
@@ -25,27 +25,39 @@ const page = await browser.newPage({ viewport: { width: 480, height: 480 }, colo
 await page.goto(base);
 await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
 
+const initial = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.view.camera);
 /** @type {string[]} */
 const ids = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.surfaces.map((/** @type {{ id: string }} */ { id }) => id));
 for (const id of ids) {
-  const bytes = await page.evaluate(async ({ id, drawn, size }) => {
+  const bytes = await page.evaluate(async ({ id, drawn, size, view_rad, initial }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
-    await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02 } });
+    await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02, camera: initial } });
     mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+    // The fit leaves room to turn; a still picture can fill its frame.
+    const { positions, count } = mp.particles();
+    const { yaw, pitch, distance, target } = mp.state.view.camera;
+    const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
+    let reach = 0;
+    for (let i = 0; i < count; i += 1) {
+      const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
+      const depth = distance - (cy * cp * x + sy * cp * y + sp * z);
+      reach = Math.max(reach, Math.abs(cy * y - sy * x) / depth, Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth);
+    }
+    mp.engine.zoom((0.97 * Math.tan(view_rad / 2)) / reach);
     const png = await mp.engine.savePng({ width: drawn, height: drawn, transparent: true });
     const bitmap = await createImageBitmap(png, { resizeWidth: size, resizeHeight: size, resizeQuality: 'high' });
     const canvas = new OffscreenCanvas(size, size);
     canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
     const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.82 });
     return [...new Uint8Array(await webp.arrayBuffer())];
-  }, { id, drawn: DRAWN_PX, size: PICTURE_PX });
+  }, { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial });
   await writeFile(`${folder}gallery/${id}.webp`, new Uint8Array(bytes));
   console.log(`${id} ${bytes.length} bytes`);
 }
 
-const dots = await page.evaluate(async ({ share, size, view_rad }) => {
+const dots = await page.evaluate(async ({ share, size, view_rad, initial }) => {
   const mp = /** @type {any} */ (window).marchingParticles;
-  await mp.set({ surface: mp.engine.description.value.default_surface, settings: { radius_share: share } });
+  await mp.set({ surface: mp.engine.description.value.default_surface, settings: { radius_share: share }, view: { camera: initial } });
   const { count, positions, normals, radii } = mp.particles();
   // The page's own camera at its fit, so that the first picture takes the poster's place without a jump.
   const { yaw, pitch, distance, target } = mp.state.view.camera;
@@ -64,13 +76,13 @@ const dots = await page.evaluate(async ({ share, size, view_rad }) => {
     if (facing > 0.04) front.push({ x: x + size / 2, y: y + size / 2, facing, radius: radii[i] * scale });
   }
   return { front };
-}, { share: POSTER_SHARE, size: POSTER_PX, view_rad: FIELD_OF_VIEW_RAD });
+}, { share: POSTER_SHARE, size: POSTER_PX, view_rad: FIELD_OF_VIEW_RAD, initial });
 
 // One path per class of foreshortening: a dot is a line of no length with a round cap.
-const classes = 4;
+const classes = 6;
 const paths = Array.from({ length: classes }, (_, k) => {
   const members = dots.front.filter(({ facing }) => Math.min(classes - 1, Math.floor(facing * classes)) === k);
-  const width = 2 * 0.92 * dots.front[0].radius * Math.sqrt((k + 0.6) / classes);
+  const width = 2 * 0.88 * dots.front[0].radius * Math.sqrt((k + 0.5) / classes);
   let at = [0, 0];
   const d = members.map(({ x, y }) => {
     const [px, py] = [Math.round(x), Math.round(y)];

@@ -1,6 +1,6 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
-import { coarsen } from '../../src/ui/report/bins.js';
+import { coarsen, trim } from '../../src/ui/report/bins.js';
 import { compare, figuresOf, groupRows, valueAt, writeFigure } from '../../src/ui/report/rows.js';
 import { captionOf } from '../../src/ui/view/caption.js';
 import { wantsSlider } from '../../src/ui/scale.js';
@@ -51,6 +51,16 @@ describe('histogram bins', () => {
     expect(rows.reduce((sum, { count }) => sum + count, 0)).toBe(bins.reduce((sum, count) => sum + count, 0));
     expect(rows[0].from).toBeCloseTo(1 + 5 / 50);
     expect(rows.at(-1)?.to).toBeCloseTo(1 + 40 / 50);
+  });
+
+  it('lose their empty ends, but not the ideal distance', () => {
+    const bins = Array.from({ length: 120 }, (_, i) => (i >= 80 && i < 95 ? 1 : 0));
+    const shown = trim({ min: 0, max: 1.2, bins }, 1);
+    expect(shown.bins.reduce((sum, count) => sum + count, 0)).toBe(15);
+    expect(shown.min).toBeCloseTo(0.77);
+    expect(shown.max).toBeGreaterThan(1);
+    expect(shown.max - shown.min).toBeCloseTo(shown.bins.length / 100);
+    expect(trim({ min: 0, max: 1, bins: [0, 0] }, 1)).toEqual({ min: 0, max: 1, bins: [0, 0] });
   });
 
   it('are none where nothing was counted', () => {

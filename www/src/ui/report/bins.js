@@ -20,3 +20,21 @@ export function coarsen({ min, max, bins }, rows) {
   }
   return result;
 }
+
+/**
+ * Without the empty bins at both ends, but with the place `keep` and a little air around.
+ * @param {Bins} histogram
+ * @param {number} keep
+ * @returns {Bins}
+ */
+export function trim({ min, max, bins }, keep) {
+  const width = (max - min) / bins.length;
+  const air = 3;
+  const place = Math.floor((keep - min) / width);
+  const first = bins.findIndex((count) => count > 0);
+  if (first < 0) return { min, max, bins };
+  const last = bins.findLastIndex((count) => count > 0);
+  const from = Math.max(0, Math.min(first, place) - air);
+  const to = Math.min(bins.length, Math.max(last, place) + air + 1);
+  return { min: min + from * width, max: min + to * width, bins: bins.slice(from, to) };
+}

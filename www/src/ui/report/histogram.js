@@ -2,11 +2,13 @@
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
-import { coarsen } from './bins.js';
+import { coarsen, trim } from './bins.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 
 const TABLE_ROWS = 12;
+/** Distances are given over the spacing of a perfect hexagonal lattice of as many particles. */
+const IDEAL = 1;
 
 /**
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
@@ -18,7 +20,7 @@ export function createHistogram(report, theme) {
   const section = h(
     'div',
     { class: 'section histogram' },
-    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), h('span', { class: 'quiet' }, 'in units of 2r')),
+    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), h('span', { class: 'quiet' }, 'perfect lattice 1')),
     plot,
     h(
       'details',
@@ -32,12 +34,11 @@ export function createHistogram(report, theme) {
     const bins = current?.nearest_histogram;
     const usable = Boolean(bins && bins.bins.length && bins.max > bins.min);
     section.hidden = !usable;
-    if (!current || !bins || !usable) return;
-    const unit = 2 * current.radius;
-    const scaled = { min: bins.min / unit, max: bins.max / unit, bins: bins.bins };
-    fill(table, coarsen(scaled, TABLE_ROWS).map(({ from, to, count }) => h('tr', null, h('td', null, formatFixed(from, 2)), h('td', null, formatFixed(to, 2)), h('td', null, formatCount(count)))));
+    if (!bins || !usable) return;
+    const shown = trim(bins, IDEAL);
+    fill(table, coarsen(shown, TABLE_ROWS).map(({ from, to, count }) => h('tr', null, h('td', null, formatFixed(from, 2)), h('td', null, formatFixed(to, 2)), h('td', null, formatCount(count)))));
     void theme.value;
-    void draw(plot, scaled);
+    void draw(plot, shown);
   });
   return section;
 }

@@ -1,11 +1,14 @@
 /** The report: how good the particles are, how long it took, how their distances spread. */
 import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { bindText, fill, h } from '../dom.js';
+import { explain } from '../explain.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
 import { createHistogram } from './histogram.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
+
+const DRAWN = { starting: 'Graphics starting', webgpu: 'Drawn with WebGPU', webgl2: 'Drawn with WebGL2', canvas2d: 'Drawn without acceleration' };
 
 /**
  * @param {HTMLElement} body
@@ -29,11 +32,9 @@ export function mountReport(body, engine, description) {
   });
   const waiting = h('p', { class: 'quiet waiting' }, 'The figures appear when the first run is done.');
   effect(() => { waiting.hidden = report.value !== null; });
-  const backend = h('p', { class: 'section quiet backend' });
-  effect(() => {
-    const names = { starting: 'Graphics starting', webgpu: 'Drawn with WebGPU', webgl2: 'Drawn with WebGL2', canvas2d: 'Drawn as dots, without graphics acceleration' };
-    const adapter = engine.adapter.value;
-    fill(backend, `${names[engine.backend.value]}${adapter ? `, ${adapter}` : ''}. Version ${description.version}.`);
-  });
+  const drawn = h('button', { type: 'button', class: 'term' });
+  bindText(drawn, () => DRAWN[engine.backend.value]);
+  explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), { tap: true, side: 'left' });
+  const backend = h('p', { class: 'section quiet backend' }, drawn, h('span', null, `Version ${description.version}`));
   fill(body, waiting, warnings, createTable(report, description.report), createTiming(engine), createHistogram(report, engine.theme), backend);
 }
