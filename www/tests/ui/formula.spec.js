@@ -79,8 +79,8 @@ test('a surface of the gallery is chosen by a press and by the arrow keys', asyn
   await page.locator('.tile[data-surface="torus"]').click();
   await settled(page);
   expect((await state(page)).surface).toBe('torus');
-  await expect(page.getByRole('heading', { name: 'Torus' })).toBeVisible();
-  await expect(page.getByRole('radio', { name: 'Torus' })).toBeChecked();
+  await expect(page.getByRole('heading', { name: 'Torus', exact: true })).toBeVisible();
+  await expect(page.getByRole('radio', { name: 'Torus', exact: true })).toBeChecked();
   await page.keyboard.press('ArrowLeft');
   await expect.poll(async () => (await state(page)).surface).not.toBe('torus');
   await clean();
