@@ -6,7 +6,7 @@ use super::triangles::{Triangles, area_vector, topology};
 use super::{Options, Scene, Sizes, cover, probe};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
 
 /// Most random places for `quant`: the error falls with their root, the time grows with their number.
@@ -226,6 +226,7 @@ pub(super) fn figures(
     figures.area = options.area.unwrap_or_else(|| area(scene, mesh));
     figures.d_hex = d_hex(figures.area, n + duplicates);
     residuals(scene, &mut figures);
+    (figures.nrm_mean, figures.nrm_max) = scene.tilt;
 
     let inner: Vec<bool> = scene
         .tree
@@ -464,19 +465,28 @@ fn filled(scene: &Scene, triangles: &Triangles, inner: &[bool]) -> f64 {
     share(corners, sectors)
 }
 
-/// Angles between the given normals and the gradient.
-pub(super) fn normals(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field, figures: &mut Figures) {
-    let mut angle = Moments::default();
-    let mut largest = f64::NAN;
-    for (p, n) in position.iter().zip(normal) {
-        let (gradient, n) = (field.jet(p.as_dvec3()).gradient, n.as_dvec3());
-        let (across, along) = (n.cross(gradient).length(), n.dot(gradient).abs());
+/// Angles between given normals and the gradient.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tilt {
+    angle: Moments,
+    largest: f64,
+}
+
+impl Tilt {
+    /// Adds a pair, if both are vectors with a direction.
+    pub(super) fn add(&mut self, normal: Vec3, gradient: DVec3) {
+        let normal = normal.as_dvec3();
+        let (across, along) = (normal.cross(gradient).length(), normal.dot(gradient).abs());
         if across + along > 0.0 && across.is_finite() && along.is_finite() {
             let degrees = libm::atan2(across, along).to_degrees();
-            angle.add(degrees);
-            largest = largest.max(degrees);
+            self.angle.add(degrees);
+            self.largest = self.largest.max(degrees);
         }
     }
-    figures.nrm_mean = angle.mean();
-    figures.nrm_max = largest;
+
+    /// Mean and largest angle in degrees; NaN for none.
+    pub(super) fn figures(&self) -> (f64, f64) {
+        let mean = self.angle.mean();
+        (mean, if mean.is_nan() { mean } else { self.largest })
+    }
 }

@@ -97,6 +97,8 @@ struct Scene {
     /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
     normal: Vec<Vec3>,
     residual: Vec<f64>,
+    /// Mean and largest angle between the given normals (either sign) and ∇f, in degrees.
+    tilt: (f64, f64),
     fans: Fans,
     /// Squared distance to the nearest point is 0 because a duplicate was dropped.
     twin: Vec<bool>,
@@ -107,10 +109,12 @@ impl Scene {
         let tree = Tree::new(position, (0..position.len() as u32).filter(|&i| !drop[i as usize]));
         let mut unit = Vec::with_capacity(tree.len());
         let mut residual = Vec::with_capacity(tree.len());
+        let mut tilt = figures::Tilt::default();
         for (&p, &i) in tree.position.iter().zip(&tree.origin) {
             let jet = field.jet(p.as_dvec3());
             let slope = jet.gradient.length();
             let given = normal.get(i as usize).copied().unwrap_or(Vec3::ZERO);
+            tilt.add(given, jet.gradient);
             unit.push(
                 (jet.gradient / slope)
                     .as_vec3()
@@ -123,7 +127,7 @@ impl Scene {
         }
         let fans = Fans::new(&tree, &unit);
         let twin = tree.origin.iter().map(|&i| twin[i as usize]).collect();
-        Self { tree, normal: unit, residual, fans, twin }
+        Self { tree, normal: unit, residual, tilt: tilt.figures(), fans, twin }
     }
 
     fn nearest(&self, i: usize) -> f64 {
@@ -152,7 +156,6 @@ pub fn measure(
         prepare(position, normal, field, options.area);
     let mut figures = figures::figures(&scene, &triangles, &mesh, field, bounds, options, duplicates);
     figures.not_finite = not_finite;
-    figures::normals(position, normal, field, &mut figures);
 
     let n = position.len();
     let mut report = Report {
