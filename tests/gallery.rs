@@ -218,8 +218,8 @@ fn euler_number(surface: &Surface, n: u32) -> i64 {
             edges.insert((a.min(b), a.max(b)));
         }
     }
-    let (vertices, edges, faces) = (mesh.positions.len(), edges.len(), mesh.indices.len() / 3);
-    i64::try_from(vertices).unwrap() - i64::try_from(edges).unwrap() + i64::try_from(faces).unwrap()
+    let count = |n: usize| i64::try_from(n).expect("meshes are small");
+    count(mesh.positions.len()) - count(edges.len()) + count(mesh.indices.len() / 3)
 }
 
 #[test]

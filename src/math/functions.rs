@@ -372,9 +372,10 @@ pub fn pow(a: f32, b: f32) -> f32 {
     // ln m = 2 artanh s, by its series: s² ≤ 0.0295, the term left out is below 2e-12.
     let s = (m - 1.0) / (m + 1.0);
     let z = s * s;
-    let series =
-        (((((z / 13.0 + 1.0 / 11.0) * z + 1.0 / 9.0) * z + 1.0 / 7.0) * z + 1.0 / 5.0) * z + 1.0 / 3.0) * z
-            + 1.0;
+    let series = (((((z * (1.0 / 13.0) + 1.0 / 11.0) * z + 1.0 / 9.0) * z + 1.0 / 7.0) * z + 1.0 / 5.0) * z
+        + 1.0 / 3.0)
+        * z
+        + 1.0;
     let logarithm = f64::from(e) * core::f64::consts::LN_2 + 2.0 * s * series;
     let logarithm = if size < f32::INFINITY { logarithm } else { f64::INFINITY };
     let logarithm = if size == 0.0 { f64::NEG_INFINITY } else { logarithm };
@@ -385,7 +386,9 @@ pub fn pow(a: f32, b: f32) -> f32 {
     let r = w - (t - ROUNDER_F64) * core::f64::consts::LN_2;
     let k = t.to_bits() as i32;
     // e^r by its series: |r| ≤ 0.35, the term left out is below 3e-10.
-    let p = (((((((r / 40320.0 + 1.0 / 5040.0) * r + 1.0 / 720.0) * r + 1.0 / 120.0) * r + 1.0 / 24.0) * r
+    let p = (((((((r * (1.0 / 40320.0) + 1.0 / 5040.0) * r + 1.0 / 720.0) * r + 1.0 / 120.0) * r
+        + 1.0 / 24.0)
+        * r
         + 1.0 / 6.0)
         * r
         + 0.5)
@@ -432,6 +435,17 @@ loops! {
     cosh_all = cosh,
     tanh_all = tanh,
     cbrt_all = cbrt,
+}
+
+/// [`sin`] of every value, in place, and [`cos`] of it in `cosines`.
+#[inline(never)]
+pub fn sin_cos_all(values: &mut [f32], cosines: &mut [f32]) {
+    for (value, cosine) in values.iter_mut().zip(cosines) {
+        let (k, r) = quadrant(*value);
+        let (s, c) = (sine_polynomial(r), cosine_polynomial(r));
+        *value = turned(k, s, c);
+        *cosine = turned(k.wrapping_add(1), s, c);
+    }
 }
 
 /// [`pow`] of every pair, in place of the first.

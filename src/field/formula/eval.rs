@@ -143,6 +143,24 @@ fn long(rows: &Rows<'_>, i: &Instruction, f: fn(&mut [f32])) {
     }
 }
 
+/// Sine and cosine at once.
+fn sine_cosine(rows: &Rows<'_>, i: &Instruction) {
+    let mut sine = [0.0; BLOCK * LANES];
+    let mut cosine = [0.0; BLOCK * LANES];
+    let (chunks, _) = sine.as_chunks_mut::<LANES>();
+    for (chunk, a) in chunks.iter_mut().zip(rows.row(i.a)) {
+        *chunk = a.get().0;
+    }
+    let length = rows.rows * LANES;
+    functions::sin_cos_all(&mut sine[..length], &mut cosine[..length]);
+    for (register, result) in [(i.out, &sine), (i.b, &cosine)] {
+        let (chunks, _) = result.as_chunks::<LANES>();
+        for (out, chunk) in rows.row(register).iter().zip(chunks) {
+            out.set(Lanes(*chunk));
+        }
+    }
+}
+
 /// A long function of two operands.
 #[inline(always)]
 fn long_binary(rows: &Rows<'_>, i: &Instruction, b: impl Fn(usize) -> Lanes, f: fn(&mut [f32], &[f32])) {
@@ -173,6 +191,8 @@ fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
         }
         Op::Unary(operation) => execute_unary(operation, i, rows),
         Op::Reciprocal => unary(rows, i, |a| Lanes::splat(1.0) / a),
+        Op::SineCosine => sine_cosine(rows, i),
+        Op::Second => unreachable!("removed when registers are allocated"),
         Op::Binary(Binary::Add) => binary(rows, i, |a, b| a + b),
         Op::Binary(Binary::Sub) => binary(rows, i, |a, b| a - b),
         Op::Binary(Binary::Mul) => binary(rows, i, |a, b| a * b),

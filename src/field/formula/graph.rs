@@ -157,6 +157,11 @@ impl Graph {
         self.zero_annihilates = true;
     }
 
+    /// The node's index, if it exists.
+    pub(super) fn find(&self, node: Node) -> Option<Id> {
+        self.index.get(&node).copied()
+    }
+
     /// The node itself, as it is; shared if it exists already.
     pub(super) fn intern(&mut self, node: Node) -> Id {
         if let Some(&id) = self.index.get(&node) {

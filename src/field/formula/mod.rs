@@ -31,6 +31,8 @@ mod operations;
 mod parse;
 mod program;
 mod scalar;
+#[cfg(test)]
+mod tests;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use error::{FormulaError, FormulaErrorKind, utf16_offset};

@@ -19,6 +19,10 @@ pub(super) enum Op {
     Unary(Unary),
     /// 1 / R[a]
     Reciprocal,
+    /// sin R[a]; the register b receives cos R[a].
+    SineCosine,
+    /// The second result of the instruction before; gone once registers are allocated.
+    Second,
     /// R[a] ∘ R[b]
     Binary(Binary),
     /// R[a] ∘ U[b]
@@ -204,6 +208,9 @@ struct Compiler<'a> {
     /// Virtual register of each varying node.
     register: Vec<Option<u32>>,
     uses: Vec<u32>,
+    /// How many registers each node takes to compute if nothing is shared (Sethi & Ullman, "The Generation of
+    /// Optimal Code for Arithmetic Expressions", 1970).
+    need: Vec<u32>,
 }
 
 impl<'a> Compiler<'a> {
@@ -218,6 +225,18 @@ impl<'a> Compiler<'a> {
         for &output in outputs {
             uses[output as usize] += 1;
         }
+        let mut need: Vec<u32> = Vec::with_capacity(graph.len());
+        for node in graph.nodes() {
+            let mut operands = Vec::new();
+            node.operands(|operand| {
+                if !graph.is_uniform(operand) {
+                    operands.push(need[operand as usize]);
+                }
+            });
+            operands.sort_unstable_by(|a, b| b.cmp(a));
+            let held = (0..).zip(&operands).map(|(before, own)| before + own).max();
+            need.push(held.unwrap_or(0).max(1));
+        }
         Self {
             graph,
             outputs,
@@ -226,6 +245,7 @@ impl<'a> Compiler<'a> {
             code: Vec::new(),
             register: vec![None; graph.len()],
             uses,
+            need,
         }
     }
 
@@ -285,23 +305,31 @@ impl<'a> Compiler<'a> {
                 continue;
             }
             let before = stack.len();
-            let mut push = |operand: Id| {
+            let push = |operand: Id| {
                 if !self.graph.is_uniform(operand) && self.register[operand as usize].is_none() {
                     stack.push(operand);
                 }
             };
-            // A product that will be fused is not computed by itself: its factors are needed instead.
-            match self.fusion(top) {
-                Some((product, other)) => {
-                    push(other);
-                    self.graph.node(product).operands(&mut push);
-                }
-                None => self.graph.node(top).operands(&mut push),
-            }
+            self.inputs(top, push);
+            // The one that needs most registers comes first, that is, to the top of the stack: what is computed
+            // before it would have to be kept meanwhile.
+            stack[before..].sort_by_key(|&id| (self.need[id as usize], core::cmp::Reverse(id)));
             if stack.len() == before {
                 self.register[top as usize] = Some(self.emit(top));
                 stack.pop();
             }
+        }
+    }
+
+    /// Calls `visit` with the nodes that the instruction of `id` reads.
+    fn inputs(&self, id: Id, mut visit: impl FnMut(Id)) {
+        // A product that will be fused is not computed by itself: its factors are needed instead.
+        match self.fusion(id) {
+            Some((product, other)) => {
+                visit(other);
+                self.graph.node(product).operands(visit);
+            }
+            None => self.graph.node(id).operands(visit),
         }
     }
 
@@ -356,6 +384,7 @@ impl<'a> Compiler<'a> {
         }
         match self.graph.node(id) {
             Node::Coordinate(axis) => u32::from(axis),
+            Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => self.emit_sine_or_cosine(operation, a),
             Node::Unary(operation, a) => {
                 let a = self.operand(a);
                 self.push(Op::Unary(operation), [a, 0, 0])
@@ -374,6 +403,22 @@ impl<'a> Compiler<'a> {
                 unreachable!("uniform nodes are not scheduled, smooth minima were expanded")
             }
         }
+    }
+
+    /// Sine and cosine of one angle share the reduction of the angle.
+    fn emit_sine_or_cosine(&mut self, operation: Unary, a: Id) -> u32 {
+        let angle = self.operand(a);
+        let other = if operation == Unary::Sin { Unary::Cos } else { Unary::Sin };
+        let partner = self
+            .graph
+            .find(Node::Unary(other, a))
+            .filter(|&partner| self.uses[partner as usize] > 0 && self.register[partner as usize].is_none());
+        let Some(partner) = partner else { return self.push(Op::Unary(operation), [angle, 0, 0]) };
+        let sine = self.push(Op::SineCosine, [angle, 0, 0]);
+        let cosine = self.push(Op::Second, [0, 0, 0]);
+        let (own, partners) = if operation == Unary::Sin { (sine, cosine) } else { (cosine, sine) };
+        self.register[partner as usize] = Some(partners);
+        own
     }
 
     fn emit_binary(&mut self, operation: Binary, a: Id, b: Id) -> u32 {
@@ -473,7 +518,13 @@ impl<'a> Compiler<'a> {
                 }
             }
             real[at] = fresh(&mut free);
-            self.program.instructions.push(Instruction { out: real[at], ..mapped });
+            match instruction.op {
+                Op::Second => {
+                    let first = self.program.instructions.last_mut().expect("it follows its first result");
+                    first.b = real[at];
+                }
+                _ => self.program.instructions.push(Instruction { out: real[at], ..mapped }),
+            }
         }
         for output in &mut self.program.outputs {
             if let Place::Register(register) = output {
@@ -491,10 +542,13 @@ fn index(length: usize) -> u32 {
 /// Which of the operands a, b and c are registers.
 fn register_operands(op: Op) -> [bool; 3] {
     match op {
-        Op::Splat => [false; 3],
-        Op::Unary(_) | Op::Reciprocal | Op::Uniform(_) | Op::Reversed(_) | Op::ScaleAddUniform => {
-            [true, false, false]
-        }
+        Op::Splat | Op::Second => [false; 3],
+        Op::Unary(_)
+        | Op::Reciprocal
+        | Op::SineCosine
+        | Op::Uniform(_)
+        | Op::Reversed(_)
+        | Op::ScaleAddUniform => [true, false, false],
         Op::Binary(_) | Op::MulAddUniform => [true, true, false],
         Op::IfLe | Op::IfGt | Op::MulAdd | Op::MulSub | Op::SubMul => [true; 3],
         Op::ScaleAdd | Op::SquareAdd => [true, false, true],

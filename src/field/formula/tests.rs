@@ -1,0 +1,91 @@
+//! Claims about the compiled form.
+
+use super::graph::Graph;
+use super::operations::{Binary, Unary};
+use super::program::{Op, Program};
+use super::{FormulaField, build, derivative, parse};
+use crate::field::gallery;
+
+fn compiled(text: &str) -> FormulaField {
+    FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
+}
+
+fn operations(program: &Program) -> Vec<Op> {
+    program.instructions.iter().map(|instruction| instruction.op).collect()
+}
+
+#[test]
+fn equal_operations_are_computed_once() {
+    let field = compiled("exp(x y + 1) + exp(1 + y x)^2 + z exp(y x + 1)");
+    let exponentials =
+        operations(&field.value_program).iter().filter(|op| **op == Op::Unary(Unary::Exp)).count();
+    assert_eq!(exponentials, 1);
+}
+
+#[test]
+fn constants_and_parameters_cost_nothing_per_point() {
+    let field = compiled("x + 2*3^2 - sin(1) + a^2 exp(b)");
+    assert_eq!(operations(&field.value_program), [Op::Uniform(Binary::Add)]);
+    let field = compiled("3(2(a x)) + 1 + 2");
+    assert_eq!(operations(&field.value_program), [Op::ScaleAddUniform]);
+}
+
+#[test]
+fn integer_powers_are_products() {
+    for (text, most) in [("x^15", 6), ("x^-15", 7), ("x^64", 6), ("x^6 + x^5", 6)] {
+        let field = compiled(text);
+        let operations = operations(&field.value_program);
+        assert!(operations.len() <= most, "{text}: {operations:?}");
+        assert!(!operations.contains(&Op::Binary(Binary::Pow)), "{text}: {operations:?}");
+        assert!(!operations.contains(&Op::Uniform(Binary::Pow)), "{text}: {operations:?}");
+    }
+}
+
+#[test]
+fn derivatives_hold_no_dead_operations() {
+    // One sum for the value; the gradient is constant.
+    let field = compiled("x + y + z");
+    assert_eq!(operations(&field.gradient_program).len(), 2);
+    // The gradient of a sphere is three products by 2, and no product by a known zero or one.
+    let field = compiled("x^2 + y^2 + z^2 - 1");
+    assert_eq!(operations(&field.gradient_program).len(), 7);
+}
+
+#[test]
+fn sine_and_cosine_of_one_angle_are_one_operation() {
+    let field = gallery::find("gyroid").map(gallery::Surface::field).expect("the gallery has a gyroid");
+    let operations = operations(&field.gradient_program);
+    assert_eq!(operations.iter().filter(|op| **op == Op::SineCosine).count(), 3);
+    assert!(!operations.contains(&Op::Unary(Unary::Sin)) && !operations.contains(&Op::Unary(Unary::Cos)));
+}
+
+#[test]
+fn a_long_sum_needs_few_registers() {
+    let terms: Vec<String> = (1..200).map(|k| format!("exp({k}x y)")).collect();
+    let field = compiled(&terms.join("+"));
+    assert!(field.value_program.registers <= 6, "{}", field.value_program.registers);
+}
+
+#[test]
+fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
+    let point = [0.3, -0.7, 0.4];
+    for surface in gallery::SURFACES {
+        let declared = surface.declared();
+        let names: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
+        let values: Vec<f64> = declared.iter().map(|parameter| parameter.value).collect();
+        let parsed = parse::parse(surface.formula, &names).expect("the gallery parses");
+        let mut graph = Graph::default();
+        let root = build::build(&mut graph, &parsed.equation, &names).expect("the gallery compiles");
+        graph.let_zero_annihilate();
+        let backward = derivative::backward(&mut graph, root);
+        for axis in 0..3_u8 {
+            let forward = derivative::forward(&mut graph, &[root], axis)[0];
+            let mut results: Vec<f64> = Vec::new();
+            for node in graph.nodes() {
+                results.push(node.evaluate(&values, point, |id| results[id as usize]));
+            }
+            let (a, b) = (results[forward as usize], results[backward[usize::from(axis)] as usize]);
+            assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{} axis {axis}: {a} {b}", surface.id);
+        }
+    }
+}

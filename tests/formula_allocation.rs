@@ -1,0 +1,58 @@
+//! Evaluation takes no memory once its buffers have grown.
+#![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::Field;
+use marching_particles::field::gallery::SURFACES;
+use marching_particles::math::Sym3;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// The system's allocator, counting the calls of each thread.
+struct Counting;
+
+thread_local! {
+    static CALLS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        CALLS.set(CALLS.get() + 1);
+        // SAFETY: as promised by our own caller.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: as promised by our own caller.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
+    let points: Vec<Vec3> = (0..777).map(|k| Vec3::new(0.001, 0.002, -0.001) * k as f32).collect();
+    let mut value = vec![0.0; points.len()];
+    let mut gradient = vec![Vec3::ZERO; points.len()];
+    let mut hessian = vec![Sym3::default(); points.len()];
+    for surface in SURFACES {
+        let mut field = surface.field();
+        let mut work = || {
+            if let Some(parameter) = surface.parameters.first() {
+                field.set_parameter(parameter.name, parameter.max).expect("the gallery's own parameter");
+            }
+            field.values(&points, &mut value);
+            field.gradients(&points, &mut value, &mut gradient);
+            field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+            field.jet(DVec3::splat(0.3));
+            field.interval(DVec3::splat(-0.3), DVec3::splat(0.3));
+        };
+        work();
+        let before = CALLS.get();
+        work();
+        assert_eq!(CALLS.get() - before, 0, "{}", surface.id);
+    }
+}
