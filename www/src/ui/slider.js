@@ -42,33 +42,27 @@ export function createSlider(options) {
 
   function createBox() {
     const input = h('input', { type: 'number', class: 'box', id: uniqueId('number'), 'aria-label': `${options.name}, number`, inputmode: 'decimal' });
-    const read = (/** @type {boolean} */ live) => {
+    // A typed number counts once it is finished: half a number is another number.
+    const read = () => {
       const typed = input.valueAsNumber / factor;
-      if (Number.isNaN(typed)) return;
       // The box takes any number within the range, not only the slider's grid.
-      take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), live, input);
+      if (!Number.isNaN(typed)) take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), false);
+      write();
     };
-    input.addEventListener('input', () => { if (input.validity.valid) read(true); });
     input.addEventListener('keydown', (event) => {
       if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
       event.preventDefault();
       take(nudge(scale, value, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey), false);
     });
-    input.addEventListener('change', () => {
-      if (Number.isNaN(input.valueAsNumber)) write();
-      else {
-        read(false);
-        write();
-      }
-    });
+    input.addEventListener('change', read);
     return input;
   }
 
-  /** @param {number} next @param {boolean} live @param {Element} [from] the input that already shows it */
-  function take(next, live, from) {
+  /** @param {number} next @param {boolean} live */
+  function take(next, live) {
     if (next === value && live) return;
     value = next;
-    write(from);
+    write();
     options.change(value, live);
   }
 

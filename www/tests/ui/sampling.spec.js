@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, report, settled, state } from './helpers.js';
+import { open, report, settled, state, typeFormula } from './helpers.js';
 
 test('the settings are those that the core describes, each with its help', async ({ page }) => {
   await open(page);
@@ -80,4 +80,41 @@ test('the particles and the picture can be taken away', async ({ page }) => {
   expect(lines.length).toBe(count + 1);
   const [png] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save picture' }).click()]);
   expect((await readFile(await png.path())).subarray(1, 4).toString()).toBe('PNG');
+});
+
+test('more particles than the limit are asked for first, and the answer is heeded', async ({ page }) => {
+  await open(page);
+  const before = await report(page);
+  const limit = page.locator('.setting[data-setting="max_particles"] input[type=number]');
+  await limit.fill('2000');
+  await limit.press('Enter');
+  const notice = page.locator('.toast');
+  await expect(notice).toContainText('limit is 2,000');
+  expect((await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count))).toBe(before.count);
+  await notice.getByRole('button', { name: 'Sample them anyway' }).click();
+  await settled(page);
+  expect((await report(page)).count).toBe(before.count);
+  expect((await state(page)).settings.max_particles).toBeGreaterThan(before.count);
+});
+
+test('no surface in the box is said in words, with a way out', async ({ page }) => {
+  await open(page);
+  await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
+  await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
+  await expect(page.locator('.figures')).toBeHidden();
+  await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
+  await settled(page);
+  await expect(page.locator('.empty')).toBeHidden();
+  expect((await report(page)).count).toBeGreaterThan(100);
+});
+
+test('a stopped run is labelled and keeps what it has', async ({ page }) => {
+  await open(page);
+  const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
+  await box.fill('0.1');
+  await box.press('Enter');
+  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles.status().busy);
+  await page.getByRole('button', { name: 'Stop', exact: true }).first().click();
+  await expect(page.locator('.caption')).toContainText('Stopped');
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
 });

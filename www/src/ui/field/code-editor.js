@@ -108,7 +108,7 @@ function completion(functions, names) {
 }
 
 const theme = EditorView.theme({
-  '&': { font: '0.8125rem/1.25rem var(--mono)', fontVariantLigatures: 'none', color: 'var(--ink)', maxHeight: '12rem' },
+  '&': { font: 'var(--code-size)/1.25rem var(--mono)', fontVariantLigatures: 'none', color: 'var(--ink)', maxHeight: '12rem' },
   '&.cm-focused': { outline: 'none' },
   '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },
   '.cm-content': { padding: '0.4375rem 0', minHeight: '2.125rem', caretColor: 'var(--ink)' },

@@ -19,7 +19,7 @@ export function mountReport(body, engine, description) {
   // While a run is under way the figures of the one before stay, dimmed.
   let kept = engine.report.peek();
   const report = computed(() => {
-    kept = engine.report.value ?? kept;
+    kept = engine.empty.value ? null : engine.report.value ?? kept;
     return kept;
   });
   effect(() => { body.classList.toggle('stale', engine.report.value === null); });
@@ -30,7 +30,8 @@ export function mountReport(body, engine, description) {
     warnings.hidden = list.length === 0;
     fill(warnings, list.map((text) => h('li', null, text)));
   });
-  const waiting = h('p', { class: 'quiet waiting' }, 'The figures appear when the first run is done.');
+  const waiting = h('p', { class: 'quiet waiting' });
+  bindText(waiting, () => (engine.empty.value ? 'Nothing to measure: there is no surface inside the box.' : 'The figures appear when the first run is done.'));
   effect(() => { waiting.hidden = report.value !== null; });
   const drawn = h('button', { type: 'button', class: 'term' });
   bindText(drawn, () => DRAWN[engine.backend.value]);

@@ -45,7 +45,7 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  */
 function createRow(report, row) {
   const term = h('button', { type: 'button', class: 'term' }, row.label, row.unit ? h('span', { class: 'unit' }, ` ${row.unit}`) : null);
-  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row) }), { tap: true, side: 'left' });
+  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) }), { tap: true, side: 'left' });
   const before = h('td');
   const now = h('td', { class: 'now' });
   effect(() => {
@@ -59,8 +59,13 @@ function createRow(report, row) {
   return h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now);
 }
 
-/** @param {ReportRow} row */
-function idealOf({ ideal, better }) {
+const CHANGES = { better: 'Relaxation made it better.', worse: 'Relaxation made it worse.', same: '' };
+
+/** @param {ReportRow} row @param {Report | null} report */
+function idealOf(row, report) {
+  const { ideal, better } = row;
   const direction = better === 'higher' ? 'Higher is better.' : better === 'lower' ? 'Lower is better.' : '';
-  return [ideal ? `Ideal: ${ideal}${/[.!]$/.test(ideal) ? '' : '.'}` : '', direction].filter(Boolean).join(' ') || undefined;
+  const figures = report && figuresOf(report, row.key);
+  const change = figures ? CHANGES[compare(row, figures.before, figures.now)] : '';
+  return [ideal ? `Ideal: ${ideal}${/[.!]$/.test(ideal) ? '' : '.'}` : '', direction, change].filter(Boolean).join(' ') || undefined;
 }

@@ -10,8 +10,8 @@ export function createTiming(engine) {
   const section = h('div', { class: 'section timing' });
   effect(() => {
     const timing = engine.timing.value;
-    section.hidden = timing === null;
-    if (!timing) return;
+    section.hidden = timing === null || timing.particles === 0;
+    if (!timing || section.hidden) return;
     const longest = Math.max(...PHASES.map(([key]) => timing.seconds[key]), 1e-9);
     fill(
       section,

@@ -45,8 +45,6 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
     if (lost.value) fill(empty, ...emptyState(engine));
     else fill(empty);
   });
-  // The last good surface stays, dimmed, while the formula is wrong; an empty one is no error.
-  effect(() => { stage.classList.toggle('faulty', engine.fieldError.value !== null && engine.state.value.formula.trim() !== ''); });
 }
 
 /** How long the sampling itself took, without the figures. @param {import('../../engine/types.js').Timing | null} timing */
