@@ -1,5 +1,6 @@
 //! Project tasks: serve, test, build, bench.
 
+mod bench;
 mod bundle;
 mod check;
 mod chromium;
@@ -26,6 +27,7 @@ Examples:
   cargo xtask serve --release-site    look at the site as it will be published
   cargo xtask test --fast             format, lint and native tests
   cargo xtask test page browser       only these parts
+  cargo xtask bench --web             the whole job in headless Chromium
   cargo xtask build                   the static site in dist/, for any static host";
 
 /// Tasks of the Marching Particles project.
@@ -51,6 +53,8 @@ enum Task {
     Test(check::Options),
     /// Build the static site into dist/ and hold its size to the budgets.
     Build,
+    /// Run the benches.
+    Bench(bench::Options),
     /// Build the WebAssembly bundles into www/src/wasm (serve, test and build do this by themselves).
     Wasm {
         /// The bundles to build; all of them if none is named.
@@ -79,6 +83,7 @@ fn perform(task: Task) -> Result<()> {
             site::build(&project)?;
             site::report_sizes(&project)
         }
+        Task::Bench(options) => bench::bench(&project, &options),
         Task::Wasm { bundles } => {
             let bundles = if bundles.is_empty() { Bundle::ALL.to_vec() } else { bundles };
             node::prepare(&project)?;
