@@ -274,6 +274,28 @@ fn parameters_can_be_declared_and_changed_without_parsing_again() {
 }
 
 #[test]
+fn an_exponent_may_be_a_parameter_of_any_value() {
+    let mut field = parse("x^p");
+    let points: Vec<Vec3> = [-2.5, -1.0, -0.3, 0.0, 0.7, 1.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0)).to_vec();
+    let mut value = vec![0.0; points.len()];
+    let mut gradient = vec![Vec3::ZERO; points.len()];
+    for p in [-9.0, -8.0, -2.5, -2.0, -1.0, 0.0, 0.5, 1.0, 2.0, 2.000_001, 3.0, 7.0, 8.0, 9.0, 30.0] {
+        field.set_parameter("p", p).unwrap();
+        field.gradients(&points, &mut value, &mut gradient);
+        for (k, point) in points.iter().enumerate() {
+            let exact = libm::pow(f64::from(point.x), f64::from(p as f32));
+            let same = f64::from(value[k]) == exact || value[k].is_nan() && exact.is_nan();
+            let close = (f64::from(value[k]) - exact).abs() <= 1e-6 * exact.abs();
+            assert!(same || close, "{}^{p} = {}, not {exact}", point.x, value[k]);
+            let slope = f64::from(p as f32) * libm::pow(f64::from(point.x), f64::from((p - 1.0) as f32));
+            let close = (f64::from(gradient[k].x) - slope).abs() <= 2e-6 * slope.abs();
+            let same = f64::from(gradient[k].x) == slope || gradient[k].x.is_nan() && slope.is_nan();
+            assert!(same || close, "slope of x^{p} at {}: {}, not {slope}", point.x, gradient[k].x);
+        }
+    }
+}
+
+#[test]
 fn declarations_that_make_no_sense_are_refused() {
     let with = |name: &str, value: f64, min: f64, max: f64| {
         let parameter = Parameter { name: name.into(), label: String::new(), value, min, max, step: 0.1 };

@@ -17,14 +17,16 @@ pub struct Jet {
     pub hessian: Sym3<f64>,
 }
 
-/// A closed interval that holds every value of an expression over a box; NaN bounds never occur.
+/// A closed interval that holds every value of an expression over a box; NaN bounds never occur. The empty
+/// interval, `lo > hi`, says that the expression is defined nowhere in the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower bound, may be −∞.
     pub lo: f64,
     /// Upper bound, may be +∞.
     pub hi: f64,
-    /// Whether the expression is defined (no NaN) everywhere in the box.
+    /// Whether the expression is certainly defined everywhere in the box: no NaN and no pole. At a pole itself the
+    /// value may be an infinity outside the bounds.
     pub defined: bool,
 }
 

@@ -182,6 +182,33 @@ fn long_binary(rows: &Rows<'_>, i: &Instruction, b: impl Fn(usize) -> Lanes, f: 
     }
 }
 
+/// Exponents up to this size are products: faster than a power of two functions, and as accurate.
+const MOST_SMALL_WHOLE: f32 = 8.0;
+
+/// `exponent` as a small whole number other than 0; the exponents of parameters often are.
+fn small_whole(exponent: f32) -> Option<i32> {
+    let small =
+        exponent != 0.0 && exponent.abs() <= MOST_SMALL_WHOLE && functions::floor(exponent) == exponent;
+    #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
+    small.then_some(exponent as i32)
+}
+
+/// a^n by squaring, the reciprocal's power for n < 0.
+#[inline(always)]
+fn whole_power(a: Lanes, n: i32) -> Lanes {
+    let mut square = if n < 0 { Lanes::splat(1.0) / a } else { a };
+    let mut rest = n.unsigned_abs();
+    let mut result = Lanes::splat(1.0);
+    while rest > 0 {
+        if rest & 1 == 1 {
+            result = result * square;
+        }
+        square = square * square;
+        rest >>= 1;
+    }
+    result
+}
+
 fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
     let u = |operand: u32| Lanes::splat(uniforms[operand as usize]);
     match i.op {
@@ -214,7 +241,10 @@ fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
                 Binary::Mul => unary(rows, i, |a| a * b),
                 Binary::Min => unary(rows, i, |a| a.zip(b, functions::min)),
                 Binary::Max => unary(rows, i, |a| a.zip(b, functions::max)),
-                Binary::Pow => long_binary(rows, i, |_| b, functions::pow_all),
+                Binary::Pow => match small_whole(uniforms[i.b as usize]) {
+                    Some(n) => unary(rows, i, |a| whole_power(a, n)),
+                    None => long_binary(rows, i, |_| b, functions::pow_all),
+                },
                 Binary::Sub | Binary::Div | Binary::Atan2 => unreachable!("never compiled with a uniform"),
             }
         }

@@ -82,6 +82,21 @@ impl Parameter {
 }
 
 /// A field f(x, y, z) given by a formula.
+///
+/// ```
+/// use marching_particles::field::Field;
+/// use marching_particles::field::formula::FormulaField;
+///
+/// let mut field = FormulaField::parse("x^2/a^2 + y^2 + z^2 = 1", &[])?;
+/// assert_eq!(field.auto(), ["a"]);
+/// field.set_parameter("a", 2.0)?;
+/// let jet = field.jet((2.0, 0.0, 0.0).into());
+/// assert_eq!((jet.value, jet.gradient.x), (0.0, 1.0));
+///
+/// let error = FormulaField::parse("x^2 + sin y", &[]).unwrap_err();
+/// assert_eq!((error.span.clone(), error.suggestion.as_deref()), (6..11, Some("sin(y)")));
+/// # Ok::<(), marching_particles::field::formula::FormulaError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct FormulaField {
     text: String,
