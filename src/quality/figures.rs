@@ -2,6 +2,7 @@
 
 use super::border;
 use super::fans::unroll;
+use super::tree::{key, unkey};
 use super::triangles::{Triangles, area_vector, topology};
 use super::{Options, Scene, Sizes, cover, probe};
 use crate::field::Field;
@@ -321,29 +322,30 @@ fn residuals(scene: &Scene, figures: &mut Figures) {
 }
 
 fn spacing(scene: &Scene, inner: &[bool], figures: &mut Figures) {
-    let mut distances: Vec<f64> =
-        (0..inner.len()).filter(|&i| inner[i]).map(|i| scene.nearest(i)).filter(|d| d.is_finite()).collect();
-    // A dropped duplicate is a point too, at distance 0 from the one it equals.
-    distances.extend(core::iter::repeat_n(0.0, figures.dup));
-    let mut moments = Moments::default();
-    distances.iter().for_each(|&d| moments.add(d));
-    let Some(smallest) = distances.iter().copied().reduce(f64::min) else {
+    // As sortable keys. A dropped duplicate is a point too, at distance 0 from the one it equals.
+    let mut sorted: Vec<u64> = (0..inner.len())
+        .filter(|&i| inner[i])
+        .map(|i| scene.nearest(i))
+        .filter(|d| d.is_finite())
+        .chain(core::iter::repeat_n(0.0, figures.dup))
+        .map(|d| key(d, 0))
+        .collect();
+    if sorted.is_empty() {
         return;
-    };
-    figures.nn_min = smallest / figures.d_hex;
+    }
+    sorted.sort_unstable();
+    let distance = |k: usize| f64::from(unkey(sorted[k]).0);
+    let mut moments = Moments::default();
+    (0..sorted.len()).for_each(|k| moments.add(distance(k)));
+    figures.nn_min = distance(0) / figures.d_hex;
     figures.rho = figures.nn_min;
     figures.nn_mean = moments.mean() / figures.d_hex;
     figures.nn_cv = moments.variation();
-    figures.nn_ratio = smallest / moments.mean();
-    figures.rho_1 = percentile(&mut distances, 0.01) / figures.d_hex;
-}
-
-/// The value below which the share `at` of the `values` lies, linear between two of them.
-fn percentile(values: &mut [f64], at: f64) -> f64 {
-    let place = at * (values.len() - 1) as f64;
-    let (_, &mut below, above) = values.select_nth_unstable_by(place as usize, f64::total_cmp);
-    let next = above.iter().copied().fold(f64::INFINITY, f64::min);
-    if next.is_finite() { below + (next - below) * place.fract() } else { below }
+    figures.nn_ratio = distance(0) / moments.mean();
+    // The first percentile, linear between two distances.
+    let place = 0.01 * (sorted.len() - 1) as f64;
+    let (below, above) = (distance(place as usize), distance((place as usize + 1).min(sorted.len() - 1)));
+    figures.rho_1 = (below + (above - below) * place.fract()) / figures.d_hex;
 }
 
 fn order(scene: &Scene, inner: &[bool], figures: &mut Figures) {

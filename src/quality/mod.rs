@@ -130,8 +130,8 @@ impl Scene {
         Self { tree, normal: unit, residual, tilt: tilt.figures(), fans, twin }
     }
 
-    fn nearest(&self, i: usize) -> f64 {
-        if self.twin[i] { 0.0 } else { f64::from(self.fans.nearest[i]) }
+    fn nearest(&self, i: usize) -> f32 {
+        if self.twin[i] { 0.0 } else { self.fans.nearest[i] }
     }
 }
 
@@ -167,7 +167,7 @@ pub fn measure(
     for (k, &i) in scene.tree.origin.iter().enumerate() {
         let i = i as usize;
         report.valence[i] = scene.fans.valence(k).min(255) as u8;
-        report.nearest[i] = scene.nearest(k) as f32;
+        report.nearest[i] = scene.nearest(k);
         report.residual[i] = scene.residual[k] as f32;
     }
     for i in 0..n {

@@ -188,8 +188,14 @@ fn split(items: &mut [(Vec3, u32)], first: usize, nodes: &mut Vec<Node>) {
     let node = nodes.len();
     nodes.push(Node { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 });
     if items.len() <= LEAF {
-        // The median search leaves an order that is the library's business; this one is ours.
-        items.sort_unstable_by_key(|item| item.1);
+        // The median search leaves an order that is the library's business; this one, by index, is ours.
+        for k in 1..items.len() {
+            let mut place = k;
+            while place > 0 && items[place - 1].1 > items[place].1 {
+                items.swap(place - 1, place);
+                place -= 1;
+            }
+        }
         return;
     }
     let side = hi - lo;

@@ -1,8 +1,8 @@
 //! Triangles of natural neighbours that their corners agree on, and what they add up to.
 
 use super::fans::Fans;
+use super::tree::{key, unkey};
 use glam::{DVec3, Vec3};
-use std::collections::BTreeSet;
 
 /// The triangles of a set of points; indices in tree order, counter-clockwise round the normal of the first corner.
 #[derive(Debug)]
@@ -57,40 +57,73 @@ impl Triangles {
         if majority.is_empty() && self.single.is_empty() {
             return mesh;
         }
-        // Only edges from corners of disputed triangles can matter.
+        // Only edges between corners of disputed triangles can matter.
         let mut hot = vec![false; position.len()];
         for &i in majority.iter().chain(&self.single).flatten() {
             hot[i as usize] = true;
         }
-        let mut taken: Vec<(u32, u32)> = self.kept[..self.unanimous]
-            .iter()
-            .flat_map(|&triangle| sides(triangle))
-            .filter(|&(a, b)| hot[a as usize] && hot[b as usize])
-            .collect();
-        taken.sort_unstable();
-        let mut added = BTreeSet::new();
-        let free = |added: &BTreeSet<(u32, u32)>, side: (u32, u32)| {
-            taken.binary_search(&side).is_err() && !added.contains(&side)
-        };
+        let between = |&(a, b): &(u32, u32)| hot[a as usize] && hot[b as usize];
+        let undisputed =
+            || self.kept[..self.unanimous].iter().flat_map(|&triangle| sides(triangle)).filter(between);
+        let mut taken = Sides::new(undisputed().count() + 3 * (majority.len() + self.single.len()));
+        undisputed().for_each(|side| taken.insert(side));
         let longest = |triangle: [u32; 3]| {
             sides(triangle)
-                .map(|(a, b)| (position[a as usize] - position[b as usize]).length_squared().to_bits())
+                .map(|(a, b)| (position[a as usize] - position[b as usize]).length_squared())
                 .into_iter()
-                .max()
+                .fold(0.0, f32::max)
         };
         for (disputed, needed) in [(majority, 0), (&self.single[..], 2)] {
-            let mut disputed = disputed.to_vec();
-            disputed.sort_unstable_by_key(|&triangle| (longest(triangle), triangle));
-            for triangle in disputed {
+            let mut order: Vec<u64> =
+                disputed.iter().enumerate().map(|(k, &triangle)| key(longest(triangle), k as u32)).collect();
+            order.sort_unstable();
+            for next in order {
+                let triangle = disputed[unkey(next).1 as usize];
                 let sides = sides(triangle);
-                let open = sides.iter().filter(|&&(a, b)| !free(&added, (b, a))).count();
-                if open >= needed && sides.iter().all(|&side| free(&added, side)) {
-                    added.extend(sides);
+                let open = sides.iter().filter(|&&(a, b)| taken.contains((b, a))).count();
+                if open >= needed && !sides.iter().any(|&side| taken.contains(side)) {
+                    sides.into_iter().for_each(|side| taken.insert(side));
                     mesh.push(triangle);
                 }
             }
         }
         mesh
+    }
+}
+
+/// A set of directed edges.
+struct Sides {
+    /// Open addressing, at most half full.
+    slots: Vec<(u32, u32)>,
+}
+
+impl Sides {
+    /// No edge goes from a point to itself.
+    const EMPTY: (u32, u32) = (u32::MAX, u32::MAX);
+
+    /// A set with room for `most` edges.
+    fn new(most: usize) -> Self {
+        Self { slots: vec![Self::EMPTY; (2 * most + 1).next_power_of_two()] }
+    }
+
+    /// The slot of `side`, or the empty one where it would go.
+    fn slot(&self, side: (u32, u32)) -> usize {
+        let mask = self.slots.len() - 1;
+        let mixed = (u64::from(side.0) << 32 | u64::from(side.1)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut slot = (mixed >> 32) as usize & mask;
+        while self.slots[slot] != side && self.slots[slot] != Self::EMPTY {
+            slot = (slot + 1) & mask;
+        }
+        slot
+    }
+
+    fn contains(&self, side: (u32, u32)) -> bool {
+        self.slots[self.slot(side)] == side
+    }
+
+    fn insert(&mut self, side: (u32, u32)) {
+        let slot = self.slot(side);
+        self.slots[slot] = side;
     }
 }
 
