@@ -131,9 +131,9 @@ pub static SURFACES: &[Surface] = &[
         degree: Some(4),
         genus: Some(1),
         smooth: true,
-        story: "A circle of radius r carried around an axis at distance R. Its Euler number is zero, so \
-                that a perfect covering with six neighbours everywhere is possible; yet it bends inward \
-                on the inside and outward on the outside.",
+        story: "A circle of radius r carried around an axis at distance R; it is dome-shaped on the \
+                outside and saddle-shaped on the inside. Its Euler number is zero, so that a covering \
+                with six neighbours everywhere is possible.",
     },
     Surface {
         id: "dupin-cyclide",
@@ -147,9 +147,9 @@ pub static SURFACES: &[Surface] = &[
         degree: Some(4),
         genus: Some(1),
         smooth: true,
-        story: "A torus seen through a spherical mirror: the tube swells on one side and narrows on the \
-                other. All its lines of curvature are circles, which Charles Dupin found as a student, \
-                before 1803.",
+        story: "A torus seen in a spherical mirror: the tube swells on one side and narrows on the \
+                other. All its lines of curvature are circles, which Charles Dupin found around 1802, \
+                while still a student.",
     },
     Surface {
         id: "tanglecube",
@@ -172,9 +172,9 @@ pub static SURFACES: &[Surface] = &[
         degree: Some(6),
         genus: Some(0),
         smooth: false,
-        story: "Gabriel Taubin's sextic of 1993, made to try out the drawing of implicit surfaces. The \
-                gradient vanishes at the dimple and at the tip, which makes both of them hard for any \
-                method that follows it.",
+        story: "Gabriel Taubin's sextic of the early 1990s, made to try out the drawing of implicit \
+                surfaces. The gradient vanishes at the dimple and at the tip, which makes both of them \
+                hard for any method that follows it.",
     },
     Surface {
         id: "superellipsoid",
@@ -276,9 +276,10 @@ pub static SURFACES: &[Surface] = &[
         degree: None,
         genus: None,
         smooth: true,
-        story: "It divides space into two congruent labyrinths and holds neither a straight line nor a \
-                mirror plane. Alan Schoen found the minimal surface that this formula closely follows in \
-                1970; butterfly wings and soap-like polymers grow it by themselves.",
+        story: "It divides space into two labyrinths, each the mirror image of the other, and holds \
+                neither a straight line nor a plane of symmetry. Alan Schoen found the minimal surface \
+                that this formula closely follows in 1970; butterfly wings and block copolymers grow \
+                it by themselves.",
     },
     Surface {
         id: "schwarz-p",
@@ -290,8 +291,8 @@ pub static SURFACES: &[Surface] = &[
         genus: None,
         smooth: true,
         story: "The primitive surface of Hermann Amandus Schwarz: chambers joined by necks along the \
-                edges of a cubic lattice. The formula follows the true minimal surface to within a few \
-                parts in a hundred.",
+                edges of a cubic lattice. The formula is the first term of the true minimal surface's \
+                Fourier series, and already hard to tell from it.",
     },
     Surface {
         id: "schwarz-d",
@@ -339,9 +340,9 @@ pub static SURFACES: &[Surface] = &[
         degree: Some(4),
         genus: None,
         smooth: false,
-        story: "A quartic surface with sixteen cone points, the most possible, sitting on a sphere of \
-                radius mu and a tetrahedron of four planes. Ernst Kummer met the family in 1864 while \
-                studying rays of light.",
+        story: "A quartic surface with sixteen cone points, the most possible, built from a sphere of \
+                radius mu and the four planes of a tetrahedron. Ernst Kummer met the family in 1864 \
+                while studying bundles of light rays.",
     },
     Surface {
         id: "barth-sextic",
@@ -352,9 +353,9 @@ pub static SURFACES: &[Surface] = &[
         degree: Some(6),
         genus: None,
         smooth: false,
-        story: "The record holder among surfaces of degree six: 65 cone points, arranged with the \
-                symmetry of an icosahedron, fifteen of them at infinity. Wolf Barth constructed it in \
-                1996, after it had been thought for decades that 64 was the limit.",
+        story: "65 cone points, arranged with the symmetry of an icosahedron, fifteen of them at \
+                infinity: no surface of degree six has more. Wolf Barth found it in 1996, half a \
+                century after a supposed proof that 52 was the limit.",
     },
     Surface {
         id: "klein-bottle",

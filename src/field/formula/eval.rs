@@ -12,7 +12,7 @@ use core::cell::Cell;
 use glam::Vec3;
 
 /// Most lanes of eight points in a block.
-pub(super) const BLOCK: usize = 8;
+pub(super) const BLOCK: usize = 16;
 
 /// Bytes of the register file that should not be exceeded: half of a small first-level cache.
 const FILE_BYTES: usize = 16 * 1024;
