@@ -79,3 +79,49 @@ export function mathElement(source) {
   const math = root.children.find((child) => typeof child !== 'string' && child.name === 'math');
   return math ? /** @type {Element} */ (build(math)) : null;
 }
+
+/** Where a long formula may go on in the next line: before these. */
+const BREAKS = new Set(['=', '+', '−', '-', '<', '>', '≤', '≥', '\u2062']);
+/** Invisible multiplication: breaks, but shows nothing. */
+const INVISIBLE = '\u2062';
+
+/** @param {MathNode | string} node */
+const operatorOf = (node) => (typeof node !== 'string' && node.name === 'mo' && typeof node.children[0] === 'string' ? node.children[0] : null);
+
+/**
+ * The formula in pieces that may stand in different lines: sums and products outside brackets are taken apart.
+ * @param {MathNode} node a `math` or `mrow` element
+ * @returns {(MathNode | string)[][]}
+ */
+export function piecesOfMath(node) {
+  /** @type {(MathNode | string)[][]} */
+  const pieces = [[]];
+  for (const child of node.children) {
+    const operator = operatorOf(child);
+    if (operator !== null && BREAKS.has(operator)) {
+      // At the head of a piece it would be taken for a sign and lose its spaces.
+      pieces.push(operator === INVISIBLE || typeof child === 'string' ? [] : [{ ...child, attributes: [...child.attributes, ['form', 'infix']] }]);
+      continue;
+    }
+    const parts = typeof child !== 'string' && isOpen(child) ? piecesOfMath(child) : [[child]];
+    pieces.at(-1)?.push(...parts[0]);
+    pieces.push(...parts.slice(1));
+  }
+  return pieces.filter((piece) => piece.length > 0);
+}
+
+/** A row that is not in brackets. @param {MathNode} node */
+function isOpen({ name, children }) {
+  const operator = children.length > 0 ? operatorOf(children[0]) : null;
+  return name === 'mrow' && (operator === null || BREAKS.has(operator));
+}
+
+/**
+ * The formula as several elements, between which a line may end.
+ * @param {string} source
+ */
+export function mathPieces(source) {
+  const math = parseMath(source).children.find((child) => typeof child !== 'string' && child.name === 'math');
+  if (!math || typeof math === 'string') return [];
+  return piecesOfMath(math).map((children) => build({ name: 'math', attributes: [['displaystyle', 'true']], children: [{ name: 'mrow', attributes: [], children }] }));
+}

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { parseMath } from '../../src/ui/mathml.js';
+import { parseMath, piecesOfMath } from '../../src/ui/mathml.js';
 
 /** @param {import('../../src/ui/mathml.js').MathNode | string} node @returns {string} */
 const write = (node) => (typeof node === 'string' ? node : `${node.name}${node.attributes.map(([k, v]) => `[${k}=${v}]`).join('')}(${node.children.map(write).join(' ')})`);
@@ -25,5 +25,14 @@ describe('MathML', () => {
     expect(write(parseMath('<math><mrow><mi>x'))).toBe('(math(mrow(mi(x))))');
     expect(write(parseMath('</math></math>x'))).toBe('(x)');
     expect(write(parseMath('<<<'))).toBe('()');
+  });
+
+  it('is taken apart at sums and products outside brackets, nowhere else', () => {
+    const source = '<math><mrow><mrow><mi>a</mi><mo>+</mo><mrow><mo>(</mo><mrow><mi>b</mi><mo>−</mo><mi>c</mi></mrow><mo>)</mo></mrow><mo>\u2062</mo><mfrac><mrow><mi>x</mi><mo>+</mo><mi>y</mi></mrow><mn>2</mn></mfrac></mrow><mo>=</mo><mn>1</mn></mrow></math>';
+    const math = parseMath(source).children[0];
+    if (typeof math === 'string') throw new Error('no element');
+    expect(piecesOfMath(math).map((piece) => piece.map(write).join(' '))).toEqual([
+      'mi(a)', 'mo[form=infix](+) mrow(mo(() mrow(mi(b) mo(−) mi(c)) mo()))', 'mfrac(mrow(mi(x) mo(+) mi(y)) mn(2))', 'mo[form=infix](=) mn(1)',
+    ]);
   });
 });

@@ -23,6 +23,8 @@ describe('the report', () => {
     expect(writeFigure(row(), 0.9671)).toBe('96.7');
     expect(writeFigure(row({ unit: '', digits: 0 }), 55748)).toBe('55,748');
     expect(writeFigure(row({ unit: 'r', digits: 3 }), 1.2)).toBe('1.200');
+    expect(writeFigure(row({ unit: '', digits: 3 }), 967.7634)).toBe('967.76');
+    expect(writeFigure(row({ unit: '', digits: 3 }), -123456.7)).toBe('−123,457');
     expect(writeFigure(row({ unit: '', digits: 6 }), 0.0000532)).toBe('5.3·10⁻⁵');
     expect(writeFigure(row({ unit: '', digits: 6 }), 0)).toBe('0');
     expect(writeFigure(row(), null)).toBe('–');

@@ -1,12 +1,13 @@
 /** The formula: an editor, what is wrong with it and how to mend that, and how it reads as mathematics. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { mathElement } from '../mathml.js';
+import { mathElement, mathPieces } from '../mathml.js';
 import { describeFault, piecesOf } from './fault.js';
 import { createTextarea } from './textarea.js';
 import { openFunctions } from './functions.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
+
 /** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
 /**
  * What both editors can do. Offsets are UTF-16 code units.
@@ -31,6 +32,7 @@ export function createFormula(engine, description) {
   const holder = h('div', { class: 'editor', id: 'formula' });
   const shown = computed(() => engine.state.value.formula);
   const fault = computed(() => engine.fieldError.value);
+  const mathSource = computed(() => engine.fieldPreview.value ?? engine.field.value?.mathml ?? '');
 
   /** @type {Editor} */
   let editor = createTextarea({ text: shown.peek(), change: (text) => engine.setFormula(text), focused: upgrade });
@@ -96,12 +98,26 @@ export function createFormula(engine, description) {
     render();
   });
   effect(() => {
-    const source = engine.fieldPreview.value ?? engine.field.value?.mathml ?? '';
-    const math = mathElement(source);
-    math?.setAttribute('display', 'block');
-    fill(preview, math);
+    void mathSource.value;
+    fit();
     preview.classList.toggle('stale', engine.fieldError.value !== null);
   });
+  /** A formula too long for one line goes on in the next, and is taken apart only then. */
+  function fit() {
+    const source = mathSource.peek();
+    const math = mathElement(source);
+    math?.setAttribute('display', 'block');
+    preview.classList.remove('long');
+    fill(preview, math);
+    if (preview.scrollWidth <= preview.clientWidth + 1) return;
+    preview.classList.add('long');
+    fill(preview, mathPieces(source).flatMap((piece) => [piece, h('wbr')]));
+  }
+  let width = 0;
+  new ResizeObserver(() => {
+    if (preview.clientWidth !== width) fit();
+    width = preview.clientWidth;
+  }).observe(preview);
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
     editor.focus();

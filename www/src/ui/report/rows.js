@@ -34,6 +34,8 @@ export function figuresOf(report, key) {
   };
 }
 
+/** Digits of a figure in all: decimals of large numbers say nothing. */
+const MOST_DIGITS = 5;
 /** More decimals than this are not written out. */
 const TINY_DIGITS = 4;
 
@@ -44,7 +46,9 @@ export function writeFigure({ digits, unit }, value) {
   if (unit === '%') return formatFixed(value * 100, digits);
   // So many decimals are there for very small figures, which read better as powers of ten.
   if (digits > TINY_DIGITS) return value === 0 ? '0' : formatSignificant(value, 2);
-  return digits === 0 ? formatCount(value) : formatFixed(value, digits);
+  if (digits === 0) return formatCount(value);
+  const whole = Math.max(0, Math.floor(Math.log10(Math.abs(value) || 1)));
+  return formatFixed(value, Math.max(0, Math.min(digits, MOST_DIGITS - 1 - whole)));
 }
 
 /**
