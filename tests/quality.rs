@@ -531,3 +531,24 @@ fn histogram_counts_every_particle_once() {
     let near: u32 = h.bins[bin as usize - 8..bin as usize + 9].iter().sum();
     assert!(near > 900, "{near} of 1000 near the mean");
 }
+
+#[test]
+fn icosahedron_has_five_neighbours_everywhere() {
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+    let mut points = Vec::new();
+    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        for p in [DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)] {
+            points.push((p / (1.0 + golden * golden).sqrt()).as_vec3());
+        }
+    }
+    let report = measure(&points, &points, &mut sphere(), None, &Options::default());
+    let f = report.figures;
+    assert_eq!(report.valence, [5; 12]);
+    assert_eq!((f.euler, f.components, f.open), (2, 1, 0));
+    close("tri_ok", f.tri_ok, 1.0, 0.0);
+    close("ang_min", f.ang_min, 60.0, 1e-4);
+    close("five_seven", f.five_seven, 1.0, 0.0);
+    close("edge_cv", f.edge_cv, 0.0, 1e-6);
+    // |mean of exp(6i·72°k)| over five directions is 0.
+    close("psi6", f.psi6, 0.0, 1e-5);
+}
