@@ -91,9 +91,15 @@ fn facing_axis(n: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     return normalize(t);
 }
 
-// From the centre to a point of the rim, on the screen, in pixels.
-fn axis_px(centre: vec4<f32>, rim: vec4<f32>) -> vec2<f32> {
-    return 0.5 * frame.viewport * (rim.xy / rim.w - centre.xy / centre.w);
+// A direction of the world in clip space.
+fn clip_direction(d: vec3<f32>) -> vec4<f32> {
+    let m = frame.clip_from_world;
+    return d.x * m[0] + d.y * m[1] + d.z * m[2];
+}
+
+// How the projection of `centre` moves on the screen, in pixels, when it moves along `direction` (both in clip space).
+fn moved_px(centre: vec4<f32>, direction: vec4<f32>) -> vec2<f32> {
+    return 0.5 * frame.viewport * (direction.xy - centre.xy * (direction.w / centre.w)) / centre.w;
 }
 
 // 1 for a point, 0 for a disc, by its larger half axis.
@@ -136,12 +142,14 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32) -> Disc {
     let n = select(outward, -outward, behind);
     let t = facing_axis(n, v);
     let b = cross(n, t);
+    let clip_t = clip_direction(t);
+    let clip_b = clip_direction(b);
     let plain_r = particle.radius * frame.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
-    let plain_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + plain_r * t, 1.0));
+    let plain_px = plain_r * moved_px(centre, clip_t);
     let swell = mix(CLOSED, 1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, length(plain_px)));
     let r = swell * plain_r;
     let a_px = swell * plain_px;
-    let b_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * b, 1.0));
+    let b_px = r * moved_px(centre, clip_b);
     let axes = max(vec2<f32>(length(a_px), length(b_px)), vec2<f32>(1e-4));
     let a_dir = a_px / axes.x;
     // An axis that points at the eye has no direction of its own on the screen.
@@ -151,10 +159,9 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32) -> Disc {
     let reach = 1.0 + PAD_PX / axes;
     let in_plane = corner * min(reach, vec2<f32>(MAX_REACH));
     let on_screen = corner * (reach - min(reach, vec2<f32>(MAX_REACH))) * axes;
-    let world = particle.position + r * (in_plane.x * t + in_plane.y * b);
-    out.clip = frame.clip_from_world * vec4<f32>(world, 1.0);
+    out.clip = centre + r * (in_plane.x * clip_t + in_plane.y * clip_b);
     out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.viewport * out.clip.w, 0.0, 0.0);
-    let deeper = frame.clip_from_world * vec4<f32>(world - point_depth * pointness(axes) * r * v, 1.0);
+    let deeper = out.clip - point_depth * pointness(axes) * r * clip_direction(v);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
 
     out.uv = corner * reach;
@@ -257,7 +264,7 @@ fn vs_ring(@builtin(vertex_index) vertex: u32, particle: Particle) -> Ring {
     let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
     let t = facing_axis(n, v);
     let r = particle.radius * frame.disc_scale;
-    let a_px = axis_px(centre, frame.clip_from_world * vec4<f32>(particle.position + r * t, 1.0));
+    let a_px = r * moved_px(centre, clip_direction(t));
     let a = max(length(a_px), 1e-4);
     let squash = max(abs(dot(n, v)), RING_SQUASH);
     let grow = (RING_GAP + 0.5 * RING_WIDTH) * frame.pixel_ratio;

@@ -12,7 +12,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wasm_bindgen::prelude::*;
-use wasm_bindgen_futures::{JsFuture, future_to_promise};
+use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
 
 /// Particles copied at a time, so that a million need no second copy of themselves in this memory.
@@ -48,7 +48,8 @@ impl Renderer {
     /// Opens a graphics device on `canvas`, which must have no context of another kind yet.
     ///
     /// `on_lost(reason, message)` is called once, when the device is gone; reason is "unknown" or "destroyed".
-    /// `on_error(message)` is called when the device refuses a call; drawing goes on.
+    /// `on_error(message)` is called when the device refuses a call; drawing goes on. Both are called after the method
+    /// that caused them has returned, and may use the renderer.
     ///
     /// # Errors
     ///
@@ -59,14 +60,11 @@ impl Renderer {
         on_error: Function,
     ) -> Result<Renderer, JsError> {
         console_error_panic_hook::set_once();
-        // What a callback throws is its own affair: there is no caller to hand it to.
         let callbacks = Callbacks {
             on_lost: Arc::new(move |reason, message| {
-                let _ = on_lost.call2(&JsValue::NULL, &reason.into(), &message.into());
+                call_later(&on_lost, Array::of2(&reason.into(), &message.into()));
             }),
-            on_error: Arc::new(move |message| {
-                let _ = on_error.call1(&JsValue::NULL, &message.into());
-            }),
+            on_error: Arc::new(move |message| call_later(&on_error, Array::of1(&message.into()))),
         };
         let target = wgpu::SurfaceTarget::Canvas(canvas.clone());
         let inner = Rc::new(RefCell::new(Inner::new(target, callbacks).await?));
@@ -250,6 +248,9 @@ impl Renderer {
     /// Gives the device and its memory back; later calls do nothing. `on_lost` hears "destroyed".
     pub fn destroy(&self) {
         self.inner.borrow().destroy();
+        if cfg!(feature = "webgl") {
+            lose_context(&self.canvas);
+        }
     }
 }
 
@@ -261,6 +262,29 @@ impl Drop for Renderer {
             self.on_context_lost.as_ref().unchecked_ref(),
         );
     }
+}
+
+/// Calls `callback` once the JavaScript that runs now has returned: wgpu reports from within calls, when the renderer is
+/// borrowed. What the callback throws is its own affair; there is no caller to hand it to.
+fn call_later(callback: &Function, arguments: Array) {
+    let callback = callback.clone();
+    spawn_local(async move {
+        let _ = callback.apply(&JsValue::NULL, &arguments);
+    });
+}
+
+/// Lets go of a canvas's WebGL context now. A browser keeps sixteen, and else would wait for its garbage collector.
+fn lose_context(canvas: &HtmlCanvasElement) {
+    let lose = || -> Result<(), JsValue> {
+        let context = canvas.get_context("webgl2")?.ok_or(JsValue::NULL)?;
+        let method =
+            |object: &JsValue, name: &str| Reflect::get(object, &name.into())?.dyn_into::<Function>();
+        let extension = method(&context, "getExtension")?.call1(&context, &"WEBGL_lose_context".into())?;
+        method(&extension, "loseContext")?.call0(&extension)?;
+        Ok(())
+    };
+    // Where the extension is missing, the garbage collector does it.
+    let _ = lose();
 }
 
 fn check_end(first: u32, count: u32) -> Result<(), JsError> {
