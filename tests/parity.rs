@@ -12,12 +12,12 @@ use std::path::PathBuf;
 /// The golden file.
 #[derive(Serialize, Deserialize)]
 struct Golden {
-    cases: Vec<Case>,
+    runs: Vec<Run>,
 }
 
 /// A run and what it must give.
 #[derive(Serialize, Deserialize)]
-struct Case {
+struct Run {
     name: String,
     field: serde_json::Value,
     settings: serde_json::Value,
@@ -28,7 +28,7 @@ struct Case {
 /// Units of work per step; any other number must give the same particles, and the other side uses another.
 const BUDGET: u32 = 100_000;
 
-fn run(case: &Case) -> (usize, String) {
+fn run(case: &Run) -> (usize, String) {
     let field: FieldRequest = serde_json::from_value(case.field.clone())
         .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
     let settings: Settings = serde_json::from_value(case.settings.clone())
@@ -45,10 +45,10 @@ fn runs_have_the_digests_that_other_platforms_give() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/digests.json");
     let text = std::fs::read_to_string(&path).expect("the golden file can be read");
     let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
-    assert!(golden.cases.len() >= 3, "{} holds {} cases", path.display(), golden.cases.len());
+    assert!(golden.runs.len() >= 3, "{} holds {} runs", path.display(), golden.runs.len());
     let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
     let mut faults = Vec::new();
-    for case in &mut golden.cases {
+    for case in &mut golden.runs {
         let (count, digest) = run(case);
         assert!(count > 500, "{}: {count} particles are too few to show anything", case.name);
         if update {

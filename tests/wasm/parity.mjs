@@ -29,10 +29,10 @@ function sample({ name, field, settings }) {
   return result;
 }
 
-const { cases } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
-if (cases.length < 3) throw new Error(`only ${cases.length} cases`);
+const { runs } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
+if (runs.length < 3) throw new Error(`only ${runs.length} runs`);
 let failures = 0;
-for (const run of cases) {
+for (const run of runs) {
   const { count, digest } = sample(run);
   const same = count === run.count && digest === run.digest;
   failures += same ? 0 : 1;
