@@ -24,6 +24,7 @@ export function mountInterface(engine) {
   const layout = mountLayout({
     shell,
     view,
+    nav: byId('tabs'),
     panels: [
       { id: 'field', title: 'Field', panel: field, head: head(field) },
       { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools },
@@ -53,7 +54,7 @@ export function mountInterface(engine) {
 
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start') });
   mountHover(stage, engine);
-  layout.nav.append(goButton(engine));
+  byId('tabs').append(goButton(engine));
 
   let mounted = false;
   effect(() => {

@@ -3,8 +3,6 @@ import { h } from './dom.js';
 import { explain } from './explain.js';
 import { icon } from './icons.js';
 
-/** The same condition as in layout.css. */
-const COMPACT = '(max-width: 719px), (max-height: 479px)';
 /** Below this width the report starts folded, so that the picture has room. */
 const NARROW = '(max-width: 1079px)';
 
@@ -14,11 +12,11 @@ const NARROW = '(max-width: 1079px)';
  * @param {object} parts
  * @param {HTMLElement} parts.shell
  * @param {HTMLElement} parts.view
+ * @param {HTMLElement} parts.nav
  * @param {Panel[]} parts.panels
  * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
  */
-export function mountLayout({ shell, view, panels, inset }) {
-  const compact = matchMedia(COMPACT);
+export function mountLayout({ shell, view, nav, panels, inset }) {
   const folds = panels.map((panel) => createFold(panel));
   for (const { button, host } of folds) host.append(button);
   if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
@@ -26,8 +24,7 @@ export function mountLayout({ shell, view, panels, inset }) {
   const tabs = panels.map(({ title, panel }) => h('button', {
     type: 'button', class: 'button tab', 'aria-controls': panel.id, 'aria-expanded': 'false', on: { click: () => toggle(panel) },
   }, title));
-  const nav = h('nav', { class: 'tabs', 'aria-label': 'Panels' }, tabs);
-  shell.append(nav);
+  nav.append(...tabs);
 
   /** @param {HTMLElement | null} active */
   function activate(active) {
@@ -59,8 +56,6 @@ export function mountLayout({ shell, view, panels, inset }) {
   measure();
 
   return {
-    nav,
-    compact,
     toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
   };
 }

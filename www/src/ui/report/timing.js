@@ -5,12 +5,15 @@ import { formatSeconds, formatSignificant } from '../format.js';
 
 const PHASES = /** @type {const} */ ([['seeding', 'Seeding'], ['generation', 'Generation'], ['relaxation', 'Relaxation'], ['quality', 'Quality figures']]);
 
-/** @param {import('../../engine/types.js').Engine} engine */
-export function createTiming(engine) {
+/**
+ * @param {import('../../engine/types.js').Engine} engine
+ * @param {import('@preact/signals-core').ReadonlySignal<unknown>} report the times appear together with the figures
+ */
+export function createTiming(engine, report) {
   const section = h('div', { class: 'section timing' });
   effect(() => {
     const timing = engine.timing.value;
-    section.hidden = timing === null || timing.particles === 0;
+    section.hidden = timing === null || timing.particles === 0 || report.value === null;
     if (!timing || section.hidden) return;
     const longest = Math.max(...PHASES.map(([key]) => timing.seconds[key]), 1e-9);
     fill(
