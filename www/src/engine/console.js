@@ -76,10 +76,11 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
       const report = engine.report.peek();
       // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
       const show = () => {
-        if (viewer.asked !== 0 && !document.hidden) requestAnimationFrame(show);
+        if ((viewer.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
         else setTimeout(() => resolve(report), CAMERA_MS + 10);
       };
-      show();
+      // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
+      setTimeout(show);
       queueMicrotask(() => stop());
     });
   });

@@ -89,7 +89,10 @@ export class Viewer {
     this.camera.calm = this.calm.matches;
     this.calm.onchange = () => {
       this.camera.calm = this.calm.matches;
-      if (this.calm.matches) this.reveal.end();
+      if (this.calm.matches && this.reveal.active) {
+        this.reveal.end();
+        this.onReveal(null);
+      }
       this.invalidate();
     };
     this.keeper = new DeviceKeeper({
@@ -121,6 +124,7 @@ export class Viewer {
   begin({ grow }) {
     if (grow && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
     else this.reveal.end();
+    this.onReveal(this.reveal.active ? { level: 0, levels: 0, particles: 0 } : null);
     this.highlight = -1;
     this.style_due = true;
     this.dirty = { first: 0, last: 0 };
@@ -251,8 +255,8 @@ export class Viewer {
     this.measure();
     this.dirty = { first: 0, last: this.columns.count };
     this.style_due = true;
-    this.onDevice(device);
     this.invalidate();
+    this.onDevice(device);
   }
 
   flush() {
