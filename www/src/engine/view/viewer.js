@@ -31,6 +31,9 @@ const FADE_S = 0.12;
 /** Time the picture takes to dim or come back. */
 const DIM_S = 0.15;
 const DIM = 0.62;
+/** A picture that the screen did not take is drawn again this much later, and so many times. */
+const RETRY_MS = 60;
+const MOST_SKIPS = 20;
 /** Discs smaller than this are picked by their neighbourhood, in page pixels. */
 const PICK_PX = 6;
 
@@ -77,6 +80,9 @@ export class Viewer {
     /** Called when what they wait for is on screen. @type {(() => void)[]} */
     this.waiting = [];
     this.frames = 0;
+    this.skipped = 0;
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    this.retry = undefined;
     this.last_s = 0;
     this.asked = 0;
     this.width = 0;
@@ -276,11 +282,19 @@ export class Viewer {
     // After a pause the first step is one frame long: nothing jumps.
     const dt = Math.min(now - this.last_s, 1 / 20);
     this.last_s = now;
+    const before = this.camera.state;
     const moving = this.camera.step(dt);
-    if (moving) this.onCamera(this.camera.state);
+    if (this.camera.state !== before) this.onCamera(this.camera.state);
     try {
       this.tell(device, now);
-      if (device.renderer.draw(now) === 'drawn') this.frames += 1;
+      if (device.renderer.draw(now) === 'drawn') {
+        this.frames += 1;
+        this.skipped = 0;
+      } else if (this.width > 0 && this.height > 0 && this.skipped < MOST_SKIPS) {
+        // The screen was not ready to take a picture; what was to be seen has not been seen.
+        this.skipped += 1;
+        this.retry = setTimeout(() => this.invalidate(), RETRY_MS);
+      }
     } catch (error) {
       // The renderer trapped: its instance is not to be called again.
       this.flush();
@@ -433,6 +447,7 @@ export class Viewer {
 
   destroy() {
     cancelAnimationFrame(this.asked);
+    clearTimeout(this.retry);
     this.resizes.disconnect();
     this.calm.onchange = null;
     document.removeEventListener('visibilitychange', this.onVisible);
