@@ -1,5 +1,5 @@
 /** The gallery: one picture per surface, chosen like radio buttons. */
-import { effect } from '@preact/signals-core';
+import { computed, effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 
@@ -32,11 +32,11 @@ export function createGallery(engine, description) {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
   }
 
+  const chosen = computed(() => (engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface));
   effect(() => {
-    const { surface } = engine.state.value;
-    const field = engine.field.value;
-    const own = field !== null && field.surface === null;
-    for (const [id, input] of inputs) input.checked = !own && id === surface;
+    for (const [id, input] of inputs) input.checked = id === chosen.value;
+    // In a strip the chosen one may stand outside: bring it in.
+    if (chosen.value) inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   });
   return h('fieldset', { class: 'section gallery' }, h('legend', { class: 'visually-hidden' }, 'Surface'), tiles);
 }

@@ -2,8 +2,6 @@
 import uPlot from 'uplot';
 import { formatSignificant } from '../format.js';
 
-const HEIGHT_PX = 96;
-
 /** @param {string} name */
 const token = (name) => {
   // A canvas does not resolve light-dark(): let an element do it.
@@ -38,7 +36,7 @@ export function drawHistogram(host, { min, max, bins }) {
   const plot = new uPlot(
     {
       width: Math.max(host.clientWidth, 50),
-      height: HEIGHT_PX,
+      height: Math.max(host.clientHeight, 50),
       padding: [6, 8, 0, 8],
       legend: { show: false },
       cursor: { show: false },
@@ -53,7 +51,7 @@ export function drawHistogram(host, { min, max, bins }) {
     [xs, bins],
     host,
   );
-  const observer = new ResizeObserver(() => { if (host.clientWidth > 0) plot.setSize({ width: host.clientWidth, height: HEIGHT_PX }); });
+  const observer = new ResizeObserver(() => { if (host.clientWidth > 0) plot.setSize({ width: host.clientWidth, height: host.clientHeight }); });
   observer.observe(host);
   plots.set(host, { plot, colours, observer });
 }
