@@ -129,8 +129,10 @@ pub struct Progress {
 pub struct Counts {
     /// Evaluations of the survey.
     pub seeding_evaluations: u64,
-    /// Evaluations of the fronts, all attempts.
+    /// Evaluations of the fronts, all attempts at a wanted count.
     pub generation_evaluations: u64,
+    /// Evaluations of the fronts of the last attempt, which placed the particles.
+    pub front_evaluations: u64,
     /// Evaluations of the relaxation.
     pub relaxation_evaluations: u64,
     /// Fates of the children of the last attempt.
@@ -301,6 +303,7 @@ impl Sampler {
             self.settings.max_particles as usize,
         );
         self.counts.seeds = 0;
+        self.counts.front_evaluations = 0;
         self.next_seed = 0;
         let candidates = self.survey.position.len() as u64;
         self.phase = Phase::Seeding;
@@ -356,6 +359,7 @@ impl Sampler {
                         left,
                     );
                     self.counts.generation_evaluations += self.projector.evaluations - start;
+                    self.counts.front_evaluations += self.projector.evaluations - start;
                     if self.front.is_done() {
                         self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
                         if self.front.capped {

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 /// Points per call of the field. Large enough to hide the cost of a call, small enough to stay in the first-level
 /// cache; a point's result does not depend on it.
-pub(super) const BATCH: usize = 64;
+pub(super) const BATCH: usize = 128;
 
 /// Most Newton steps on one circle; a good guess takes two evaluations.
 const MAX_NEWTON_STEPS: u32 = 12;

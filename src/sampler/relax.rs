@@ -361,9 +361,10 @@ impl Relaxation {
             self.failures = 0;
             self.done += 1;
         }
-        if self.energy.len() == self.done as usize {
-            self.energy.push(energy);
-        }
+        // After a step taken back this is the energy of the same positions again; it differs only where a normal has
+        // turned past 90° from a neighbour's, on creases that the radius does not resolve.
+        self.energy.truncate(self.done as usize);
+        self.energy.push(energy);
         if self.done >= self.target || self.failures > MAX_FAILURES {
             self.has_previous = false;
             return self.enter(Stage::Polish);

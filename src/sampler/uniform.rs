@@ -66,14 +66,20 @@ pub struct FateCounts {
 
 impl FateCounts {
     fn count(&mut self, fate: SlotFate) {
+        if let Some(count) = self.of(fate) {
+            *count += 1;
+        }
+    }
+
+    fn of(&mut self, fate: SlotFate) -> Option<&mut u64> {
         match fate {
-            SlotFate::Added => self.added += 1,
-            SlotFate::Matched => self.matched += 1,
-            SlotFate::NotConverged => self.not_converged += 1,
-            SlotFate::Outside => self.outside += 1,
-            SlotFate::Undefined => self.undefined += 1,
-            SlotFate::Capped => self.capped += 1,
-            SlotFate::Open | SlotFate::Parent => {}
+            SlotFate::Added => Some(&mut self.added),
+            SlotFate::Matched => Some(&mut self.matched),
+            SlotFate::NotConverged => Some(&mut self.not_converged),
+            SlotFate::Outside => Some(&mut self.outside),
+            SlotFate::Undefined => Some(&mut self.undefined),
+            SlotFate::Capped => Some(&mut self.capped),
+            SlotFate::Open | SlotFate::Parent => None,
         }
     }
 }
@@ -229,6 +235,11 @@ impl Front {
             self.grid.gather(particles.position[last], 2.0 * self.radius, &mut self.found);
             if self.found.len() > 1 {
                 self.grid.remove(self.seed_place);
+                for k in 0..6 {
+                    if let Some(count) = self.fates.of(particles.slots[last].get(k)) {
+                        *count -= 1;
+                    }
+                }
                 particles.truncate(last);
                 pairs.truncate(last);
                 self.settled = last;

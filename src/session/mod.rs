@@ -327,7 +327,7 @@ impl Session {
             components_seeded: counts.seeds,
             radius: self.sampler.radius(),
             evaluations,
-            evaluations_per_particle: counts.generation_evaluations as f64 / count.max(1) as f64,
+            evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,
             fates: counts.fates,
             stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
             warnings,
