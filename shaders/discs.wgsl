@@ -62,7 +62,7 @@ const DOME = 0.34;
 const SWELL_PX = vec2<f32>(0.8, 2.4);
 const CLOSED = 1.26;
 // The core pass writes points this many radii too deep. Their neighbours in the sheet then pass the depth test of the rim
-// pass, which blends all of them, and the far side of the surface does not: every pixel averages the points it sees.
+// passes, which blend all of them, and the far side of the surface does not: every pixel averages the points it sees.
 const POINT_DEPTH = 2.0;
 // A disc whose smaller half axis is below the first covers no pixel wholly, above the second it does, in pixels.
 const WIDE_PX = vec2<f32>(0.7, 1.7);
@@ -117,15 +117,22 @@ fn quad_corner(vertex: u32) -> vec2<f32> {
 
 @vertex
 fn vs_core(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
-    return disc_vertex(vertex, particle, POINT_DEPTH);
+    return disc_vertex(vertex, particle, POINT_DEPTH, 0.0);
+}
+
+// Rims seen from behind are drawn before those seen from the front: on a closed surface, from back to front.
+@vertex
+fn vs_rim_behind(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, 0.0, -1.0);
 }
 
 @vertex
-fn vs_rim(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
-    return disc_vertex(vertex, particle, 0.0);
+fn vs_rim_front(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
+    return disc_vertex(vertex, particle, 0.0, 1.0);
 }
 
-fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32) -> Disc {
+// `side`: 1 for discs seen from the front only, -1 for those seen from behind, 0 for both.
+fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> Disc {
     var out: Disc;
     out.clip = hidden();
     let age = select(1.0, clamp((frame.time - particle.birth) / max(frame.fade, 1e-6), 0.0, 1.0), frame.fade > 0.0);
@@ -139,6 +146,9 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32) -> Disc {
     let outward = oct_decode(particle.normal_oct);
     let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
     let behind = dot(outward, v) < 0.0;
+    if side * select(1.0, -1.0, behind) < 0.0 {
+        return out;
+    }
     let n = select(outward, -outward, behind);
     let t = facing_axis(n, v);
     let b = cross(n, t);
@@ -216,22 +226,25 @@ fn fullness(disc: Disc) -> f32 {
     return smoothstep(WIDE_PX.x, WIDE_PX.y, min(disc.axes_px.x, disc.axes_px.y));
 }
 
+// How much a disc is treated as a point: wholly as soon as half swollen, so that sheets close before gaps get small.
+fn as_point(disc: Disc) -> f32 {
+    return smoothstep(0.0, 0.5, pointness(disc.axes_px));
+}
+
 @fragment
 fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
     let covered = coverage(disc) * disc.colour.a;
-    let full = fullness(disc);
-    if covered < mix(mix(CORE.y, CORE.x, pointness(disc.axes_px)), CORE.z, full) {
+    if covered < mix(mix(CORE.y, CORE.z, fullness(disc)), CORE.x, as_point(disc)) {
         discard;
     }
-    let alpha = mix(covered, 1.0, full);
-    return vec4<f32>(shade(disc) * alpha, alpha);
+    return vec4<f32>(shade(disc) * covered, covered);
 }
 
 @fragment
 fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
     let covered = coverage(disc) * disc.colour.a;
-    // Points are drawn in both passes.
-    let core = mix(mix(CORE.y, CORE.z, fullness(disc)), 1.01, pointness(disc.axes_px));
+    // Points are drawn again, all of them.
+    let core = mix(mix(CORE.y, CORE.z, fullness(disc)), 1.01, as_point(disc));
     if covered >= core || covered < NOTHING {
         discard;
     }

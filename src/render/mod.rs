@@ -10,12 +10,15 @@
 //!   the vertex stage; instance buffers work on both back ends.
 //! * **Edge.** The fragment shader turns the distance to the rim, in pixels, into coverage.
 //! * **Order.** Coverage needs blending, and blending needs an order that a million particles do not have. So the
-//!   discs are drawn twice: *cores* (fully covered pixels) opaque with the depth test and depth writes, then *rims*
-//!   (partly covered pixels) blended over them, tested against the depth but not writing it. Discs of one sheet
-//!   do not overlap, so that rims rarely meet and their order does not matter. No multisampling, no sorting, no
-//!   written fragment depth: the same picture everywhere, 256 steps of edge instead of the five of a 4× target.
-//! * **Points.** When a disc shrinks towards a pixel, no pixel is fully covered; the core pass then accepts half
-//!   covered pixels too and blends them, and coverage fades with the size: a point, steady under motion.
+//!   discs are drawn in three passes: *cores* (fully covered pixels) with the depth test and depth writes, then *rims*
+//!   (partly covered pixels) blended over them, tested against the depth but not writing it, first those of discs
+//!   seen from behind, then the others. Discs of one sheet do not overlap, so that the order within a pass hardly
+//!   matters. No multisampling, no sorting, no written fragment depth: the same picture everywhere, 256 steps of
+//!   edge instead of the five of a 4× target.
+//! * **Points.** When discs shrink to a pixel or two, the gaps between them would beat against the pixels. They swell
+//!   until they touch; the core pass accepts pixels that are little covered and writes them a little too deep, and the
+//!   rim passes blend all points over that. A pixel then shows the average of the points that it sees of the nearest
+//!   sheet, and coverage fades with the size: steady under motion.
 //! * **Colour.** Colours come in as sRGB, are lit and blended in linear light, and leave through an sRGB view.
 //!
 //! Layout, style and camera numbers are plain code that compiles and is tested without a GPU; everything that

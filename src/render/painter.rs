@@ -76,7 +76,8 @@ impl Painter {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &self.pipelines.bind_group, &[]);
-        for pipeline in [&self.pipelines.core, &self.pipelines.rim] {
+        let [behind, front] = &self.pipelines.rims;
+        for pipeline in [&self.pipelines.core, behind, front] {
             pass.set_pipeline(pipeline);
             draw_particles(&mut pass, scene.store, 0..scene.count);
         }

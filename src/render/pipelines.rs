@@ -1,4 +1,4 @@
-//! The four pipelines and the uniform buffer they share.
+//! The pipelines and the uniform buffer they share.
 
 use super::layout::{Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, Format, Frame, RECORD_ATTRIBUTES, Record};
 use super::shaders::{BOX, DISCS};
@@ -10,8 +10,8 @@ pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 pub(super) struct Pipelines {
     /// Fully covered pixels of the discs: depth test and depth writes.
     pub(super) core: wgpu::RenderPipeline,
-    /// Partly covered pixels: blended, depth test without writes.
-    pub(super) rim: wgpu::RenderPipeline,
+    /// Partly covered pixels of discs seen from behind, then from the front: blended, depth test without writes.
+    pub(super) rims: [wgpu::RenderPipeline; 2],
     /// Ring around one particle: blended over everything.
     pub(super) ring: wgpu::RenderPipeline,
     /// Edges of the clip box: blended, depth test without writes.
@@ -96,12 +96,8 @@ impl Pipelines {
         };
         let make = |recipe: Recipe<'_>| pipeline(device, &layout, format, &recipe);
         Self {
-            rim: make(Recipe {
-                label: "disc rim",
-                vertex: "vs_rim",
-                fragment: "fs_rim",
-                depth_write: false,
-                ..disc
+            rims: ["vs_rim_behind", "vs_rim_front"].map(|vertex| {
+                make(Recipe { label: "disc rim", vertex, fragment: "fs_rim", depth_write: false, ..disc })
             }),
             ring: make(Recipe {
                 label: "ring",
