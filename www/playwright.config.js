@@ -36,7 +36,8 @@ export default defineConfig({
   webServer: {
     command: `node tests/server.js ${port}`,
     url: `http://localhost:${port}/`,
-    reuseExistingServer: !process.env.CI,
+    // Another checkout's server would show another checkout's page.
+    reuseExistingServer: false,
   },
   projects: [
     { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d}.spec.js' },

@@ -1,7 +1,9 @@
 import { describe, expect, test } from 'vitest';
 import { Columns } from '../../src/engine/columns.js';
 import { csv, ply } from '../../src/engine/share/exports.js';
+import { Glide } from '../../src/engine/view/glide.js';
 import { pick } from '../../src/engine/view/picking.js';
+import { Reveal } from '../../src/engine/view/reveal.js';
 
 /** `n` particles on a sphere of radius 1, discs facing outward. @param {number} n */
 function sphere(n) {
@@ -154,5 +156,35 @@ describe('exports', () => {
       expect(row.slice(0, 3).map(Math.fround)).toEqual([...columns.positions.subarray(3 * i, 3 * i + 3)]);
       expect(row.slice(7)).toEqual([columns.levels[i], i === 0 ? -1 : i >> 1]);
     }
+  });
+});
+
+describe('motion', () => {
+  test('a glide leaves from where the particles were drawn and arrives where they are', () => {
+    const glide = new Glide();
+    glide.note(Float32Array.of(0, 0, 0, 1, 1, 1), 0, 2);
+    glide.begin(10);
+    const goal = Float32Array.of(1, 0, 0, 1, 1, 3, 7, 7, 7);
+    expect([...glide.between(goal, 3, 10)]).toEqual([0, 0, 0, 1, 1, 1, 7, 7, 7]);
+    const half = glide.between(goal, 3, 10.05);
+    expect(half[0]).toBeGreaterThan(0.5);
+    expect(half[0]).toBeLessThan(1);
+    expect(glide.active).toBe(true);
+    expect([...glide.between(goal, 3, 10.2)]).toEqual([...goal]);
+    expect(glide.active).toBe(false);
+  });
+
+  test('levels appear in order, never before they are known, and a slow run is not held back', () => {
+    const reveal = new Reveal();
+    expect(reveal.birthOf(3, 0)).toBe(-Infinity);
+    reveal.begin(100);
+    const births = [0, 1, 2, 3].map((level) => reveal.birthOf(level, 100));
+    expect(births[0]).toBe(100);
+    for (let k = 1; k < 4; k += 1) expect(births[k]).toBeGreaterThan(births[k - 1]);
+    expect(reveal.birthOf(2, 500)).toBe(births[2]);
+    expect(reveal.birthOf(4, 500)).toBe(500);
+    expect(reveal.levelAt(births[2])).toBe(2);
+    expect(reveal.levelAt(99)).toBe(-1);
+    expect(reveal.end_s()).toBe(500);
   });
 });

@@ -35,10 +35,10 @@ test('the page forbids itself every other host', async ({ page }) => {
 });
 
 test('the same state gives the same particles as the native core', async ({ page }) => {
-  const { cases } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
-  expect(cases.length).toBeGreaterThan(0);
+  const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
+  expect(runs.length).toBeGreaterThan(0);
   await open(page);
-  for (const { name, field, settings, digest, count } of cases) {
+  for (const { name, field, settings, digest, count } of runs) {
     const state = { parameters: {}, bounds: null, ...field, declared: field.declare ?? [], settings };
     const report = /** @type {any} */ (await page.evaluate((patch) => /** @type {any} */ (window).marchingParticles.set(patch), state));
     expect({ name, digest: report.digest, count: report.count }).toEqual({ name, digest, count });

@@ -98,6 +98,14 @@ describe('coarse to fine', () => {
     expect(planLive(settings, diagonal, new CostModel())).toEqual({ settings, coarse: false });
   });
 
+  test('a surface that is slow to find is still drawn with half the time', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: { ...seconds(50_000), seeding: 0.2 }, particles: 50_000, relax_steps: 10, radius });
+    const plan = planLive(settings, diagonal, cost);
+    expect(plan.coarse).toBe(true);
+    expect(cost.milliseconds(cost.expected(plan.settings, diagonal), Number(plan.settings.relax_steps))).toBeCloseTo(200 + LIVE_MS / 2, 3);
+  });
+
   test('even a very slow machine keeps the shape visible', () => {
     const cost = new CostModel();
     cost.record({ seconds: { seeding: 0.5, generation: 10, relaxation: 30, quality: 0 }, particles: 50_000, relax_steps: 10, radius });

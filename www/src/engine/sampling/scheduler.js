@@ -126,7 +126,8 @@ export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
   if (!(cost.area > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
   const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
   const per_particle_ms = (cost.front_us + coarse_relax * cost.relax_us) / 1e3;
-  const affordable = Math.max(FEWEST, (budget_ms - cost.fixed_ms) / per_particle_ms);
+  // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
+  const affordable = Math.max(FEWEST, Math.max(budget_ms - cost.fixed_ms, budget_ms / 2) / per_particle_ms);
   const particles = Math.min(expected, affordable);
   const radius = Math.sqrt(cost.area / particles);
   return { settings: { ...settings, size_mode: 'radius', radius_share: radius / diagonal, relax_steps: coarse_relax }, coarse: true };

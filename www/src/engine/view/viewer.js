@@ -7,6 +7,7 @@
 import { Camera, ballOf, rayThrough, viewOf } from './camera.js';
 import { coloursOf, legendOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
+import { Glide, MOST_GLIDING } from './glide.js';
 import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
 import { pick } from './picking.js';
@@ -60,6 +61,7 @@ export class Viewer {
     this.onReveal = onReveal;
     this.camera = new Camera(look.camera);
     this.reveal = new Reveal();
+    this.glide = new Glide();
     this.colour = look.colour;
     this.size = look.size;
     /** @type {'light' | 'dark'} */
@@ -110,6 +112,7 @@ export class Viewer {
     });
     this.resizes = new ResizeObserver(() => this.invalidate(true));
     this.resizes.observe(host);
+    this.watchRatio();
     // A tab that comes back has lost its last picture on some systems.
     this.onVisible = () => {
       if (!document.hidden) this.invalidate();
@@ -131,6 +134,7 @@ export class Viewer {
     if (grow && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
     else this.reveal.end();
     this.onReveal(this.reveal.active ? { level: 0, levels: 0, particles: 0 } : null);
+    this.glide.forget();
     this.highlight = -1;
     this.style_due = true;
     this.dirty = { first: 0, last: 0 };
@@ -256,9 +260,19 @@ export class Viewer {
     this.size_due = true;
   }
 
+  /** A window that moves to another monitor keeps its size and changes its pixels. */
+  watchRatio() {
+    this.monitor = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
+    this.monitor.onchange = () => {
+      this.watchRatio();
+      this.invalidate(true);
+    };
+  }
+
   /** @param {Device} device */
   opened(device) {
     this.measure();
+    this.glide.forget();
     this.dirty = { first: 0, last: this.columns.count };
     this.style_due = true;
     this.invalidate();
@@ -306,7 +320,7 @@ export class Viewer {
     const revealing = this.tellReveal(now);
     const dimming = now - this.dimmed.at_s < DIM_S;
     if (dimming) this.style_due = true;
-    if (moving || revealing || dimming) this.invalidate();
+    if (moving || revealing || dimming || this.glide.active) this.invalidate();
   }
 
   /** Everything that changed since the last frame. @param {Device} device @param {number} now_s */
@@ -318,16 +332,19 @@ export class Viewer {
     }
     const most = renderer.max_particles();
     const count = Math.min(columns.count, most);
-    const { dirty, recoloured } = this;
-    const last = Math.min(dirty.last, count);
-    if (dirty.first < last) {
-      const colours = coloursOf(this.colour, this.theme, columns, dirty.first, last);
-      for (const [first, end, birth] of this.pieces(dirty.first, last, now_s)) {
+    const { dirty, recoloured, glide } = this;
+    if (dirty.first < Math.min(glide.count, count) && count <= MOST_GLIDING && !this.reveal.active && !this.calm.matches) glide.begin(now_s);
+    const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
+    if (first < last) {
+      const positions = glide.active ? glide.between(columns.positions, count, now_s) : columns.positions;
+      const colours = coloursOf(this.colour, this.theme, columns, first, last);
+      for (const [from, end, birth] of this.pieces(first, last, now_s)) {
         renderer.write(
-          first, columns.positions.subarray(3 * first, 3 * end), columns.normals.subarray(3 * first, 3 * end),
-          columns.radii.subarray(first, end), colours.subarray(first - dirty.first, end - dirty.first), birth,
+          from, positions.subarray(3 * from, 3 * end), columns.normals.subarray(3 * from, 3 * end),
+          columns.radii.subarray(from, end), colours.subarray(from - first, end - first), birth,
         );
       }
+      glide.note(positions, first, last);
     }
     const recolour_last = Math.min(recoloured.last, count);
     if (recoloured.first < recolour_last) {
@@ -435,6 +452,11 @@ export class Viewer {
     if (!device) throw new Error('There is no picture yet.');
     const { renderer } = device;
     const now = this.now_s();
+    if (this.glide.active) {
+      // A picture on file shows the particles where they are, not on their way.
+      this.glide.forget();
+      this.dirty = { first: 0, last: this.columns.count };
+    }
     this.tell(device, now);
     const [width, height] = renderer.picture_size(width_px, height_px);
     renderer.set_view(viewOf(this.camera.state, this.css_width || width, this.css_height || height, this.scene).packed);
@@ -450,6 +472,7 @@ export class Viewer {
     clearTimeout(this.retry);
     this.resizes.disconnect();
     this.calm.onchange = null;
+    if (this.monitor) this.monitor.onchange = null;
     document.removeEventListener('visibilitychange', this.onVisible);
     this.keeper.close();
     this.flush();
