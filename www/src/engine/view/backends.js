@@ -66,10 +66,6 @@ export async function openDevice(kind, host, events) {
       if (!closed && reason !== 'destroyed') events.onLost(reason, message);
     });
   };
-  canvas.addEventListener('webglcontextlost', (event) => {
-    event.preventDefault();
-    lost('unknown', 'The WebGL context was lost.');
-  });
   host.append(canvas);
   try {
     /** @type {Renderer | Painter} */

@@ -301,10 +301,11 @@ export class Viewer {
     if (this.camera.state !== before) this.onCamera(this.camera.state);
     try {
       this.tell(device, now);
-      if (device.renderer.draw(now) === 'drawn') {
+      const outcome = device.renderer.draw(now);
+      if (outcome === 'drawn') {
         this.frames += 1;
         this.skipped = 0;
-      } else if (this.width > 0 && this.height > 0 && this.skipped < MOST_SKIPS) {
+      } else if (outcome === 'skipped' && this.width > 0 && this.height > 0 && this.skipped < MOST_SKIPS) {
         // The screen was not ready to take a picture; what was to be seen has not been seen.
         this.skipped += 1;
         this.retry = setTimeout(() => this.invalidate(), RETRY_MS);
