@@ -15,12 +15,19 @@ import { createSetting } from './setting.js';
 export function mountSampling(body, engine, description, { head }) {
   const busy = engine.busy;
   const some = computed(() => engine.progress.value.particles > 0);
-  const fraction = computed(() => (busy.value ? Math.round(engine.progress.value.fraction * 200) / 200 : 0));
+  // The bar follows the picture while that still grows, and the run otherwise.
+  const growing = computed(() => busy.value || engine.reveal.value !== null);
+  const fraction = computed(() => {
+    const reveal = engine.reveal.value;
+    const { particles, fraction: done } = engine.progress.value;
+    const share = reveal ? reveal.particles / Math.max(1, particles) : busy.value ? done : 0;
+    return Math.round(Math.min(1, share) * 200) / 200;
+  });
 
   const track = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Sampling', 'aria-valuemin': 0, 'aria-valuemax': 100 });
   effect(() => {
     track.style.setProperty('--fraction', String(fraction.value));
-    track.dataset.busy = String(busy.value);
+    track.dataset.busy = String(growing.value);
     track.setAttribute('aria-valuenow', String(Math.round(fraction.value * 100)));
   });
 
