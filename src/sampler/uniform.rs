@@ -331,7 +331,8 @@ impl Front {
         let reach = self.reach();
         let mut found = core::mem::take(&mut self.found);
         self.grid.gather(p, reach, &mut found);
-        self.around.fill(&found, particles);
+        let collision = 2.0 * self.radius + self.match_radius;
+        self.around.fill(&found, collision * collision, particles);
         self.list_pairs(&found, pairs, particles, parent);
 
         let grandparent = particles.parent[parent];
@@ -552,10 +553,10 @@ impl Front {
 }
 
 impl Surroundings {
-    /// Reads the gathered particles.
-    fn fill(&mut self, found: &[Neighbour], particles: &Particles) {
+    /// Reads the gathered particles that a child may collide with.
+    fn fill(&mut self, found: &[Neighbour], distance_sq: f32, particles: &Particles) {
         self.len = 0;
-        for near in found {
+        for near in found.iter().filter(|near| near.distance_sq <= distance_sq) {
             self.push(near.offset, particles.normal[near.index as usize]);
         }
     }
