@@ -185,6 +185,7 @@ pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
     [Attribute { location: 4, offset: 0, format: Format::Unorm8x4 }];
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "the tests go round circles; nothing depends on the last bits")]
 mod tests {
     use super::*;
 
