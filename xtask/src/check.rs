@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use anyhow::{Result, bail};
+use clap::ValueEnum as _;
 
 use crate::bundle::{self, Bundle};
 use crate::chromium;
@@ -100,7 +101,8 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
         };
         if let Err(error) = result {
             eprintln!("\nerror: {error:#}\n");
-            failures.push(format!("{part:?}").to_lowercase());
+            failures
+                .push(part.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default());
         }
     }
     if !failures.is_empty() {
