@@ -48,8 +48,14 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     offset.is_finite().then(|| (a + offset, offset.length()))
 }
 
-/// Largest distance from a Voronoi corner of the surface (the projected circumcentre of a triangle) to its nearest point.
-pub(super) fn largest_gap(field: &mut dyn Field, tree: &Tree, triangles: &[[u32; 3]]) -> f64 {
+/// Largest distance from a Voronoi corner of the surface (the projected circumcentre of a triangle) that passes `counts` to
+/// its nearest point.
+pub(super) fn largest_gap(
+    field: &mut dyn Field,
+    tree: &Tree,
+    triangles: &[[u32; 3]],
+    counts: &dyn Fn(Vec3) -> bool,
+) -> f64 {
     let mut place = Vec::with_capacity(BATCH);
     let mut leash = Vec::with_capacity(BATCH);
     let mut largest_sq = 0.0_f32;
@@ -67,7 +73,10 @@ pub(super) fn largest_gap(field: &mut dyn Field, tree: &Tree, triangles: &[[u32;
             // A projected corner is about as far from its nearest point as the circumradius says; look no farther
             // than twice that. Corners that cannot beat the largest gap so far are passed over.
             if 4.0 * radius * radius > largest_sq {
-                largest_sq = largest_sq.max(tree.nearest_sq(p, u32::MAX, 4.0 * radius * radius));
+                let gap_sq = tree.nearest_sq(p, u32::MAX, 4.0 * radius * radius);
+                if gap_sq > largest_sq && counts(p) {
+                    largest_sq = gap_sq;
+                }
             }
         }
     }
@@ -78,16 +87,17 @@ pub(super) fn largest_gap(field: &mut dyn Field, tree: &Tree, triangles: &[[u32;
 pub(super) struct Gaps {
     /// Largest distance.
     pub(super) largest: f64,
-    /// Mean squared distance.
+    /// Mean squared distance; NaN without a place.
     pub(super) mean_sq: f64,
 }
 
 /// About `count` places, uniform over the area of the `triangles` (stratified: one in each equal share of it), projected
-/// to the surface.
+/// to the surface; those that pass `counts`.
 pub(super) fn random_gaps(
     field: &mut dyn Field,
     tree: &Tree,
     triangles: &[[u32; 3]],
+    counts: &dyn Fn(Vec3) -> bool,
     count: usize,
     seed: u64,
 ) -> Gaps {
@@ -100,7 +110,7 @@ pub(super) fn random_gaps(
     let (mut seen, mut sum, mut largest_sq) = (0_usize, 0.0_f64, 0.0_f32);
     let mut measure = |place: &mut Vec<Vec3>, leash: &mut Vec<f32>| {
         project(field, place, leash);
-        for (&p, &leash) in place.iter().zip(leash.iter()) {
+        for (&p, &leash) in place.iter().zip(leash.iter()).filter(|(p, _)| counts(**p)) {
             let gap_sq = tree.nearest_sq(p, u32::MAX, 4.0 * leash * leash);
             largest_sq = largest_sq.max(gap_sq);
             sum += f64::from(gap_sq);

@@ -1,6 +1,6 @@
 //! The figures themselves.
 
-use super::border;
+use super::border::Border;
 use super::fans::unroll;
 use super::tree::{key, unkey};
 use super::triangles::{Triangles, area_vector, topology};
@@ -58,7 +58,7 @@ pub struct Figures {
     /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
     /// points away from the border that a kept triangle fills.
     pub tri_ok: f64,
-    /// Fraction of the triangles found that all three corners agree on.
+    /// Fraction of the triangles found (away from the border) that all three corners agree on.
     pub agree: f64,
     /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
     pub euler: i64,
@@ -229,12 +229,9 @@ pub(super) fn figures(
     residuals(scene, &mut figures);
     (figures.nrm_mean, figures.nrm_max) = scene.tilt;
 
-    let inner: Vec<bool> = scene
-        .tree
-        .position
-        .iter()
-        .map(|&p| bounds.is_none_or(|bounds| !border::is_near(p, field, bounds, figures.d_hex)))
-        .collect();
+    let border = bounds.map(|bounds| Border::new(field, bounds, &scene.tree, figures.d_hex));
+    let is_inner = |p: Vec3| border.as_ref().is_none_or(|border| !border.is_near(p));
+    let inner: Vec<bool> = scene.tree.position.iter().map(|&p| is_inner(p)).collect();
     figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
 
     spacing(scene, &inner, &mut figures);
@@ -242,21 +239,21 @@ pub(super) fn figures(
     edges(scene, &inner, field, options.sizes, &mut figures);
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
-    let inner_mesh: Vec<[u32; 3]> = mesh.iter().filter(away).copied().collect();
     shapes(scene, &kept, &mut figures);
     (figures.euler, figures.components) = topology(n, mesh);
-    figures.agree = share(triangles.unanimous, triangles.found());
+    let unanimous = triangles.kept[..triangles.unanimous].iter().filter(away).count();
+    figures.agree = share(unanimous, kept.len() + triangles.single.iter().filter(away).count());
     figures.tri_ok = if figures.boundary_excluded == 0 {
         triangles.kept.len() as f64 / (2 * n as i64 - 2 * options.euler.unwrap_or(figures.euler)) as f64
     } else {
         filled(scene, triangles, &inner)
     };
-    if !inner_mesh.is_empty() {
+    if !mesh.is_empty() {
         let samples = n.max(options.samples).min(MOST_SAMPLES);
-        let gaps = cover::random_gaps(field, &scene.tree, &inner_mesh, samples, options.seed);
-        let largest = gaps.largest.max(cover::largest_gap(field, &scene.tree, &inner_mesh));
+        let gaps = cover::random_gaps(field, &scene.tree, mesh, &is_inner, samples, options.seed);
+        let largest = gaps.largest.max(cover::largest_gap(field, &scene.tree, mesh, &is_inner));
         let missed = bounds.map_or(Missed::default(), |bounds| {
-            missed(scene, field, bounds, options.seed, figures.d_hex, largest)
+            missed(scene, field, bounds, options.seed, &is_inner, largest)
         });
         figures.cover = largest.max(missed.largest) / (figures.d_hex / SQRT_3);
         let mean_sq = gaps.mean_sq * (1.0 - missed.share) + missed.sum_sq;
@@ -281,13 +278,13 @@ fn missed(
     field: &mut dyn Field,
     bounds: &Bounds,
     seed: u64,
-    d_hex: f64,
+    is_inner: &dyn Fn(Vec3) -> bool,
     spanned: f64,
 ) -> Missed {
     let mut missed = Missed::default();
     let (mut all, mut far) = (0.0, 0.0);
     for p in probe::crossings(field, bounds, seed) {
-        if border::is_near(p, field, bounds, d_hex) {
+        if !is_inner(p) {
             continue;
         }
         all += 1.0;

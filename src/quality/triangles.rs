@@ -12,7 +12,7 @@ pub(super) struct Triangles {
     /// Number of triangles that all three corners see.
     pub(super) unanimous: usize,
     /// Triangles that one corner alone sees.
-    single: Vec<[u32; 3]>,
+    pub(super) single: Vec<[u32; 3]>,
 }
 
 impl Triangles {
@@ -38,11 +38,6 @@ impl Triangles {
         let unanimous = kept.len();
         kept.extend(majority);
         Self { kept, unanimous, single }
-    }
-
-    /// Number of triangles that any corner sees.
-    pub(super) fn found(&self) -> usize {
-        self.kept.len() + self.single.len()
     }
 
     /// The kept triangles with the quarrels settled: no directed edge belongs to two of them.
