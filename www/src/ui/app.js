@@ -51,6 +51,17 @@ export function mountInterface(engine) {
     if (theme === 'auto') delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme;
   });
+  effect(() => {
+    void engine.theme.value;
+    // The browser's own frame takes the ground's colour, also where the theme is not the system's.
+    const { backgroundColor } = getComputedStyle(document.documentElement);
+    for (const meta of document.querySelectorAll('meta[name="theme-color"]')) meta.setAttribute('content', backgroundColor);
+  });
+  effect(() => {
+    const id = engine.field.value?.surface;
+    const surface = engine.description.value?.surfaces.find((entry) => entry.id === id);
+    document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
+  });
 
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start') });
   mountHover(stage, engine);

@@ -18,7 +18,10 @@ export function createSetting(engine, info) {
   const label = h('span', { class: 'setting-label' }, info.label, info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null);
   const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
   const element = h('div', { class: 'setting', data: { setting: info.name, kind: info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number' } }, label, control);
-  explain(element, () => ({ title: info.label, text: info.help }));
+  const help = () => ({ title: info.label, text: info.help });
+  explain(element, help);
+  // A finger cannot hover: it taps the name.
+  explain(label, help, { tap: true });
 
   const condition = info.when;
   if (condition) {
