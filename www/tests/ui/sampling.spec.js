@@ -110,10 +110,16 @@ test('no surface in the box is said in words, with a way out', async ({ page }) 
 
 test('a stopped run is labelled and keeps what it has', async ({ page }) => {
   await open(page);
-  const box = page.locator('.setting[data-setting="radius_share"] input[type=number]');
-  await box.fill('0.1');
-  await box.press('Enter');
-  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles.status().busy);
+  // About a million particles: long enough to be stopped on any machine.
+  await page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.setSetting('max_particles', 3_000_000);
+    engine.setSetting('radius_share', 0.0004);
+  });
+  await page.waitForFunction(() => {
+    const { busy, progress } = /** @type {any} */ (window).marchingParticles.status();
+    return busy && progress.radius > 0 && progress.radius < 0.002 && progress.particles > 100;
+  });
   await page.getByRole('button', { name: 'Stop', exact: true }).first().click();
   await expect(page.locator('.caption')).toContainText('Stopped');
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
