@@ -1,5 +1,10 @@
 //! The front of paper §4: what it promises on smooth surfaces, and that working on whole levels in lanes changes nothing
 //! about the sequential algorithm.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::needless_range_loop,
+    reason = "the naive sampler follows the paper slot by slot, and on a smooth surface the vectors it normalises are not zero"
+)]
 
 use glam::Vec3;
 use marching_particles::field::Field;

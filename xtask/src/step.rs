@@ -102,13 +102,22 @@ pub(crate) fn capture(command: &mut Command, advice: &str) -> Result<String> {
         return Ok(out);
     }
     let mut text = format!("`{line}` failed ({status})");
-    for part in [out.trim_end(), err.trim_end()] {
+    for part in [without_progress(&out), without_progress(&err)] {
         if !part.is_empty() {
             text.push_str("\n\n");
-            text.push_str(part);
+            text.push_str(&part);
         }
     }
     Err(with_advice(text))
+}
+
+/// A command's output without cargo's lines on what went well.
+fn without_progress(output: &str) -> String {
+    const WELL: [&str; 7] =
+        ["Compiling ", "Checking ", "Downloading ", "Downloaded ", "Blocking ", "Updating ", "Documenting "];
+    let kept: Vec<&str> =
+        output.lines().filter(|line| !WELL.iter().any(|verb| line.trim_start().starts_with(verb))).collect();
+    kept.join("\n").trim_end().to_owned()
 }
 
 /// Reads a pipe to its end; passes it on as it comes when verbose.
@@ -163,4 +172,33 @@ pub(crate) fn seconds(duration: Duration) -> String {
 /// Shows what was printed without a line end. A closed terminal is no reason to stop.
 fn flush() {
     let _ = std::io::stdout().flush();
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::{capture, command_line, without_progress};
+
+    #[test]
+    fn a_failure_shows_command_output_and_advice() {
+        let mut command = Command::new("cargo");
+        command.args(["no-such-subcommand", "a b"]);
+        let error = capture(&mut command, "Try another.").unwrap_err().to_string();
+        assert!(error.starts_with("`cargo no-such-subcommand 'a b'` failed"), "{error}");
+        assert!(error.contains("no such command"), "{error}");
+        assert!(error.ends_with("Try another."), "{error}");
+    }
+
+    #[test]
+    fn command_lines_can_be_pasted() {
+        let mut command = Command::new("tool");
+        command.arg("it's").env("KEY", "a\u{1f}b").current_dir("/some where");
+        assert_eq!(command_line(&command), r"cd '/some where' && KEY='a b' tool 'it'\''s'");
+    }
+
+    #[test]
+    fn progress_is_left_out_of_failures() {
+        assert_eq!(without_progress("   Compiling a v1\nerror: b\n    Checking c v2\n"), "error: b");
+    }
 }
