@@ -1,5 +1,5 @@
 //! The particles of one run, as a structure of arrays: one column per attribute, all of the same length, in the
-//! order in which the front placed them (generation levels are therefore contiguous).
+//! order in which a front placed them, so that its generation levels are contiguous; particles that fill gaps come last.
 
 use glam::Vec3;
 
@@ -24,7 +24,7 @@ pub struct Particles {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum SlotFate {
-    /// Not decided yet.
+    /// Not decided: the front has not come to it.
     Open = 0,
     /// Slot 0 of every particle but a seed: the parent sits there.
     Parent = 1,
@@ -99,6 +99,16 @@ impl Particles {
         self.parent.reserve_exact(more);
         self.level.reserve_exact(more);
         self.slots.reserve_exact(more);
+    }
+
+    /// Adds a particle.
+    pub fn push(&mut self, position: Vec3, normal: Vec3, radius: f32, parent: u32, level: u32, slots: Slots) {
+        self.position.push(position);
+        self.normal.push(normal);
+        self.radius.push(radius);
+        self.parent.push(parent);
+        self.level.push(level);
+        self.slots.push(slots);
     }
 
     /// Keeps the first `len` particles.

@@ -4,6 +4,7 @@
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
+mod gaps;
 mod pairs;
 mod project;
 mod relax;
@@ -11,12 +12,13 @@ mod settings;
 mod survey;
 mod uniform;
 
-pub use settings::{Settings, SettingsError, SizeMode};
+pub use settings::{GapPolicy, Settings, SettingsError, SizeMode};
 pub use uniform::FateCounts;
 
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
+use gaps::{Gaps, Ground};
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
@@ -137,6 +139,8 @@ pub struct Counts {
     pub relaxation_evaluations: u64,
     /// Fates of the children of the last attempt.
     pub fates: FateCounts,
+    /// Particles placed in gaps between fronts.
+    pub gaps_filled: u64,
     /// Fronts started, each from a seed of its own.
     pub seeds: u32,
 }
@@ -160,6 +164,9 @@ pub struct Sampler {
     pilot: bool,
     projector: Projector,
     front: Front,
+    gaps: Gaps,
+    /// Whether the generation has come to the gaps.
+    filling: bool,
     relaxation: Relaxation,
     pairs: Pairs,
     particles: Particles,
@@ -191,6 +198,8 @@ impl Sampler {
             pilot: false,
             projector: Projector::new(),
             front: Front::new(),
+            gaps: Gaps::default(),
+            filling: false,
             relaxation: Relaxation::new(),
             pairs: Pairs::default(),
             particles: Particles::default(),
@@ -208,7 +217,7 @@ impl Sampler {
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        Counts { fates: self.front.fates, ..self.counts.clone() }
+        Counts { fates: self.front.fates, gaps_filled: self.gaps.filled, ..self.counts.clone() }
     }
 
     /// Energy per particle before the first relaxation step and after each: Σ exp(−d²/2σ²) over pairs, cut off at 3σ.
@@ -302,6 +311,8 @@ impl Sampler {
             &self.bounds,
             self.settings.max_particles as usize,
         );
+        self.filling = false;
+        self.gaps.clear();
         self.counts.seeds = 0;
         self.counts.front_evaluations = 0;
         self.next_seed = 0;
@@ -335,7 +346,9 @@ impl Sampler {
             if self.phase == Phase::Relaxation {
                 self.moved |= self.relaxation.abandon(&mut self.particles);
             }
-            self.front.stop(&mut self.particles);
+            if self.phase != Phase::Relaxation && !self.filling {
+                self.front.stop(&mut self.particles);
+            }
             self.finish(StopReason::Cancelled);
         }
     }
@@ -351,16 +364,33 @@ impl Sampler {
                 Phase::Seeding => left = self.seed(left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
-                    left = self.front.step(
-                        field,
-                        &mut self.projector,
-                        &mut self.pairs,
-                        &mut self.particles,
-                        left,
-                    );
+                    left = if self.filling {
+                        let mut ground = Ground {
+                            radius: self.radius as f32,
+                            tolerance: self.tolerance,
+                            bounds: self.bounds,
+                            max_particles: self.settings.max_particles as usize,
+                            grid: &mut self.front.grid,
+                            pairs: &mut self.pairs,
+                            particles: &mut self.particles,
+                        };
+                        self.gaps.step(field, &mut self.projector, &mut ground, left)
+                    } else {
+                        self.front.step(
+                            field,
+                            &mut self.projector,
+                            &mut self.pairs,
+                            &mut self.particles,
+                            left,
+                        )
+                    };
                     self.counts.generation_evaluations += self.projector.evaluations - start;
                     self.counts.front_evaluations += self.projector.evaluations - start;
-                    if self.front.is_done() {
+                    if self.filling {
+                        if self.gaps.is_done() {
+                            self.end_generation();
+                        }
+                    } else if self.front.is_done() {
                         self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
                         if self.front.capped {
                             self.end_generation();
@@ -396,7 +426,7 @@ impl Sampler {
     /// The state as of now; the `moved` flag is cleared by reading it.
     pub fn progress(&mut self) -> Progress {
         let particles = match self.phase {
-            Phase::Generation => self.front.settled(),
+            Phase::Generation if !self.filling => self.front.settled(),
             _ => self.particles.len(),
         };
         let expected = self.expected_count();
@@ -459,7 +489,13 @@ impl Sampler {
         let count = self.survey.position.len();
         while budget > 0 {
             if self.next_seed >= count {
-                self.end_generation();
+                if self.settings.gaps == GapPolicy::Fill && !self.front.seams.is_empty() {
+                    self.gaps.begin(&mut self.front.seams);
+                    self.filling = true;
+                    self.phase = Phase::Generation;
+                } else {
+                    self.end_generation();
+                }
                 return budget;
             }
             budget -= 1;

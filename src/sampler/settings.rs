@@ -13,6 +13,17 @@ pub enum SizeMode {
     Count,
 }
 
+/// What becomes of gaps between fronts that are wide enough for a particle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GapPolicy {
+    /// A particle is placed in the middle.
+    #[default]
+    Fill,
+    /// They stay, as in the paper.
+    Leave,
+}
+
 /// Settings of a run. `Default` gives the paper's values where it names them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -28,6 +39,8 @@ pub struct Settings {
     /// Distance within which a child corresponds to an existing particle, as a share of 2r. The paper names none; 0.7
     /// gives the most particles with six neighbours on smooth surfaces.
     pub match_tolerance: f64,
+    /// Whether gaps between fronts are filled after the generation.
+    pub gaps: GapPolicy,
     /// Chooses the first point among those found on the surface.
     pub seed: u64,
     /// Most particles generated; a run that reaches it stops with what it has.
@@ -42,6 +55,7 @@ impl Default for Settings {
             count: 20_000,
             relax_steps: 10,
             match_tolerance: 0.7,
+            gaps: GapPolicy::Fill,
             seed: 0,
             max_particles: 200_000,
         }

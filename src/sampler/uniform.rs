@@ -11,6 +11,7 @@
 //!   field, and compared with the particles there at that place. Only a free child is projected, at about two
 //!   evaluations, and then compared again at its final place. All free children of a level are projected together.
 
+use super::gaps::SEAM;
 use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
@@ -129,6 +130,8 @@ pub(super) struct Front {
     batch: Vec<Landing>,
     /// Largest distance between a provisional and a final place in this level.
     drift: f32,
+    /// Particles with a slot taken by a particle far from it.
+    pub(super) seams: Vec<u32>,
     pub(super) fates: FateCounts,
     pub(super) capped: bool,
 }
@@ -169,6 +172,7 @@ impl Front {
             landings: Vec::new(),
             batch: Vec::with_capacity(BATCH),
             drift: 0.0,
+            seams: Vec::new(),
             fates: FateCounts::default(),
             capped: false,
         }
@@ -196,6 +200,7 @@ impl Front {
         self.children.clear();
         self.landings.clear();
         self.drift = 0.0;
+        self.seams.clear();
         self.fates = FateCounts::default();
         self.capped = false;
     }
@@ -241,6 +246,7 @@ impl Front {
                     }
                 }
                 particles.truncate(last);
+                self.seams.retain(|&i| (i as usize) < last);
                 pairs.truncate(last);
                 self.settled = last;
                 self.level = last..last;
@@ -253,7 +259,7 @@ impl Front {
         debug_assert!(self.is_done());
         let index = particles.len();
         self.seed_place = self.grid.insert(position, index as u32);
-        push(particles, position, normal, self.radius, Particles::NO_PARENT, 0, Slots::default());
+        particles.push(position, normal, self.radius, Particles::NO_PARENT, 0, Slots::default());
         self.level = index..index + 1;
         self.settled = index + 1;
         self.stage = Stage::Place;
@@ -351,6 +357,7 @@ impl Front {
         let (distance, slack_sq) = (2.0 * self.radius, self.slack_sq());
         let level = particles.level[parent] + 1;
         let mut slots = particles.slots[parent];
+        let mut seam = false;
         if !is_seed {
             slots.set(0, SlotFate::Parent);
         }
@@ -366,6 +373,7 @@ impl Front {
 
             let nearest_sq = self.around.nearest_sq(offset, normal, slack_sq);
             if nearest_sq <= self.match_radius * self.match_radius {
+                seam |= nearest_sq > (SEAM * distance) * (SEAM * distance);
                 slots.set(k, SlotFate::Matched);
                 self.fates.count(SlotFate::Matched);
                 continue;
@@ -378,7 +386,7 @@ impl Front {
             }
             let index = particles.len() as u32;
             let position = p + offset;
-            push(particles, position, normal, self.radius, parent as u32, level, initial_slots());
+            particles.push(position, normal, self.radius, parent as u32, level, initial_slots());
             self.children.push(Child {
                 circle: Circle {
                     centre: p,
@@ -392,6 +400,9 @@ impl Front {
                 clearance: nearest_sq.sqrt(),
             });
             self.around.push(offset, normal);
+        }
+        if seam {
+            self.seams.push(parent as u32);
         }
         particles.slots[parent] = slots;
         self.found = found;
@@ -619,21 +630,4 @@ fn initial_slots() -> Slots {
     let mut slots = Slots::default();
     slots.set(0, SlotFate::Parent);
     slots
-}
-
-fn push(
-    particles: &mut Particles,
-    position: Vec3,
-    normal: Vec3,
-    radius: f32,
-    parent: u32,
-    level: u32,
-    slots: Slots,
-) {
-    particles.position.push(position);
-    particles.normal.push(normal);
-    particles.radius.push(radius);
-    particles.parent.push(parent);
-    particles.level.push(level);
-    particles.slots.push(slots);
 }

@@ -225,6 +225,14 @@ fn settings() -> Vec<Setting> {
             ..number("match_tolerance", "Match tolerance", json!(default.match_tolerance), 0.01)
         },
         Setting {
+            kind: "choice",
+            step: None,
+            group: "Advanced",
+            choices: vec![Choice { value: "fill", label: "Fill" }, Choice { value: "leave", label: "Leave" }],
+            help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
+            ..number("gaps", "Gaps", json!(default.gaps), 0.0)
+        },
+        Setting {
             min: Some(0.0),
             max: Some(999_999.0),
             group: "Advanced",

@@ -74,6 +74,8 @@ pub struct Report {
     pub levels: u32,
     /// Fronts started, each from a seed of its own.
     pub components_seeded: u32,
+    /// Particles placed in gaps between fronts.
+    pub gaps_filled: u64,
     /// Repulsion radius.
     pub radius: f64,
     /// Field evaluations of the whole run.
@@ -325,6 +327,7 @@ impl Session {
             count,
             levels: level_counts.len() as u32,
             components_seeded: counts.seeds,
+            gaps_filled: counts.gaps_filled,
             radius: self.sampler.radius(),
             evaluations,
             evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,

@@ -1,6 +1,6 @@
 //! What can be asked for.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use marching_particles::math::Bounds;
 use std::path::PathBuf;
 
@@ -25,6 +25,12 @@ Examples:
   marching-particles sample --surface torus --out torus.ply
   marching-particles sample --surface ellipsoid --count 55748 --json
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Gaps {
+    Fill,
+    Leave,
+}
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -99,6 +105,10 @@ pub(crate) struct Sample {
     /// How near, in units of two radii, a new particle must come to an old one to be the same
     #[arg(long, value_name = "SHARE", default_value_t = defaults().match_tolerance, help_heading = "Sampling")]
     pub(crate) match_tolerance: f64,
+
+    /// What becomes of gaps between fronts that are wide enough for a particle; the paper leaves them
+    #[arg(long, value_enum, default_value_t = Gaps::Fill, help_heading = "Sampling")]
+    pub(crate) gaps: Gaps,
 
     /// Most particles; default: 200,000, or a tenth more than --count
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]

@@ -1,6 +1,6 @@
 //! `sample`: one run, its files and its figures.
 
-use crate::arguments::{Radius, Sample};
+use crate::arguments::{Gaps, Radius, Sample};
 use crate::failure::{Failure, LIMIT};
 use crate::summary;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,7 +8,7 @@ use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Phase, Progress, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{GapPolicy, Phase, Progress, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Report, Session};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -193,6 +193,10 @@ fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
         count: arguments.count.unwrap_or(default.count),
         relax_steps: arguments.relax,
         match_tolerance: arguments.match_tolerance,
+        gaps: match arguments.gaps {
+            Gaps::Fill => GapPolicy::Fill,
+            Gaps::Leave => GapPolicy::Leave,
+        },
         seed: arguments.seed,
         // Asking for a number of particles is asking for the room they take.
         max_particles: arguments.max_particles.unwrap_or_else(|| {
