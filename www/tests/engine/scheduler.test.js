@@ -98,6 +98,18 @@ describe('coarse to fine', () => {
     expect(planLive(settings, diagonal, new CostModel())).toEqual({ settings, coarse: false });
   });
 
+  test('a graphics device that cannot keep up is given less to draw, and more again when it can', () => {
+    const cost = new CostModel();
+    cost.record({ seconds: seconds(8000), particles: 8000, relax_steps: 10, radius });
+    for (let k = 0; k < 20; k += 1) cost.recordPicture(8000, 34 + 160);
+    expect(cost.draw_us).toBeCloseTo(20, 1);
+    const plan = planLive(settings, diagonal, cost);
+    expect(plan.coarse).toBe(true);
+    expect(cost.expected(plan.settings, diagonal)).toBeLessThan(3000);
+    for (let k = 0; k < 30; k += 1) cost.recordPicture(2500, 20);
+    expect(planLive(settings, diagonal, cost).coarse).toBe(false);
+  });
+
   test('a surface that is slow to find is still drawn with half the time', () => {
     const cost = new CostModel();
     cost.record({ seconds: { ...seconds(50_000), seeding: 0.2 }, particles: 50_000, relax_steps: 10, radius });

@@ -316,7 +316,10 @@ export class SamplingClient {
     this.store.timing.value = { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live: request.live };
     const { drag } = this;
     if (request.live && drag) {
-      drag.latencies.push(this.now_ms() - since_ms);
+      const latency = this.now_ms() - since_ms;
+      drag.latencies.push(latency);
+      // What the sampler did not spend, drawing did: a slow graphics device holds up every message.
+      this.cost.recordPicture(particles, latency - total * 1e3);
       drag.particles = particles;
       const sorted = [...drag.latencies].sort((a, b) => a - b);
       this.store.lastDrag.value = {

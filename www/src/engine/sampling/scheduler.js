@@ -15,6 +15,8 @@ export const LIVE_MS = 60;
 const PATIENCE_MS = 150;
 /** Relaxation steps of a coarse run: enough to mend the seams, a third of the price. */
 const COARSE_RELAX_STEPS = 3;
+/** Waiting for the screen's next frame and the one after it is nobody's fault. */
+const FRAME_MS = 34;
 /** Below this a surface can no longer be made out. */
 const FEWEST = 500;
 
@@ -73,7 +75,7 @@ export class Scheduler {
 
 /**
  * What a run costs on this machine, from the runs before: milliseconds to find the surface, microseconds per particle for the
- * front and for a relaxation step, and the particles that a radius gives on the present surface.
+ * front, for a relaxation step and for drawing, and the particles that a radius gives on the present surface.
  */
 export class CostModel {
   constructor() {
@@ -81,6 +83,8 @@ export class CostModel {
     this.fixed_ms = 5;
     this.front_us = 1.5;
     this.relax_us = 0.25;
+    /** Zero wherever the graphics card keeps up with the screen. */
+    this.draw_us = 0;
     /** count · radius², nearly constant for one surface; 0 until known. */
     this.area = 0;
     this.known = false;
@@ -98,9 +102,20 @@ export class CostModel {
     this.known = true;
   }
 
+  /** A live run of so many particles took this much longer than its sampling. @param {number} particles @param {number} waited_ms */
+  recordPicture(particles, waited_ms) {
+    if (particles < FEWEST) return;
+    this.draw_us += 0.3 * ((Math.max(0, waited_ms - FRAME_MS) * 1e3) / particles - this.draw_us);
+  }
+
   /** @param {number} particles @param {number} relax_steps */
   milliseconds(particles, relax_steps) {
-    return this.fixed_ms + (particles * (this.front_us + relax_steps * this.relax_us)) / 1e3;
+    return this.fixed_ms + (particles * this.perParticle(relax_steps)) / 1e3;
+  }
+
+  /** Microseconds. @param {number} relax_steps */
+  perParticle(relax_steps) {
+    return this.front_us + relax_steps * this.relax_us + this.draw_us;
   }
 
   /** Particles to expect. @param {Settings} settings @param {number} diagonal */
@@ -125,7 +140,7 @@ export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
   const expected = cost.expected(settings, diagonal);
   if (!(cost.area > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
   const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
-  const per_particle_ms = (cost.front_us + coarse_relax * cost.relax_us) / 1e3;
+  const per_particle_ms = cost.perParticle(coarse_relax) / 1e3;
   // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
   const affordable = Math.max(FEWEST, Math.max(budget_ms - cost.fixed_ms, budget_ms / 2) / per_particle_ms);
   const particles = Math.min(expected, affordable);
