@@ -10,7 +10,7 @@ pub const LANES: usize = 8;
 
 /// Eight `f32` values operated on together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
+#[repr(align(16))]
 pub struct Lanes(pub [f32; LANES]);
 
 impl Default for Lanes {

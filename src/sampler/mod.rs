@@ -36,8 +36,8 @@ const PILOT_FROM: f64 = 8_000.0;
 /// Size of a pilot run as a share of the wanted count.
 const PILOT_SHARE: f64 = 1.0 / 20.0;
 
-/// Room made in advance, as a multiple of the expected count: the first guess of the packing is that uncertain.
-const RESERVE: f64 = 1.08;
+/// Room made in advance, as a multiple of the expected count.
+const RESERVE: f64 = 1.05;
 
 /// A wanted count counts as met within this share.
 const COUNT_TOLERANCE: f64 = 0.03;
@@ -160,6 +160,8 @@ pub struct Sampler {
     /// Survey points in the order in which they are tried: this one first, the others in grid order.
     first_seed: usize,
     attempt: u32,
+    /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
+    packing: f64,
     /// Whether the attempt under way only measures the packing.
     pilot: bool,
     projector: Projector,
@@ -195,6 +197,7 @@ impl Sampler {
             next_seed: 0,
             first_seed: 0,
             attempt: 0,
+            packing: PACKING,
             pilot: false,
             projector: Projector::new(),
             front: Front::new(),
@@ -268,6 +271,7 @@ impl Sampler {
 
         let area = self.survey.area;
         // Hexagonal packing: each particle takes 2√3 r².
+        self.packing = PACKING;
         let per_radius_sq = area * PACKING / (2.0 * SQRT_3);
         self.radius = match settings.size_mode {
             SizeMode::Radius => settings.radius_share * bounds.diagonal(),
@@ -303,6 +307,7 @@ impl Sampler {
         let expected = (self.expected_count() * RESERVE).min(f64::from(self.settings.max_particles)) as usize;
         self.particles.reserve(expected);
         self.pairs.reserve(expected);
+        self.front.grid.reserve(expected);
         self.tolerance = tolerance(self.radius as f32, self.survey.resolution, self.survey.gradient_scale);
         self.front.reset(
             self.radius as f32,
@@ -327,7 +332,7 @@ impl Sampler {
 
     /// Particles that a front of the present radius is expected to place.
     fn expected_count(&self) -> f64 {
-        self.survey.area * PACKING / (2.0 * SQRT_3 * self.radius * self.radius)
+        self.survey.area * self.packing / (2.0 * SQRT_3 * self.radius * self.radius)
     }
 
     /// Asks for `steps` more relaxation steps on the particles of a finished run; [`Sampler::step`] does them.
@@ -542,6 +547,7 @@ impl Sampler {
             && count > 1
             && !self.front.capped
         {
+            self.packing *= count as f64 / self.expected_count();
             self.radius *= miss.sqrt();
             self.pilot = false;
             return self.begin_attempt();
@@ -557,6 +563,7 @@ impl Sampler {
     }
 
     fn begin_relaxation(&mut self) {
+        self.front.grid.release();
         self.relaxation.begin(
             self.radius as f32,
             self.tolerance,

@@ -8,6 +8,10 @@ pub(super) struct Pairs {
     entries: Vec<u32>,
 }
 
+/// Room for a header and a list of usual length: within the reach of the relaxation a lattice has 6 to 12 neighbours,
+/// half of them of smaller index.
+const ENTRIES_PER_LIST: usize = 6;
+
 /// Entries that a moved list gets beyond its length, so that it moves seldom.
 const SPARE: usize = 2;
 
@@ -20,8 +24,7 @@ impl Pairs {
     /// Makes room for `particles` lists of usual length.
     pub(super) fn reserve(&mut self, particles: usize) {
         self.start.reserve_exact(particles.saturating_sub(self.start.len()));
-        // On a hexagonal lattice each particle has three neighbours of smaller index; seams have more.
-        self.entries.reserve_exact((particles * 9 / 2).saturating_sub(self.entries.len()));
+        self.entries.reserve_exact((particles * ENTRIES_PER_LIST).saturating_sub(self.entries.len()));
     }
 
     /// Number of lists.
@@ -56,6 +59,7 @@ impl Pairs {
         let mut head = self.start[i] as usize;
         let mut capacity = (self.entries[head] >> 16) as usize;
         if neighbours.len() > capacity {
+            self.make_room(1 + neighbours.len() + SPARE);
             head = self.entries.len();
             capacity = neighbours.len() + SPARE;
             self.start[i] = head as u32;
@@ -63,6 +67,35 @@ impl Pairs {
         }
         self.entries[head] = neighbours.len() as u32 | (capacity as u32) << 16;
         self.entries[head + 1..head + 1 + neighbours.len()].copy_from_slice(neighbours);
+    }
+
+    /// Grows by a sixteenth where a vector would double: moved lists are few.
+    fn make_room(&mut self, entries: usize) {
+        if self.entries.len() + entries > self.entries.capacity() {
+            self.entries.reserve_exact(entries + self.entries.len() / 16);
+        }
+    }
+
+    /// Adds `j` to the list of particle `i` if it is not there.
+    pub(super) fn insert(&mut self, i: usize, j: u32) {
+        let head = self.start[i] as usize;
+        let (len, capacity) = ((self.entries[head] & 0xffff) as usize, (self.entries[head] >> 16) as usize);
+        if self.of(i).contains(&j) {
+            return;
+        }
+        if len < capacity {
+            self.entries[head] += 1;
+            self.entries[head + 1 + len] = j;
+        } else {
+            let moved = self.entries.len();
+            let capacity = len + 1 + SPARE;
+            self.make_room(1 + capacity);
+            self.start[i] = moved as u32;
+            self.entries.push((len + 1) as u32 | (capacity as u32) << 16);
+            self.entries.extend_from_within(head + 1..head + 1 + len);
+            self.entries.push(j);
+            self.entries.resize(moved + 1 + capacity, 0);
+        }
     }
 
     /// Neighbours of particle `i` with a smaller index.
@@ -89,9 +122,12 @@ mod tests {
                 let list: Vec<u32> = (0..(i + round) % 9).map(|k| k * i + round).collect();
                 pairs.replace(i as usize, &list);
                 assert_eq!(pairs.of(i as usize), list);
+                pairs.insert(i as usize, 1_000 + round);
+                pairs.insert(i as usize, 1_000 + round);
+                let (last, rest) = pairs.of(i as usize).split_last().expect("one was inserted");
+                assert_eq!((*last, rest), (1_000 + round, list.as_slice()));
             }
         }
-        assert_eq!(pairs.of(0), (0..3).map(|_| 3).collect::<Vec<u32>>().as_slice());
         assert_eq!(pairs.len(), 40);
     }
 }

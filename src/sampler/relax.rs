@@ -15,14 +15,14 @@ use super::uniform::CELL_PER_REACH;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::{CellGrid, Neighbour};
+use crate::spatial::{CellGrid, Neighbour, Vicinity};
 use glam::Vec3;
 
 /// Range of the repulsion in σ.
 pub(super) const CUT_OFF: f32 = 3.0;
 /// The neighbour lists reach this much farther, in σ, so that they serve while particles move. It was chosen by counting
 /// instructions: a wider one lengthens every list, a narrower one has more of them made anew.
-pub(super) const SKIN: f32 = 0.7;
+pub(super) const SKIN: f32 = 0.4;
 /// First step size, in units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ²,
 /// so steps below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in
 /// ten steps and set the squeezed rows trembling.
@@ -40,17 +40,12 @@ const MAX_NEWTON: u32 = 6;
 /// A Newton correction shorter than this, in σ, leaves a residual of the order of its square.
 const TRUSTED_CORRECTION: f32 = 0.02;
 
-/// Where more than this share of the particles have gone far, all lists are made anew.
-const MANY: f32 = 0.1;
-
 /// What a relaxation does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Put every particle into the grid.
+    /// Put the particles around those who have gone far into the grid.
     Grid,
-    /// Mark the lists that those who have gone far may be missing in.
-    Mark,
-    /// Make the marked lists anew.
+    /// Make the lists of those who have gone far anew.
     Refresh,
     Forces,
     Judge,
@@ -74,8 +69,9 @@ pub(super) struct Relaxation {
     list: Vec<u32>,
     /// Particles that have gone far since their lists were made.
     far: Vec<u32>,
-    /// Lists to be made anew.
-    marked: Vec<bool>,
+    vicinity: Vicinity,
+    /// Whether all lists are made anew.
+    all: bool,
     /// Length of each particle's way since its lists were made.
     way: Vec<f32>,
     /// Sum of (p_i − p_j) exp(−d²/2σ²) over the neighbours.
@@ -103,7 +99,8 @@ impl Relaxation {
             found: Vec::new(),
             list: Vec::new(),
             far: Vec::new(),
-            marked: Vec::new(),
+            vicinity: Vicinity::default(),
+            all: false,
             way: Vec::new(),
             force: Vec::new(),
             previous: Vec::new(),
@@ -142,14 +139,14 @@ impl Relaxation {
         self.energy.truncate(self.done as usize);
         self.way.clear();
         self.way.resize(particles, 0.0);
-        self.marked.clear();
-        self.marked.resize(particles, false);
         self.far.clear();
+        self.all = false;
         if pairs.len() == particles && self.done == 0 {
             self.begin_forces(particles);
         } else {
             pairs.extend_to(particles);
-            self.marked.fill(true);
+            self.far.extend(0..particles as u32);
+            self.all = true;
             self.enter(Stage::Grid);
         }
     }
@@ -189,7 +186,7 @@ impl Relaxation {
     ) -> (u32, bool) {
         let mut moved = false;
         while budget > 0 && self.stage != Stage::Done {
-            let n = if self.stage == Stage::Mark { self.far.len() } else { particles.len() };
+            let n = if self.stage == Stage::Refresh { self.far.len() } else { particles.len() };
             let last = n.min(self.next + budget as usize);
             let range = self.next..last;
             budget -= range.len() as u32;
@@ -198,40 +195,29 @@ impl Relaxation {
                 Stage::Grid => {
                     if range.start == 0 {
                         grid.reset(CELL_PER_REACH * self.list_reach());
+                        self.vicinity.reset(self.list_reach(), self.far.len());
+                        for &i in &self.far {
+                            self.vicinity.add(particles.position[i as usize]);
+                        }
                     }
                     for i in range {
-                        grid.insert(particles.position[i], i as u32);
-                    }
-                    if last == n {
-                        if self.far.len() as f32 > MANY * n as f32 {
-                            self.marked.fill(true);
-                        }
-                        self.enter(Stage::Mark);
-                    }
-                }
-                Stage::Mark => {
-                    for k in range {
-                        let i = self.far[k] as usize;
-                        self.way[i] = 0.0;
-                        grid.gather(particles.position[i], self.list_reach(), &mut self.found);
-                        for near in &self.found {
-                            self.marked[near.index as usize] = true;
+                        let p = particles.position[i];
+                        if self.all || self.vicinity.may_hold(p) {
+                            grid.insert(p, i as u32);
                         }
                     }
                     if last == n {
-                        self.far.clear();
                         self.enter(Stage::Refresh);
                     }
                 }
                 Stage::Refresh => {
-                    for i in range {
-                        if core::mem::take(&mut self.marked[i]) {
-                            self.refresh(grid, pairs, particles, i);
-                        }
+                    for k in range {
+                        self.refresh(grid, pairs, particles, self.far[k] as usize);
                     }
                     if last == n {
-                        grid.release();
-                        self.begin_forces(n);
+                        self.far.clear();
+                        self.all = false;
+                        self.begin_forces(particles.len());
                     }
                 }
                 Stage::Forces => {
@@ -314,13 +300,20 @@ impl Relaxation {
     }
 
     /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the cut-off and the skin.
+    /// Those of a larger index get it into their lists.
     fn refresh(&mut self, grid: &CellGrid, pairs: &mut Pairs, particles: &Particles, i: usize) {
+        self.way[i] = 0.0;
         grid.gather(particles.position[i], self.list_reach(), &mut self.found);
         let normal = particles.normal[i];
         self.list.clear();
         for &Neighbour { index: j, .. } in &self.found {
-            if (j as usize) < i && particles.normal[j as usize].dot(normal) > 0.0 {
+            if particles.normal[j as usize].dot(normal) <= 0.0 {
+                continue;
+            }
+            if (j as usize) < i {
                 self.list.push(j);
+            } else if j as usize != i && !self.all {
+                pairs.insert(j as usize, i as u32);
             }
         }
         pairs.replace(i, &self.list);
