@@ -330,18 +330,19 @@ impl Projector {
                 let i = active[k] as usize;
                 let (value, gradient) = (self.value[k], self.gradient[k]);
                 let slope_sq = gradient.length_squared();
-                let slope = slope_sq.sqrt();
+                let inverse_slope = 1.0 / slope_sq.sqrt();
+                let slope = slope_sq * inverse_slope;
                 // Written so that NaN fails.
                 if !(slope > tolerance.min_gradient && slope.is_finite() && value.is_finite()) {
                     continue;
                 }
-                normal[i] = gradient / slope;
-                let distance = value.abs() / slope;
+                normal[i] = gradient * inverse_slope;
+                let distance = value.abs() * inverse_slope;
                 if distance <= tolerance.residual {
                     ok[i] = true;
                     continue;
                 }
-                points[i] -= gradient * (value / slope_sq);
+                points[i] -= normal[i] * (value * inverse_slope);
                 if (points[i] - start[i]).length_squared() > reach * reach {
                     continue;
                 }

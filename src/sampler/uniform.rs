@@ -337,9 +337,7 @@ impl Front {
         let reach = self.reach();
         let mut found = core::mem::take(&mut self.found);
         self.grid.gather(p, reach, &mut found);
-        let collision = 2.0 * self.radius + self.match_radius;
-        self.around.fill(&found, collision * collision, particles);
-        self.list_pairs(&found, pairs, particles, parent);
+        self.read_surroundings(&found, pairs, particles, parent);
 
         let grandparent = particles.parent[parent];
         let is_seed = grandparent == Particles::NO_PARENT;
@@ -369,7 +367,8 @@ impl Front {
             let sin_theta = (-curvature * self.radius).clamp(-0.9, 0.9);
             let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
             let offset = (direction * cos_theta + n * sin_theta) * distance;
-            let normal = (n + (u * su + w * sw) * (distance * cos_theta)).try_normalize().unwrap_or(n);
+            // The turn is tangential, so the sum is never shorter than n.
+            let normal = n + (u * su + w * sw) * (distance * cos_theta);
 
             let nearest_sq = self.around.nearest_sq(offset, normal, slack_sq);
             if nearest_sq <= self.match_radius * self.match_radius {
@@ -386,6 +385,7 @@ impl Front {
             }
             let index = particles.len() as u32;
             let position = p + offset;
+            let normal = normal.normalize_or(n);
             particles.push(position, normal, self.radius, parent as u32, level, initial_slots());
             self.children.push(Child {
                 circle: Circle {
@@ -408,15 +408,27 @@ impl Front {
         self.found = found;
     }
 
-    /// Lists the particles before `parent` that repel it: all of them are final, so the list is complete.
-    fn list_pairs(&self, found: &[Neighbour], pairs: &mut Pairs, particles: &Particles, parent: usize) {
-        let reach = (CUT_OFF + SKIN) * self.radius;
+    /// Reads what was gathered around `parent`: what its children may collide with, and, into `pairs`, the particles
+    /// before it that repel it. All of those are final, so the list is complete.
+    fn read_surroundings(
+        &mut self,
+        found: &[Neighbour],
+        pairs: &mut Pairs,
+        particles: &Particles,
+        parent: usize,
+    ) {
+        let collision = 2.0 * self.radius + self.match_radius;
+        let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
+        self.around.len = 0;
         pairs.push(found.iter().filter_map(|near| {
             let j = near.index as usize;
-            let listed =
-                j < parent && near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0;
-            listed.then_some(near.index)
+            let other = particles.normal[j];
+            if near.distance_sq <= collision * collision {
+                self.around.push(near.offset, other);
+            }
+            let repels = near.distance_sq <= repulsion * repulsion && other.dot(normal) > 0.0;
+            (j < parent && repels).then_some(near.index)
         }));
     }
 
@@ -564,14 +576,6 @@ impl Front {
 }
 
 impl Surroundings {
-    /// Reads the gathered particles that a child may collide with.
-    fn fill(&mut self, found: &[Neighbour], distance_sq: f32, particles: &Particles) {
-        self.len = 0;
-        for near in found.iter().filter(|near| near.distance_sq <= distance_sq) {
-            self.push(near.offset, particles.normal[near.index as usize]);
-        }
-    }
-
     #[inline(always)]
     fn push(&mut self, offset: Vec3, normal: Vec3) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
@@ -591,18 +595,20 @@ impl Surroundings {
         self.len += 1;
     }
 
-    /// Squared distance from `offset` to the nearest particle on the sheet of a point with the normal `normal`.
+    /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
+    /// `normal`, of whatever length.
     #[inline(always)]
     fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> f32 {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
+        let max_rise_sq = Lanes::splat(MAX_RISE_SQ * normal.length_squared());
         let mut nearest = Lanes::splat(f32::INFINITY);
         for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
             let (dx, dy, dz) = (x - ox, y - oy, z - oz);
             let distance_sq = dx * dx + dy * dy + dz * dz;
             let rise = dx * nx + dy * ny + dz * nz;
             let along = nx * mx + ny * my + nz * mz;
-            let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * Lanes::splat(MAX_RISE_SQ);
+            let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * max_rise_sq;
             for lane in 0..LANES {
                 let same = (along.0[lane] > 0.0) & (excess.0[lane] <= 0.0);
                 let d = if same { distance_sq.0[lane] } else { f32::INFINITY };
