@@ -34,6 +34,7 @@ pub(super) fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Ve
     let mut values = [0.0_f32; BATCH * PLACES];
     let mut found = Vec::with_capacity(2 * LINES);
     let mut leash = Vec::with_capacity(2 * LINES);
+    let mut ends = Vec::with_capacity(2 * LINES);
     for _ in 0..LINES / BATCH {
         for line in places.chunks_exact_mut(PLACES) {
             let (from, to) = chord(&mut random, bounds);
@@ -50,6 +51,7 @@ pub(super) fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Ve
                     let share = a / (a - b);
                     found.push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
                     leash.push((line[k] - line[k - 1]).length());
+                    ends.push(a.abs().max(b.abs()));
                 }
             }
         }
@@ -60,7 +62,9 @@ pub(super) fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Ve
     field.gradients(&found, &mut value, &mut gradient);
     let mut k = 0;
     found.retain(|&p| {
-        let on_surface = value[k].abs() <= RESIDUAL * leash[k] * gradient[k].length();
+        // Towards a pole f grows beyond its values at the ends, however small |f|/|∇f| becomes.
+        let on_surface =
+            value[k].abs() <= RESIDUAL * leash[k] * gradient[k].length() && value[k].abs() <= ends[k];
         k += 1;
         on_surface && bounds.contains(p)
     });

@@ -294,6 +294,12 @@ impl Sampler {
                 settings.max_particles
             ));
         }
+        if self.survey.touches {
+            warnings.push(
+                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice"
+                    .into(),
+            );
+        }
         self.begin_attempt();
         Ok(Start { radius: self.radius, predicted_count: predicted as u64, area, warnings })
     }
@@ -366,7 +372,7 @@ impl Sampler {
         while left > 0 {
             match self.phase {
                 Phase::Idle | Phase::Done => break,
-                Phase::Seeding => left = self.seed(left),
+                Phase::Seeding => left = self.seed(field, left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
                     left = if self.filling {
@@ -472,14 +478,19 @@ impl Sampler {
                 self.settings.max_particles
             ),
             StopReason::NoSurface if self.survey.absence == Absence::Proven => {
-                "No surface in this box: f keeps one sign throughout (proven by interval arithmetic).".into()
+                "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
             }
-            StopReason::NoSurface => {
+            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
                 "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
                     .into()
             }
+            StopReason::NoSurface => {
+                "No surface found in this box: f changes its sign there, but only where it jumps, has a pole or \
+                 loses its gradient."
+                    .into()
+            }
             StopReason::Constant => {
-                "f has the same value everywhere in the box, so there is no surface to sample.".into()
+                "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
             }
             StopReason::Undefined => "f has no value anywhere in the box.".into(),
             StopReason::OneParticle => {
@@ -490,7 +501,7 @@ impl Sampler {
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
-    fn seed(&mut self, mut budget: u32) -> u32 {
+    fn seed(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
         let count = self.survey.position.len();
         while budget > 0 {
             if self.next_seed >= count {
@@ -513,6 +524,12 @@ impl Sampler {
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
             let clear = UNCOVERED * self.radius as f32;
             if !self.front.is_covered(&self.particles, position, normal, clear) {
+                let start = self.projector.evaluations;
+                let is_zero = self.survey.is_zero(field, &mut self.projector, i);
+                self.counts.seeding_evaluations += self.projector.evaluations - start;
+                if !is_zero {
+                    continue;
+                }
                 if self.particles.len() >= self.settings.max_particles as usize {
                     self.front.capped = true;
                     self.end_generation();

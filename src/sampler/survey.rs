@@ -12,6 +12,11 @@ const CELLS: f64 = 32.0;
 const MAX_STEPS: u32 = 12;
 /// Candidates at which the resolution is measured.
 const RESOLUTION_SAMPLES: usize = 48;
+/// Distance to either side at which a touching is told from a crossing, as a share of the grid's spacing: far beyond the
+/// tolerance of the points, far below what the grid can tell apart.
+const TOUCH_PROBE: f32 = 0.02;
+/// Distance, in tolerances of the survey, at which a zero is told from a pole.
+const POLE_PROBE: f32 = 4.0;
 /// Boxes looked at, at most, to prove that there is no surface.
 const MAX_PROOF_BOXES: usize = 20_000;
 
@@ -28,6 +33,10 @@ pub(super) struct Survey {
     pub(super) gradient_scale: f32,
     /// Distance that rounding can move the computed surface by.
     pub(super) resolution: f32,
+    /// Largest distance of a point from the surface.
+    residual: f32,
+    /// Whether f mostly touches zero without changing its sign.
+    pub(super) touches: bool,
     /// Verdict where there is no point.
     pub(super) absence: Absence,
 }
@@ -44,6 +53,8 @@ pub(super) enum Absence {
     Undefined,
     /// Interval arithmetic proves that f has no zero in the box.
     Proven,
+    /// The grid shows a change of sign, but no point where f comes to zero with a gradient.
+    NoZero,
     /// The grid shows none; too fine a feature could have been missed.
     NotSeen,
 }
@@ -73,6 +84,7 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
     };
     let mut out = Survey::default();
     let mut start: Vec<Vec3> = Vec::new();
+    let mut crosses: Vec<bool> = Vec::new();
     let mut layers =
         [0, 1].map(|_| Layer { value: vec![f32::NAN; nx * ny], gradient: vec![Vec3::ZERO; nx * ny] });
     let (mut least, mut greatest, mut defined) = (f32::INFINITY, f32::NEG_INFINITY, 0_usize);
@@ -123,6 +135,7 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
                         }
                         let t = here.1 / (here.1 - end.1);
                         start.push(here.0 + (end.0 - here.0) * t);
+                        crosses.push(true);
                         crossings += 1;
                         let n = (here.2 + (end.2 - here.2) * t).normalize_or_zero().abs().as_dvec3();
                         let weight = n.x + n.y + n.z;
@@ -134,21 +147,24 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
                     let slope = here.2.length();
                     if crossings == 0 && slope > 0.0 && here.1.abs() <= slope * spacing as f32 {
                         start.push(here.0 - here.2 * (here.1 / (slope * slope)));
+                        crosses.push(false);
                     }
                 }
             }
         }
         layers.swap(0, 1);
     }
-    project(field, bounds, projector, &mut start, spacing as f32, &mut out);
+    project(field, bounds, projector, &mut start, &crosses, spacing as f32, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
         out.absence = if defined == 0 {
             Absence::Undefined
-        } else if least == greatest && defined == nx * ny * nz {
+        } else if least == greatest {
             Absence::Constant
         } else if proven_empty(field, bounds) {
             Absence::Proven
+        } else if crosses.contains(&true) {
+            Absence::NoZero
         } else {
             Absence::NotSeen
         };
@@ -156,19 +172,25 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
     out
 }
 
-/// Moves the places in `start` onto the surface and keeps those that arrive inside the box.
+/// Moves the places in `start` onto the surface and keeps those that arrive inside the box. `crosses` tells of each
+/// whether f changes its sign there.
 fn project(
     field: &mut dyn Field,
     bounds: &Bounds,
     projector: &mut Projector,
     start: &mut [Vec3],
+    crosses: &[bool],
     spacing: f32,
     out: &mut Survey,
 ) {
+    // The gradient at the surface: where f changes its sign, unless it nowhere does. Where f is small beside its gradient
+    // without a change of sign, both may be of any size.
+    let by_crossings = crosses.contains(&true);
     let mut slopes = Vec::new();
-    for chunk in start.chunks(BATCH) {
+    for (chunk, crosses) in start.chunks(BATCH).zip(crosses.chunks(BATCH)) {
         let (_, gradient) = projector.evaluate_batch(field, chunk);
-        slopes.extend(gradient.iter().map(|g| g.length()).filter(|g| g.is_finite() && *g > 0.0));
+        let counted = gradient.iter().zip(crosses).filter(|(_, crosses)| **crosses || !by_crossings);
+        slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
     slopes.sort_by(f32::total_cmp);
     out.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(0.0);
@@ -197,7 +219,33 @@ fn project(
             }
         }
     }
+    out.residual = coarse.residual;
     out.resolution = ulps.max(rounding(field, projector, &out.position));
+    out.touches = touches(field, projector, out, TOUCH_PROBE * spacing);
+}
+
+impl Survey {
+    /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
+    /// zero and falls away from a pole.
+    pub(super) fn is_zero(&self, field: &mut dyn Field, projector: &mut Projector, i: usize) -> bool {
+        let (p, n) = (self.position[i], self.normal[i]);
+        let step = POLE_PROBE * self.residual.max(self.resolution);
+        let (value, _) = projector.evaluate_batch(field, &[p, p + n * step, p - n * step]);
+        // NaN, where f ends, is no larger.
+        value[1].abs() > value[0].abs() || value[2].abs() > value[0].abs()
+    }
+}
+
+/// Whether f has the same sign on both sides of most of a selection of the points, at `distance`.
+fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, distance: f32) -> bool {
+    let stride = survey.position.len().div_ceil(RESOLUTION_SAMPLES).max(1);
+    let (mut same, mut seen) = (0, 0);
+    for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
+        let (value, _) = projector.evaluate_batch(field, &[p + n * distance, p - n * distance]);
+        same += usize::from(value[0] * value[1] > 0.0);
+        seen += 1;
+    }
+    2 * same > seen
 }
 
 /// Upper quartile of the distance between the surface in single and in double precision, doubled.

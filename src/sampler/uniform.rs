@@ -44,6 +44,10 @@ const MAX_RISE_SQ: f32 = 0.5;
 /// Distance, as a share of the match radius, below which the direction between two particles tells nothing.
 const RISE_SLACK: f32 = 0.5;
 
+/// Cosine of the largest angle, 26°, between the normal that a child was compared with the others by and the one that
+/// it has on the surface; beyond, it is compared again.
+const SAME_SIDE: f32 = 0.9;
+
 /// Side of the grid's cells over the radius of the queries. It was chosen by counting instructions, which hardly change
 /// from 1.2 to 2.5, and by memory: larger cells fill their blocks better.
 pub(super) const CELL_PER_REACH: f32 = 2.0;
@@ -531,8 +535,10 @@ impl Front {
             Landing::On { position, .. } if !self.bounds.contains(position) => SlotFate::Outside,
             Landing::On { position, normal } => {
                 let moved = (position - particles.position[provisional]).length();
-                // Nothing can be nearer than the clearance less what both have moved.
-                let safe = child.clearance - moved - self.drift > self.match_radius;
+                // Nothing of its sheet can be nearer than the clearance less what both have moved, if it is still the
+                // sheet that the clearance was measured on: where sheets cross, the normal may have flipped.
+                let same_side = normal.dot(particles.normal[provisional]) > SAME_SIDE;
+                let safe = same_side && child.clearance - moved - self.drift > self.match_radius;
                 if !safe && self.collides(particles, position, normal) {
                     SlotFate::Matched
                 } else {

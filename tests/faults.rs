@@ -1,0 +1,167 @@
+//! What becomes of formulas that have no good surface: poles, jumps, crossings, points without a normal, open surfaces.
+//! The sampler ends on all of them, places particles only on zeros, and says in words what it met.
+
+use glam::Vec3;
+use marching_particles::math::Bounds;
+use marching_particles::sampler::{Progress, Settings, StopReason};
+use marching_particles::session::{FieldRequest, Report, Session};
+
+/// Samples `formula` in the cube of half-width `half`.
+fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress, Report) {
+    let mut session = Session::new();
+    let request = FieldRequest {
+        formula: Some(formula.into()),
+        bounds: Some(Bounds { min: [-half; 3], max: [half; 3] }),
+        ..FieldRequest::default()
+    };
+    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    // Far more work than any of these surfaces takes: a run that never ends fails here.
+    let mut progress = session.step(0);
+    for _ in 0..2_000 {
+        if progress.stop_reason.is_some() {
+            break;
+        }
+        progress = session.step(5_000);
+    }
+    assert!(progress.stop_reason.is_some(), "{formula}: not done after 10 million units of work");
+    let report = session.report();
+    let columns = session.particles();
+    for (p, n) in columns.position.iter().zip(&columns.normal) {
+        assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-5, "{formula}: {p} with the normal {n}");
+    }
+    (session, progress, report)
+}
+
+fn coarse() -> Settings {
+    Settings { radius_share: 0.01, ..Settings::default() }
+}
+
+/// Particles that hexagons of this radius take on an area.
+fn expected(area: f64, report: &Report) -> f64 {
+    area / (2.0 * 3.0_f64.sqrt() * report.radius * report.radius)
+}
+
+#[test]
+fn poles_are_not_taken_for_zeros() {
+    // The last but one has its pole a hair beside the place where the grid looks for it.
+    for formula in ["1/x", "1/(x - 0.03125)", "1/(x - 0.0312501)", "1/(x^2 + y^2 + z^2 - 0.5)"] {
+        let (session, progress, _) = sampled(formula, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
+        assert_eq!(session.count(), 0, "{formula}");
+        assert!(progress.message.is_some_and(|m| !m.contains("keeps one sign")), "{formula}");
+    }
+    // Three planes of zeros, at 0 and ±π/4, and two of poles between them, at ±π/8.
+    let (session, _, report) = sampled("tan(4x)", 1.0, &coarse());
+    for p in &session.particles().position {
+        let from_zero = (p.x / core::f32::consts::FRAC_PI_4).round() * core::f32::consts::FRAC_PI_4 - p.x;
+        assert!(from_zero.abs() < 1e-4, "{p}");
+    }
+    let share = report.count as f64 / expected(12.0, &report);
+    assert!((0.9..1.2).contains(&share), "{} particles are {share} of a cover", report.count);
+    // The holes are those of the zeros: the poles are no surface that the particles leave bare.
+    assert!(report.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.quality);
+}
+
+#[test]
+fn an_undefined_region_ends_the_front_and_is_counted() {
+    // Half of a sphere is there.
+    let (session, progress, report) = sampled("x^2 + y^2 + z^2 - 0.6 + 0*ln(x)", 1.0, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    assert!(report.fates.undefined > 20, "{:?}", report.fates);
+    assert!(report.warnings.iter().any(|w| w.contains("without a value")), "{:?}", report.warnings);
+    assert!(session.particles().position.iter().all(|p| p.x > 0.0));
+    let share = report.count as f64 / expected(core::f64::consts::TAU * 0.6, &report);
+    assert!((0.9..1.2).contains(&share), "{share}");
+}
+
+#[test]
+fn a_singular_point_stops_its_neighbours_from_nothing() {
+    // Apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where the gradient vanishes along
+    // whole lines: the cover goes on beyond, and the run ends.
+    for (formula, area) in [
+        ("x^2 + y^2 - z^2", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
+        ("hypot(x, y) - abs(z)", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
+        ("abs(x) + abs(y) + abs(z) - 1", 4.0 * 3.0_f64.sqrt()),
+        ("y^2 - x^3", 2.0 * 2.0 * 1.44),
+        ("x y", 8.0),
+        ("(x - y)*(x + y)", 8.0 * core::f64::consts::SQRT_2),
+        ("x y z", 12.0),
+        ("sin(5x)*sin(5y)*sin(5z)", 36.0),
+    ] {
+        let (_, progress, report) = sampled(formula, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        let share = report.count as f64 / expected(area, &report);
+        assert!(
+            (0.85..1.35).contains(&share),
+            "{formula}: {} particles are {share} of a cover",
+            report.count
+        );
+    }
+}
+
+#[test]
+fn a_square_is_sampled_and_said_to_be_one() {
+    let (session, progress, report) = sampled("(x^2 + y^2 + z^2 - 0.5)^2", 1.0, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    assert!(report.warnings.iter().any(|w| w.contains("without changing its sign")), "{:?}", report.warnings);
+    for p in &session.particles().position {
+        assert!((p.length() - 0.5_f32.sqrt()).abs() < 1e-3 * 0.5, "{p}");
+    }
+    let (_, _, report) = sampled("x^2 + y^2 + z^2 - 0.5", 1.0, &coarse());
+    assert_eq!(report.warnings, Vec::<String>::new());
+}
+
+#[test]
+fn jumps_are_no_surface_and_end_the_search_on_the_circle() {
+    for formula in ["floor(3x) + 0.5", "sign(x - 0.1234) + y/100", "sign(x)"] {
+        let (session, progress, _) = sampled(formula, 0.9, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
+        assert_eq!(session.count(), 0, "{formula}");
+        assert!(progress.message.is_some_and(|m| m.contains("jumps")), "{formula}");
+    }
+    // Steps: treads that are surface, risers that are not.
+    let (session, progress, report) = sampled("floor(5x)/5 - y", 1.0, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    assert!(report.fates.not_converged > 100, "{:?}", report.fates);
+    assert!(report.warnings.iter().any(|w| w.contains("found no surface")), "{:?}", report.warnings);
+    for p in &session.particles().position {
+        assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
+    }
+    // A search takes at most 50 evaluations, and a particle's six slots are searched once.
+    let slots = 6.0 * report.count as f64;
+    assert!(report.evaluations_per_particle * report.count as f64 <= 50.0 * slots, "{report:?}");
+}
+
+#[test]
+fn an_open_surface_ends_at_the_box_and_its_border_is_counted() {
+    for formula in ["z = x^2 - y^2", "x", "sin(3x) + sin(3y) + sin(3z)"] {
+        let (session, progress, report) = sampled(formula, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        assert!(report.fates.outside > 50, "{formula}: {:?}", report.fates);
+        assert!(report.quality.is_some_and(|q| q.boundary_excluded > 50), "{formula}");
+        assert!(session.particles().position.iter().all(|p| p.abs().cmple(Vec3::ONE).all()), "{formula}");
+    }
+}
+
+#[test]
+fn every_component_has_a_front_and_they_are_counted() {
+    // Eight balls; the metaballs of the formula are apart at this level.
+    let formula = "(abs(x) - 0.5)^2 + (abs(y) - 0.5)^2 + (abs(z) - 0.5)^2 = 0.06";
+    let (_, progress, report) = sampled(formula, 1.0, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    assert_eq!(report.components_seeded, 8);
+    assert_eq!(report.quality.map(|q| q.components), Some(8));
+    assert_eq!(report.quality.map(|q| q.euler), Some(16));
+}
+
+#[test]
+fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
+    let (_, _, tame) = sampled("x", 1.0, &coarse());
+    for formula in ["exp(20x) - 1", "exp(100x) - 1", "1e12 x", "1e-12 x", "atan(1000x)"] {
+        let (session, progress, report) = sampled(formula, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        assert!((report.count as f64 / tame.count as f64 - 1.0).abs() < 0.05, "{formula}: {}", report.count);
+        assert!(session.particles().position.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
+    }
+}
