@@ -198,6 +198,17 @@ fn the_cap_stops_a_run_and_says_so() {
 }
 
 #[test]
+fn a_wanted_count_as_large_as_the_limit_is_met() {
+    for count in [1_500, 12_000] {
+        let mut session = Session::new();
+        let settings = Settings { max_particles: count, relax_steps: 0, ..sized(count) };
+        assert_eq!(run(&mut session, &settings, 10_000), StopReason::Complete);
+        let miss = session.count() as f64 / f64::from(count) - 1.0;
+        assert!(miss.abs() <= 0.03, "{} particles for {count}", session.count());
+    }
+}
+
+#[test]
 fn every_row_of_the_report_is_in_the_report() {
     let mut session = Session::new();
     run(&mut session, &sized(800), 1000);

@@ -45,6 +45,12 @@ const COUNT_TOLERANCE: f64 = 0.03;
 /// Attempts at meeting a wanted count.
 const MAX_ATTEMPTS: u32 = 4;
 
+/// Attempts at a wanted count may overshoot it by this factor before they run into the limit on particles.
+const COUNT_ROOM: f64 = 1.1;
+
+/// Bytes that a run takes per particle at its peak, the columns included: what tests/memory.rs holds it to.
+const BYTES_PER_PARTICLE: usize = 216;
+
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
 const UNCOVERED: f32 = 2.0;
@@ -246,7 +252,8 @@ impl Sampler {
     ///
     /// # Errors
     ///
-    /// If a setting or the box is invalid; an earlier run is then left as it is.
+    /// If a setting or the box is invalid; an earlier run is then left as it is. If there is no memory for the particles
+    /// to expect; there is no run then.
     pub fn start(
         &mut self,
         field: &mut dyn Field,
@@ -300,8 +307,25 @@ impl Sampler {
                     .into(),
             );
         }
+        if settings.size_mode == SizeMode::Count && settings.count <= settings.max_particles {
+            let room = (f64::from(settings.count) * COUNT_ROOM) as u32;
+            self.settings.max_particles = settings.max_particles.max(room);
+        }
+        let most = (predicted * RESERVE).min(f64::from(self.settings.max_particles)) as usize;
+        if !self.has_room_for(most) {
+            self.phase = Phase::Idle;
+            return Err(SettingsError::Memory { particles: predicted as u64 });
+        }
         self.begin_attempt();
         Ok(Start { radius: self.radius, predicted_count: predicted as u64, area, warnings })
+    }
+
+    /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
+    /// of a run cannot be caught.
+    fn has_room_for(&self, particles: usize) -> bool {
+        let more = particles.saturating_sub(self.particles.position.capacity());
+        more.checked_mul(BYTES_PER_PARTICLE)
+            .is_some_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
     }
 
     /// Empties the columns and prepares a front of the present radius.

@@ -43,7 +43,8 @@ pub struct Settings {
     pub gaps: GapPolicy,
     /// Chooses the first point among those found on the surface.
     pub seed: u64,
-    /// Most particles generated; a run that reaches it stops with what it has.
+    /// Most particles generated; a run that reaches it stops with what it has. A wanted count up to it may be missed
+    /// upwards like any other.
     pub max_particles: u32,
 }
 
@@ -80,6 +81,12 @@ pub enum SettingsError {
     /// The clip box has no volume or a corner that is not a number.
     #[error("the box must have finite corners and a positive size on every axis")]
     Box,
+    /// The columns of that many particles do not fit into the memory.
+    #[error("there is not enough memory for about {particles} particles: choose fewer, or a larger radius")]
+    Memory {
+        /// Particles to expect.
+        particles: u64,
+    },
 }
 
 impl Settings {

@@ -1,4 +1,5 @@
-// Holds the core as WebAssembly to the digests that the native core is held to by tests/parity.rs.
+// Holds the core as WebAssembly to the digests that the native core is held to by tests/parity.rs, and to an answer in
+// words where the memory is used up.
 //
 // Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core`.
 import { readFile } from 'node:fs/promises';
@@ -7,7 +8,7 @@ import process from 'node:process';
 const root = new URL('../../', import.meta.url);
 const bundle = new URL('www/src/wasm/core/', root);
 const { initSync, Core } = await import(new URL('core.js', bundle).href);
-initSync({ module: await readFile(new URL('core_bg.wasm', bundle)) });
+const { memory } = initSync({ module: await readFile(new URL('core_bg.wasm', bundle)) });
 
 /** Units of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 977;
@@ -38,4 +39,24 @@ for (const run of runs) {
   failures += same ? 0 : 1;
   console.log(`${same ? 'same' : 'DIFFERENT'}  ${run.name}: ${count} particles ${digest}${same ? '' : `, natively ${run.count} ${run.digest}`}`);
 }
+
+// With no memory left, a run that needs more is refused in words, and the instance goes on working.
+const core = new Core();
+const enough = { radius_share: 0.02, relax_steps: 2 };
+accepted(core.start(JSON.stringify(enough)), 'a run before the memory is used up');
+while (JSON.parse(core.step(BUDGET)).stop_reason === null);
+const digest = core.digest();
+for (let pages = 32_768; pages >= 1; pages = Math.floor(pages / 2)) {
+  try {
+    for (;;) memory.grow(pages);
+  } catch {
+    // No piece of this size is left: half of it may be.
+  }
+}
+const answer = JSON.parse(core.start(JSON.stringify({ size_mode: 'count', count: 3_000_000, max_particles: 4_000_000 })));
+if (answer.ok || !/not enough memory/.test(answer.error.message)) throw new Error(`without memory: ${JSON.stringify(answer)}`);
+accepted(core.start(JSON.stringify(enough)), 'a run after one that was refused');
+while (JSON.parse(core.step(BUDGET)).stop_reason === null);
+if (core.digest() !== digest) throw new Error('a run after one that was refused has other particles');
+console.log('same  without memory a run is refused, and the next works');
 process.exitCode = failures > 0 ? 1 : 0;
