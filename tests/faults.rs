@@ -165,3 +165,32 @@ fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
         assert!(session.particles().position.iter().all(|p| p.x.abs() < 1e-4), "{formula}");
     }
 }
+
+#[test]
+fn sheets_nearer_than_a_spacing_are_kept_apart() {
+    // Two planes 0.01 apart, particles ten times that.
+    let (session, progress, _) = sampled("z^2 - 0.000025", 1.0, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    let position = &session.particles().position;
+    let upper = position.iter().filter(|p| p.z > 0.0).count() as f64;
+    let lower = position.len() as f64 - upper;
+    assert!(upper > 100.0 && (upper / lower - 1.0).abs() < 0.1, "{upper} above, {lower} below");
+    assert!(position.iter().all(|p| (p.z.abs() - 0.005).abs() < 1e-4));
+}
+
+#[test]
+fn every_run_ends_whatever_the_field() {
+    let formulas = [
+        "sin(40 x) sin(40 y) sin(40 z)",
+        "floor(5 x) floor(5 y) - z",
+        "min(x, y, z)",
+        "exp(20 x) - exp(20 y)",
+        "tan(10 x) + tan(10 y) + tan(10 z)",
+        "acos(2 x) - y",
+        "atan2(y, x) - z",
+        "x^1000 + y^1000 - z",
+    ];
+    for formula in formulas {
+        sampled(formula, 1.0, &Settings { max_particles: 20_000, ..coarse() });
+    }
+}

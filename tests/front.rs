@@ -16,6 +16,13 @@ use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopRe
 /// Surfaces on which the claims are made: name and Euler number.
 const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
+/// Least share of particles with six neighbours and least mean smallest angle after the front, at 56,000 particles. The
+/// aim is 0.93 and 55.5° everywhere. The torus misses the angle and the tanglecube both: where the curvature changes sign,
+/// rows of the front are squeezed on one side and spread on the other, and fronts that went around a handle meet out of
+/// step; the hexagons of the paper do not bend for that.
+const ORDER: [(&str, f64, f64); 4] =
+    [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
+
 fn sampled(surface: &str, settings: &Settings) -> Sampler {
     let surface = gallery::find(surface).expect("a gallery surface");
     let mut field = surface.field();
@@ -256,6 +263,19 @@ fn a_front_covers_smooth_surfaces_in_order() {
         // Nothing is closer than the match tolerance.
         let closest = figures.nn_min * figures.d_hex / (2.0 * sampler.radius());
         assert!(closest >= 0.7 * (1.0 - 1e-5), "{context}: closest pair {closest}");
+    }
+}
+
+#[test]
+fn most_particles_of_a_front_have_six_neighbours() {
+    for (surface, six, angle) in ORDER {
+        let settings =
+            Settings { size_mode: SizeMode::Count, count: 55_748, relax_steps: 0, ..Settings::default() };
+        let sampler = sampled(surface, &settings);
+        let figures = figures(surface, sampler.particles());
+        let context = format!("{surface}, {} particles, seed 0: {figures:?}", sampler.particles().len());
+        assert!(figures.six >= six, "{context}");
+        assert!(figures.ang_min_mean >= angle, "{context}");
     }
 }
 

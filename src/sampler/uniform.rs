@@ -44,9 +44,9 @@ const MAX_RISE_SQ: f32 = 0.5;
 /// Distance, as a share of the match radius, below which the direction between two particles tells nothing.
 const RISE_SLACK: f32 = 0.5;
 
-/// Cosine of the largest angle, 26°, between the normal that a child was compared with the others by and the one that
-/// it has on the surface; beyond, it is compared again.
-const SAME_SIDE: f32 = 0.9;
+/// Room for the way from a provisional to a final place, in r. Children of smooth surfaces move by a hundredth of it; those
+/// that move farther are compared again.
+const DRIFT_ROOM: f32 = 0.2;
 
 /// Side of the grid's cells over the radius of the queries. It was chosen by counting instructions, which hardly change
 /// from 1.2 to 2.5, and by memory: larger cells fill their blocks better.
@@ -95,7 +95,7 @@ struct Child {
     circle: Circle,
     slot: u32,
     place: Place,
-    /// Distance to the nearest particle of its sheet when it was found free.
+    /// Distance to the nearest particle, of whatever sheet, when it was found free; at most what was looked at.
     clearance: f32,
 }
 
@@ -211,7 +211,13 @@ impl Front {
 
     /// Everything that a child can collide with, and every neighbour that repels a particle, is within this distance.
     fn reach(&self) -> f32 {
-        (2.0 * self.radius + self.match_radius).max((CUT_OFF + SKIN) * self.radius)
+        (2.0 * self.radius + self.looked_at()).max((CUT_OFF + SKIN) * self.radius)
+    }
+
+    /// Distance around a provisional place within which every particle is looked at: the match radius, and what a child
+    /// and its neighbours may move when they are projected.
+    fn looked_at(&self) -> f32 {
+        self.match_radius + DRIFT_ROOM * self.radius
     }
 
     /// Whether every particle has placed its children.
@@ -374,7 +380,7 @@ impl Front {
             // The turn is tangential, so the sum is never shorter than n.
             let normal = n + (u * su + w * sw) * (distance * cos_theta);
 
-            let nearest_sq = self.around.nearest_sq(offset, normal, slack_sq);
+            let (nearest_sq, any_sq) = self.around.nearest_sq(offset, normal, slack_sq);
             if nearest_sq <= self.match_radius * self.match_radius {
                 seam |= nearest_sq > (SEAM * distance) * (SEAM * distance);
                 slots.set(k, SlotFate::Matched);
@@ -401,7 +407,7 @@ impl Front {
                 },
                 slot: k as u32,
                 place: self.grid.insert(position, index),
-                clearance: nearest_sq.sqrt(),
+                clearance: any_sq.sqrt().min(self.looked_at()),
             });
             self.around.push(offset, normal);
         }
@@ -421,7 +427,7 @@ impl Front {
         particles: &Particles,
         parent: usize,
     ) {
-        let collision = 2.0 * self.radius + self.match_radius;
+        let collision = 2.0 * self.radius + self.looked_at();
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
         self.around.len = 0;
@@ -535,10 +541,9 @@ impl Front {
             Landing::On { position, .. } if !self.bounds.contains(position) => SlotFate::Outside,
             Landing::On { position, normal } => {
                 let moved = (position - particles.position[provisional]).length();
-                // Nothing of its sheet can be nearer than the clearance less what both have moved, if it is still the
-                // sheet that the clearance was measured on: where sheets cross, the normal may have flipped.
-                let same_side = normal.dot(particles.normal[provisional]) > SAME_SIDE;
-                let safe = same_side && child.clearance - moved - self.drift > self.match_radius;
+                // Nothing can be nearer than the clearance less what both have moved. The clearance is from all sheets:
+                // the final normal may be that of another sheet than the provisional one.
+                let safe = child.clearance - moved - self.drift > self.match_radius;
                 if !safe && self.collides(particles, position, normal) {
                     SlotFate::Matched
                 } else {
@@ -590,8 +595,9 @@ impl Surroundings {
         }
         let columns = &mut self.chunks[chunk];
         if lane == 0 {
-            // Lanes without a particle have no normal and belong to no sheet.
-            *columns = [Lanes::splat(0.0); 6];
+            // Lanes without a particle are infinitely far, have no normal and belong to no sheet.
+            let (far, none) = (Lanes::splat(f32::INFINITY), Lanes::splat(0.0));
+            *columns = [far, far, far, none, none, none];
         }
         for (column, value) in
             columns.iter_mut().zip([offset.x, offset.y, offset.z, normal.x, normal.y, normal.z])
@@ -602,12 +608,13 @@ impl Surroundings {
     }
 
     /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
-    /// `normal`, of whatever length.
+    /// `normal`, of whatever length; and to the nearest of any sheet.
     #[inline(always)]
-    fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> f32 {
+    fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
         let max_rise_sq = Lanes::splat(MAX_RISE_SQ * normal.length_squared());
+        let mut any = Lanes::splat(f32::INFINITY);
         let mut nearest = Lanes::splat(f32::INFINITY);
         for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
             let (dx, dy, dz) = (x - ox, y - oy, z - oz);
@@ -616,12 +623,15 @@ impl Surroundings {
             let along = nx * mx + ny * my + nz * mz;
             let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * max_rise_sq;
             for lane in 0..LANES {
+                let d = distance_sq.0[lane];
+                any.0[lane] = if d < any.0[lane] { d } else { any.0[lane] };
                 let same = (along.0[lane] > 0.0) & (excess.0[lane] <= 0.0);
                 let d = if same { distance_sq.0[lane] } else { f32::INFINITY };
                 nearest.0[lane] = if d < nearest.0[lane] { d } else { nearest.0[lane] };
             }
         }
-        nearest.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+        let least = |lanes: Lanes| lanes.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+        (least(nearest), least(any))
     }
 }
 
