@@ -9,6 +9,7 @@
 
 pub mod export;
 pub mod field;
+pub mod json;
 pub mod math;
 pub mod particles;
 pub mod quality;

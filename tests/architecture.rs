@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 /// Who may use whom. A module is named by its path under the crate; the longest entry that fits a file counts. What is
 /// not listed may not be used, and a module that is not listed has no place in the graph yet.
-const MAY_USE: [(&str, &[&str]); 14] = [
+const MAY_USE: [(&str, &[&str]); 15] = [
     ("math", &[]),
+    ("json", &["math"]),
     ("field", &["math"]),
     ("differential", &["math", "field"]),
     // Particles and the search among them know no field: they hold whatever made them.
@@ -36,7 +37,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ),
     // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
     ("render", &["math"]),
-    ("web/core", &["field", "sampler", "session"]),
+    ("web/core", &["json", "field", "sampler", "session"]),
     ("web/render", &["render"]),
 ];
 

@@ -224,7 +224,12 @@ fn every_row_of_the_report_is_in_the_report() {
     }
     let settings = serde_json::to_value(Settings::default()).unwrap();
     for setting in &description.settings {
-        assert_eq!(settings[setting.name], setting.default, "{}", setting.name);
+        assert_eq!(
+            settings[setting.name],
+            serde_json::to_value(setting.default).unwrap(),
+            "{}",
+            setting.name
+        );
     }
     assert_eq!(settings.as_object().unwrap().len(), description.settings.len());
 }

@@ -1,6 +1,7 @@
 //! Small numeric building blocks that every other module may use: SIMD lanes, symmetric matrices, tangent
 //! frames, boxes and the tolerances shared across the crate.
 
+pub mod decimal;
 pub mod functions;
 mod lanes;
 

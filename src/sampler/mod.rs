@@ -297,8 +297,8 @@ impl Sampler {
         let mut warnings = Vec::new();
         if predicted > f64::from(settings.max_particles) {
             warnings.push(format!(
-                "about {predicted:.0} particles would fit, more than the limit of {}; the run will stop there",
-                settings.max_particles
+                "about {} particles would fit, more than the limit of {}; the run will stop there",
+                predicted as u64, settings.max_particles
             ));
         }
         if self.survey.touches {

@@ -1,5 +1,6 @@
 //! What a caller may choose, with the paper's values as defaults.
 
+use crate::math::decimal::text;
 use serde::{Deserialize, Serialize};
 
 /// How the particles' size is given.
@@ -67,7 +68,7 @@ impl Default for Settings {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// The value is not a number within the range.
-    #[error("{name} is {value}, but must lie between {min} and {max}")]
+    #[error("{name} is {}, but must lie between {} and {}", text(*.value), text(*.min), text(*.max))]
     OutOfRange {
         /// Name of the setting.
         name: &'static str,

@@ -4,9 +4,8 @@
 use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::math::Bounds;
-use crate::sampler::Settings;
+use crate::sampler::{GapPolicy, Settings, SizeMode};
 use serde::Serialize;
-use serde_json::{Value, json};
 
 /// The whole description.
 #[derive(Clone, Debug, Serialize)]
@@ -80,7 +79,30 @@ pub struct Setting {
     /// One line of explanation.
     pub help: &'static str,
     /// Shown only when another setting has this value.
-    pub when: Option<Value>,
+    pub when: Option<Condition>,
+}
+
+/// The value of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// Of a number.
+    Number(f64),
+    /// Of a whole number.
+    Integer(u64),
+    /// Of the choice of the size.
+    Size(SizeMode),
+    /// Of the choice about gaps.
+    Gaps(GapPolicy),
+}
+
+/// When a setting is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Condition {
+    /// Name of another setting.
+    pub name: &'static str,
+    /// The value that it has then.
+    pub value: SizeMode,
 }
 
 /// One value of a choice.
@@ -175,7 +197,7 @@ fn settings() -> Vec<Setting> {
             name,
             label,
             group: "Sampling",
-            kind: if default.is_f64() { "number" } else { "integer" },
+            kind: if matches!(default, Value::Number(_)) { "number" } else { "integer" },
             default,
             min,
             max,
@@ -196,33 +218,33 @@ fn settings() -> Vec<Setting> {
                 Choice { value: "count", label: "Count" },
             ],
             help: "Give the size of the particles, or how many there should be.",
-            ..number("size_mode", "Size by", json!(default.size_mode), 0.0)
+            ..number("size_mode", "Size by", Value::Size(default.size_mode), 0.0)
         },
         Setting {
             scale: "log",
             unit: "%",
             help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
-            when: Some(json!({ "name": "size_mode", "value": "radius" })),
-            ..number("radius_share", "Radius", json!(default.radius_share), 0.01)
+            when: Some(Condition { name: "size_mode", value: SizeMode::Radius }),
+            ..number("radius_share", "Radius", Value::Number(default.radius_share), 0.01)
         },
         Setting {
             scale: "log",
             unit: "particles",
             help: "Wanted number of particles, met within 3 %.",
-            when: Some(json!({ "name": "size_mode", "value": "count" })),
-            ..number("count", "Count", json!(default.count), 0.01)
+            when: Some(Condition { name: "size_mode", value: SizeMode::Count }),
+            ..number("count", "Count", Value::Integer(default.count.into()), 0.01)
         },
         Setting {
             max: Some(100.0),
             unit: "steps",
             help: "Steps of Gaussian repulsion after the generation. The paper takes ten.",
-            ..number("relax_steps", "Relaxation", json!(default.relax_steps), 1.0)
+            ..number("relax_steps", "Relaxation", Value::Integer(default.relax_steps.into()), 1.0)
         },
         Setting {
             unit: "× 2r",
             group: "Advanced",
             help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
-            ..number("match_tolerance", "Match tolerance", json!(default.match_tolerance), 0.01)
+            ..number("match_tolerance", "Match tolerance", Value::Number(default.match_tolerance), 0.01)
         },
         Setting {
             kind: "choice",
@@ -230,21 +252,21 @@ fn settings() -> Vec<Setting> {
             group: "Advanced",
             choices: vec![Choice { value: "fill", label: "Fill" }, Choice { value: "leave", label: "Leave" }],
             help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
-            ..number("gaps", "Gaps", json!(default.gaps), 0.0)
+            ..number("gaps", "Gaps", Value::Gaps(default.gaps), 0.0)
         },
         Setting {
             min: Some(0.0),
             max: Some(999_999.0),
             group: "Advanced",
             help: "Chooses the point on the surface where the front begins.",
-            ..number("seed", "Seed", json!(default.seed), 1.0)
+            ..number("seed", "Seed", Value::Integer(default.seed), 1.0)
         },
         Setting {
             scale: "log",
             unit: "particles",
             group: "Advanced",
             help: "The run stops when it has placed this many.",
-            ..number("max_particles", "Limit", json!(default.max_particles), 0.01)
+            ..number("max_particles", "Limit", Value::Integer(default.max_particles.into()), 0.01)
         },
     ]
 }

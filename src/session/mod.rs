@@ -3,7 +3,9 @@
 
 mod describe;
 
-pub use describe::{Choice, Colour, Description, Fate, ReportRow, Setting, SurfaceEntry, describe};
+pub use describe::{
+    Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
+};
 
 use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, Parameter};
 use crate::field::gallery::{self, Surface};

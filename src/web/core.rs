@@ -1,11 +1,11 @@
 //! The core bundle: a [`Session`] behind JSON strings and copies of the particle columns.
 
-use crate::field::formula::FormulaError;
+use crate::field::formula::{FormulaError, FormulaErrorKind};
+use crate::json;
 use crate::sampler::Settings;
 use crate::session::{FieldError, FieldRequest, Session, describe};
 use glam::Vec3;
 use serde::Serialize;
-use serde_json::{Value, json};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// A sampling session. Strings are JSON; columns are copies, three floats a vector.
@@ -15,29 +15,45 @@ pub struct Core {
 }
 
 fn text(value: &impl Serialize) -> String {
-    serde_json::to_string(value).unwrap_or_else(|error| refusal("json", &error.to_string()))
+    json::to_string(value).unwrap_or_else(|error| refusal("json", &error.to_string()))
 }
 
 fn refusal(kind: &str, message: &str) -> String {
-    json!({ "ok": false, "error": { "kind": kind, "message": message, "start": 0, "end": 0, "suggestion": null, "names": [] } })
-        .to_string()
+    refused(&Refusal { kind, message, start: 0, end: 0, suggestion: None, names: &[] })
 }
 
+/// What is wrong with a request.
+#[derive(Serialize)]
+struct Refusal<'a, Kind> {
+    kind: Kind,
+    message: &'a str,
+    start: usize,
+    end: usize,
+    suggestion: Option<&'a str>,
+    names: &'a [String],
+}
+
+fn refused<Kind: Serialize>(refusal: &Refusal<'_, Kind>) -> String {
+    format!(r#"{{"ok":false,"error":{}}}"#, json::to_string(refusal).unwrap_or_default())
+}
+
+/// An answer, which has fields, with `ok` among them.
 fn accepted(value: &impl Serialize) -> String {
-    let mut value = serde_json::to_value(value).unwrap_or_default();
-    if let Value::Object(fields) = &mut value {
-        fields.insert("ok".into(), true.into());
-    }
-    value.to_string()
+    let mut answer = text(value);
+    answer.insert_str(1, r#""ok":true,"#);
+    answer
 }
 
 fn formula_error(formula: &str, error: &FormulaError) -> String {
     let span = error.utf16_span(formula);
-    json!({ "ok": false, "error": {
-        "kind": error.kind, "message": error.message, "start": span.start, "end": span.end,
-        "suggestion": error.suggestion, "names": error.names,
-    } })
-    .to_string()
+    refused::<FormulaErrorKind>(&Refusal {
+        kind: error.kind,
+        message: &error.message,
+        start: span.start,
+        end: span.end,
+        suggestion: error.suggestion.as_deref(),
+        names: &error.names,
+    })
 }
 
 #[wasm_bindgen]
@@ -57,7 +73,7 @@ impl Core {
 
     /// Changes the field: `FieldRequest` to `FieldAnswer`. After an error the last good field stays.
     pub fn set_field(&mut self, request: &str) -> String {
-        let request: FieldRequest = match serde_json::from_str(request) {
+        let request: FieldRequest = match json::from_str(request) {
             Ok(request) => request,
             Err(error) => return refusal("request", &error.to_string()),
         };
@@ -73,7 +89,7 @@ impl Core {
 
     /// Starts a run: `Settings`, of which what is missing has its default.
     pub fn start(&mut self, settings: &str) -> String {
-        let settings: Settings = match serde_json::from_str(settings) {
+        let settings: Settings = match json::from_str(settings) {
             Ok(settings) => settings,
             Err(error) => return refusal("settings", &error.to_string()),
         };
@@ -91,7 +107,7 @@ impl Core {
     /// Queues relaxation steps on the present particles.
     pub fn relax(&mut self, steps: u32) -> String {
         self.session.relax(steps);
-        json!({ "ok": true }).to_string()
+        r#"{"ok":true}"#.to_owned()
     }
 
     /// Ends the run and keeps the particles: `Progress`.

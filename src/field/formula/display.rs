@@ -1,6 +1,7 @@
 //! A formula as plain text that parses back to the same tree.
 
 use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
+use crate::math::decimal;
 
 /// Binding strength, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,8 +28,7 @@ pub(super) fn level(kind: &Kind) -> Level {
 
 /// The shortest text that reads back as `value`; with an exponent if it is very large or very small.
 pub(super) fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 || (1e-5..1e15).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+    decimal::text(value)
 }
 
 /// The expression as text.

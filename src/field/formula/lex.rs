@@ -2,6 +2,7 @@
 //! names the code point.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use crate::math::decimal;
 use core::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +138,7 @@ pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, Form
                 let span = at(start)..at(i);
                 let written: String = characters[start..i].iter().map(|&(_, c)| c).collect();
                 let bad = written == "." || get(i) == Some('.');
-                let value = if bad { None } else { written.parse::<f64>().ok() };
+                let value = if bad { None } else { decimal::read(&written) };
                 let Some(value) = value else {
                     let span = at(start)..at((i + usize::from(get(i) == Some('.'))).max(start + 1));
                     let message = format!("`{}` is not a number", &text[span.clone()]);
