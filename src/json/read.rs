@@ -195,7 +195,7 @@ impl Parser<'_> {
         while matches!(self.peek(), Some(b'-' | b'+' | b'.' | b'e' | b'E' | b'0'..=b'9')) {
             self.at += 1;
         }
-        let text = &self.text[start..self.at];
+        let text = self.text.get(start..self.at).unwrap_or_default();
         // What JSON forbids and the reader of numbers would take.
         let bytes = text.trim_start_matches('-').as_bytes();
         let padded = matches!(bytes, [b'0', b'0'..=b'9', ..]);
@@ -219,7 +219,8 @@ impl Parser<'_> {
         }
         let mut out = String::new();
         loop {
-            let Some(c) = self.text[self.at..].chars().next() else { return Err(self.unexpected()) };
+            let rest = self.text.get(self.at..).unwrap_or_default();
+            let Some(c) = rest.chars().next() else { return Err(self.unexpected()) };
             match c {
                 '"' => {
                     self.at += 1;

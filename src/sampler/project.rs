@@ -2,6 +2,7 @@
 //! the gradient (for seeds and relaxation). Everything works on batches, so that the field is evaluated in SIMD lanes.
 
 use crate::field::Field;
+use crate::math::sort_few;
 use glam::Vec3;
 
 /// Points per call of the field. Large enough to hide the cost of a call, small enough to stay in the first-level
@@ -221,7 +222,7 @@ impl Projector {
                 count += 1;
             }
         }
-        brackets[..count].sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        sort_few(&mut brackets[..count], |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt());
         let mut budget = MAX_BRACKET_STEPS;
         for &(_, k) in &brackets[..count] {
             let found = self.illinois(field, circle, tolerance, (turns[k], f[k], f[k + 1]), &mut budget);

@@ -1,6 +1,7 @@
 //! What a caller may choose, with the paper's values as defaults.
 
 use crate::math::decimal::text;
+use core::fmt;
 use serde::{Deserialize, Serialize};
 
 /// How the particles' size is given.
@@ -68,7 +69,7 @@ impl Default for Settings {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
     /// The value is not a number within the range.
-    #[error("{name} is {}, but must lie between {} and {}", text(*.value), text(*.min), text(*.max))]
+    #[error(fmt = out_of_range)]
     OutOfRange {
         /// Name of the setting.
         name: &'static str,
@@ -88,6 +89,10 @@ pub enum SettingsError {
         /// Particles to expect.
         particles: u64,
     },
+}
+
+fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(f, "{name} is {}, but must lie between {} and {}", text(*value), text(*min), text(*max))
 }
 
 impl Settings {

@@ -3,7 +3,7 @@
 
 use super::project::{BATCH, Projector, Tolerance, tolerance};
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
@@ -192,7 +192,7 @@ fn project(
         let counted = gradient.iter().zip(crosses).filter(|(_, crosses)| **crosses || !by_crossings);
         slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
-    slopes.sort_by(f32::total_cmp);
+    sort_numbers(&mut slopes);
     out.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(0.0);
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
     // Two units in the last place of the largest coordinate; positions themselves are rounded to half of one.
@@ -261,7 +261,7 @@ fn rounding(field: &mut dyn Field, projector: &mut Projector, points: &[Vec3]) -
             d.is_finite().then_some(d)
         })
         .collect();
-    distance.sort_by(f32::total_cmp);
+    sort_numbers(&mut distance);
     2.0 * distance.get(distance.len() * 3 / 4).copied().unwrap_or(0.0)
 }
 

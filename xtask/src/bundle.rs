@@ -74,6 +74,21 @@ impl Bundle {
         }
     }
 
+    /// Further flags for the compiler's back end. At the level for speed it copies every small function to where it is
+    /// called and repeats every short loop: half of the core's code, and of no use to its speed, since what must be
+    /// copied says so (`inline(always)`) and the long loops are SIMD loops.
+    fn code_generation(self) -> &'static [&'static str] {
+        match self {
+            Self::Core => &[
+                "-Cllvm-args=-inline-threshold=5",
+                "-Cllvm-args=-inlinehint-threshold=30",
+                "-Cllvm-args=-unroll-threshold=40",
+                "-Cllvm-args=-unroll-runtime=0",
+            ],
+            Self::Webgpu | Self::Webgl => &[],
+        }
+    }
+
     /// The sources that the bundle is made of, under the root. The renderers share the crate with the sampler but use
     /// nothing of it (`tests/architecture.rs` holds them to that), so that a change to the sampler leaves them alone.
     fn sources(self) -> &'static [&'static str] {
@@ -152,7 +167,7 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Stri
     let root = &project.root;
     let mut fingerprint = Fingerprint::default()
         .text("compiler", &target.version)
-        .text("flags", &rust_flags(project).join(" "))
+        .text("flags", &rust_flags(project, bundle).join(" "))
         .text("opt-level", bundle.opt_level())
         .text("features", bundle.features())
         .text("process", &process_version(project, bundle)?)
@@ -177,7 +192,7 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
 
 /// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment does not change
 /// what is published; paths of this machine are kept out of the panic messages.
-pub(crate) fn rust_flags(project: &Project) -> Vec<String> {
+pub(crate) fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
     let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
     let cargo_home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
@@ -186,6 +201,7 @@ pub(crate) fn rust_flags(project: &Project) -> Vec<String> {
         flags.push(format!("--remap-path-prefix={}=cargo", home.display()));
     }
     flags.push(format!("--remap-path-prefix={}=.", project.root.display()));
+    flags.extend(bundle.code_generation().iter().map(|&flag| flag.to_owned()));
     flags
 }
 
@@ -200,7 +216,7 @@ fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Pat
         .arg("--message-format=json-render-diagnostics")
         .env("CARGO_TARGET_DIR", &folder)
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
-        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project).join("\u{1f}"))
+        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle).join("\u{1f}"))
         // Without this the three builds would write one file of the same name, and cargo would take one bundle's
         // module for another's. With it the name carries a hash of the features and the profile.
         .env("__CARGO_DEFAULT_LIB_METADATA", bundle.folder());

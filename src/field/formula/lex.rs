@@ -141,7 +141,7 @@ pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, Form
                 let value = if bad { None } else { decimal::read(&written) };
                 let Some(value) = value else {
                     let span = at(start)..at((i + usize::from(get(i) == Some('.'))).max(start + 1));
-                    let message = format!("`{}` is not a number", &text[span.clone()]);
+                    let message = format!("`{}` is not a number", part(text, &span));
                     return Err(FormulaError::new(ErrorKind::BadNumber, span, message));
                 };
                 if !value.is_finite() {
@@ -192,12 +192,17 @@ pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, Form
                 }
                 Token::Name(name)
             }
-            _ => return Err(stranger(&text[at(start)..at(i)], c, at(start)..at(i))),
+            _ => return Err(stranger(text, c, at(start)..at(i))),
         };
         out.push(Spanned { token, span: at(start)..at(i) });
     }
     out.push(Spanned { token: Token::End, span: text.len()..text.len() });
     Ok(out)
+}
+
+/// The part of the text at `span`; nothing if that splits a character, so that no formula can end the program.
+pub(super) fn part<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
+    text.get(span.clone()).unwrap_or_default()
 }
 
 fn bracket(found: char, wanted: char, span: Range<usize>) -> FormulaError {
@@ -206,7 +211,8 @@ fn bracket(found: char, wanted: char, span: Range<usize>) -> FormulaError {
 }
 
 /// The error for a character that the language has no use for.
-fn stranger(written: &str, c: char, span: Range<usize>) -> FormulaError {
+fn stranger(text: &str, c: char, span: Range<usize>) -> FormulaError {
+    let written = part(text, &span);
     let point = u32::from(c);
     let name = match c {
         '\0' => "a null character",

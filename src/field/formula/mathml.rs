@@ -236,7 +236,9 @@ impl Writer {
     fn name(&mut self, name: &str) {
         let (stem, index) = match name.split_once('_') {
             Some((stem, index)) if !index.is_empty() => (stem, index),
-            _ => name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len()),
+            _ => name
+                .split_at_checked(name.trim_end_matches(|c: char| c.is_ascii_digit()).len())
+                .unwrap_or((name, "")),
         };
         let stem = greek(stem).unwrap_or(stem);
         if index.is_empty() {

@@ -12,7 +12,7 @@
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::{Spanned, Token, tokens};
+use super::lex::{Spanned, Token, part, tokens};
 use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
 
@@ -93,7 +93,7 @@ impl Parser<'_> {
                 "Something is missing at the end",
             );
         }
-        let written = &self.text[span.clone()];
+        let written = part(self.text, span);
         let previous = self.next.checked_sub(1).map(|index| &self.tokens[index].token);
         let after_operand = matches!(
             previous,
@@ -165,7 +165,7 @@ impl Parser<'_> {
                 let factor = self.power()?;
                 if after_division {
                     let span = divisor.start..factor.span.end;
-                    let (below, beside) = (&self.text[divisor], &self.text[factor.span]);
+                    let (below, beside) = (part(self.text, &divisor), part(self.text, &factor.span));
                     let message =
                         format!("What is divided by? Write `/({below} {beside})` or `/{below}*{beside}`");
                     return Err(FormulaError::new(ErrorKind::Ambiguous, span, message)
@@ -231,7 +231,7 @@ impl Parser<'_> {
         }
         if self.peek().token == Token::End {
             let message = format!("The bracket opened at character {} is not closed", {
-                self.text[..open.start].chars().count() + 1
+                part(self.text, &(0..open.start)).chars().count() + 1
             });
             return Err(FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(")"));
         }
@@ -334,7 +334,7 @@ impl Parser<'_> {
         // What follows, if it is an operand, is what the brackets should hold.
         match if starts_operand { self.deeper(Self::power) } else { Err(error.clone()) } {
             Ok(operand) => {
-                let inner = &self.text[operand.span.clone()];
+                let inner = part(self.text, &operand.span);
                 let span = span.start..operand.span.end;
                 FormulaError { span, ..error }.suggest(format!("{name}({inner})"))
             }

@@ -8,7 +8,8 @@
 
 use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
 use super::operations::{Binary, Unary};
-use std::collections::BTreeSet;
+use crate::math::sort_few;
+use core::cmp::Reverse;
 
 /// What an instruction does. `R` operands are registers, `U` operands are uniforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -233,7 +234,7 @@ impl<'a> Compiler<'a> {
                     operands.push(need[operand as usize]);
                 }
             });
-            operands.sort_unstable_by(|a, b| b.cmp(a));
+            sort_few(&mut operands, |a, b| a > b);
             let held = (0..).zip(&operands).map(|(before, own)| before + own).max();
             need.push(held.unwrap_or(0).max(1));
         }
@@ -313,7 +314,9 @@ impl<'a> Compiler<'a> {
             self.inputs(top, push);
             // The one that needs most registers comes first, that is, to the top of the stack: what is computed
             // before it would have to be kept meanwhile.
-            stack[before..].sort_by_key(|&id| (self.need[id as usize], core::cmp::Reverse(id)));
+            sort_few(&mut stack[before..], |&a, &b| {
+                (self.need[a as usize], Reverse(a)) < (self.need[b as usize], Reverse(b))
+            });
             if stack.len() == before {
                 self.register[top as usize] = Some(self.emit(top));
                 stack.pop();
@@ -496,10 +499,12 @@ impl<'a> Compiler<'a> {
             }
         }
         let mut real = vec![0; self.code.len()];
-        let mut free: BTreeSet<u32> = BTreeSet::new();
+        let mut free: Vec<u32> = Vec::new();
         let mut count = 0;
-        let mut fresh = |free: &mut BTreeSet<u32>| {
-            free.pop_first().unwrap_or_else(|| {
+        let mut fresh = |free: &mut Vec<u32>| {
+            // The lowest that is free.
+            let lowest = (0..free.len()).min_by_key(|&at| free[at]);
+            lowest.map(|at| free.swap_remove(at)).unwrap_or_else(|| {
                 count += 1;
                 count - 1
             })
@@ -513,8 +518,9 @@ impl<'a> Compiler<'a> {
         for (at, instruction) in self.code.iter().enumerate().skip(3) {
             let mapped = substituted(instruction, &real);
             for operand in registers(instruction) {
-                if last_use[operand as usize] == at {
-                    free.insert(real[operand as usize]);
+                let register = real[operand as usize];
+                if last_use[operand as usize] == at && !free.contains(&register) {
+                    free.push(register);
                 }
             }
             real[at] = fresh(&mut free);
