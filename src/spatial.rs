@@ -87,7 +87,7 @@ impl CellGrid {
     ///
     /// If the side is not positive and finite.
     pub fn reset(&mut self, cell_side: f32) {
-        assert!(cell_side > 0.0 && cell_side.is_finite(), "the cell side must be positive, got {cell_side}");
+        assert!(cell_side > 0.0 && cell_side.is_finite(), "the cell side must be a positive number");
         self.inverse_cell = 1.0 / cell_side;
         self.table.fill(EMPTY_BRICK);
         if self.table.is_empty() {

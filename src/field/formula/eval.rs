@@ -129,7 +129,8 @@ fn ternary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> 
 }
 
 /// A long function, on a copy of the whole row so that its loop is one that the compiler turns into SIMD code.
-#[inline(always)]
+/// Called through a pointer, once per row, so that the copying exists once and not per function.
+#[inline(never)]
 fn long(rows: &Rows<'_>, i: &Instruction, f: fn(&mut [f32])) {
     let mut buffer = [0.0; BLOCK * LANES];
     let (chunks, _) = buffer.as_chunks_mut::<LANES>();
@@ -162,8 +163,8 @@ fn sine_cosine(rows: &Rows<'_>, i: &Instruction) {
 }
 
 /// A long function of two operands.
-#[inline(always)]
-fn long_binary(rows: &Rows<'_>, i: &Instruction, b: impl Fn(usize) -> Lanes, f: fn(&mut [f32], &[f32])) {
+#[inline(never)]
+fn long_binary(rows: &Rows<'_>, i: &Instruction, b: &dyn Fn(usize) -> Lanes, f: fn(&mut [f32], &[f32])) {
     let mut first = [0.0; BLOCK * LANES];
     let mut second = [0.0; BLOCK * LANES];
     let (chunks, _) = first.as_chunks_mut::<LANES>();
@@ -228,11 +229,11 @@ fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
         Op::Binary(Binary::Max) => binary(rows, i, |a, b| a.zip(b, functions::max)),
         Op::Binary(Binary::Pow) => {
             let b = rows.row(i.b);
-            long_binary(rows, i, |k| b[k].get(), functions::pow_all);
+            long_binary(rows, i, &|k| b[k].get(), functions::pow_all);
         }
         Op::Binary(Binary::Atan2) => {
             let b = rows.row(i.b);
-            long_binary(rows, i, |k| b[k].get(), functions::atan2_all);
+            long_binary(rows, i, &|k| b[k].get(), functions::atan2_all);
         }
         Op::Uniform(operation) => {
             let b = u(i.b);
@@ -243,7 +244,7 @@ fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
                 Binary::Max => unary(rows, i, |a| a.zip(b, functions::max)),
                 Binary::Pow => match small_whole(uniforms[i.b as usize]) {
                     Some(n) => unary(rows, i, |a| whole_power(a, n)),
-                    None => long_binary(rows, i, |_| b, functions::pow_all),
+                    None => long_binary(rows, i, &|_| b, functions::pow_all),
                 },
                 Binary::Sub | Binary::Div | Binary::Atan2 => unreachable!("never compiled with a uniform"),
             }
