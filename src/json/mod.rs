@@ -1,7 +1,8 @@
 //! JSON, for what crosses between the core and the page: any serde type is written, and read through a tree of values.
 //!
-//! It does what serde_json does, in a quarter of the code: numbers go through [`decimal`](crate::math::decimal), one
-//! writer and one tree serve all types, and errors name what is wrong but not the line.
+//! It is made to be small, for it is part of what the page downloads: numbers go through
+//! [`decimal`](crate::math::decimal), one writer and one tree serve all types, and errors name what is wrong but not
+//! the line.
 
 mod read;
 mod write;
