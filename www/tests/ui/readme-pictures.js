@@ -1,0 +1,114 @@
+/**
+ * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
+ *
+ * Writes readme/page-{light,dark}.webp (the whole page) and readme/levels-{light,dark}.webp (generation levels growing).
+ */
+import { mkdir, writeFile } from 'node:fs/promises';
+import { fileURLToPath } from 'node:url';
+import { chromium } from '@playwright/test';
+
+const PAGE_PX = { width: 1440, height: 840 };
+/** The page is shown with so many device pixels per pixel, and kept at that. */
+const PAGE_SCALE = 1.25;
+const PAGE_SURFACE = 'tanglecube';
+
+/** A frame of the strip, and device pixels per pixel of it. */
+const LEVEL_PX = { width: 300, height: 240 };
+const LEVEL_SCALE = 1.5;
+const LEVEL_SURFACE = 'torus';
+const LEVEL_SETTINGS = { radius_share: 0.0075, seed: 4 };
+const LEVELS = [10, 17, 25, 34];
+const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
+/** Less than the time between two levels, so that none is missed. */
+const TICK_MS = 5;
+
+const base = process.argv[2] ?? 'http://localhost:4517/';
+const folder = fileURLToPath(new URL('../../readme/', import.meta.url));
+await mkdir(folder, { recursive: true });
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium', args: ['--no-sandbox'] });
+
+/** @param {string} name @param {Uint8Array} bytes */
+async function write(name, bytes) {
+  await writeFile(`${folder}${name}`, bytes);
+  console.log(`${name} ${bytes.length} bytes`);
+}
+
+/** Compresses pictures side by side, in a page without a content security policy. @param {Buffer[]} pngs @param {number} quality */
+async function webp(pngs, quality) {
+  const page = await browser.newPage();
+  const bytes = await page.evaluate(async ({ datas, quality }) => {
+    const bitmaps = await Promise.all(datas.map(async (data) => createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())));
+    const { width, height } = bitmaps[0];
+    const canvas = new OffscreenCanvas(width * bitmaps.length, height);
+    const context = canvas.getContext('2d');
+    bitmaps.forEach((bitmap, k) => context?.drawImage(bitmap, k * width, 0));
+    return [...new Uint8Array(await (await canvas.convertToBlob({ type: 'image/webp', quality })).arrayBuffer())];
+  }, { datas: pngs.map((png) => png.toString('base64')), quality });
+  await page.close();
+  return new Uint8Array(bytes);
+}
+
+for (const theme of /** @type {const} */ (['light', 'dark'])) {
+  const page = await browser.newPage({ viewport: PAGE_PX, deviceScaleFactor: PAGE_SCALE, colorScheme: theme });
+  await page.goto(base);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await page.evaluate((surface) => /** @type {any} */ (window).marchingParticles.set({ surface }), PAGE_SURFACE);
+  await page.waitForTimeout(500);
+  await write(`page-${theme}.webp`, await webp([await page.screenshot()], 0.86));
+  await page.close();
+}
+
+// The page lets the levels appear by the clock. With the clock held, each can be shown at its time.
+for (const theme of /** @type {const} */ (['light', 'dark'])) {
+  const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
+  await page.addInitScript(() => {
+    const run_ms = performance.now.bind(performance);
+    /** @type {number | null} */
+    let held_ms = null;
+    performance.now = () => held_ms ?? run_ms();
+    /** @type {any} */ (window).clock = {
+      hold: () => { held_ms = run_ms(); },
+      advance: (/** @type {number} */ ms) => { held_ms = (held_ms ?? 0) + ms; },
+    };
+  });
+  await page.goto(base);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await page.evaluate(() => {
+// Only the picture.
+    for (let kept = /** @type {Element | null} */ (document.querySelector('canvas')); kept && kept !== document.body; kept = kept.parentElement) {
+      for (const other of kept.parentElement?.children ?? []) if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
+    }
+  });
+  await page.evaluate(async ({ surface, settings, camera }) => {
+    const mp = /** @type {any} */ (window).marchingParticles;
+    const insets = { left: 0, right: 0, top: 0, bottom: 0 };
+    mp.engine.setInsets(insets);
+    await mp.set({ surface, settings, view: { colour: 'level', camera: { ...mp.state.view.camera, ...camera } } });
+    mp.engine.setInsets(insets);
+    mp.engine.zoom(1.15);
+  }, { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA });
+  await page.waitForTimeout(500);
+  const whole = await page.screenshot();
+  await page.evaluate(() => {
+    const mp = /** @type {any} */ (window).marchingParticles;
+    /** @type {any} */ (window).clock.hold();
+    mp.engine.run();
+  });
+  await page.waitForFunction(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    return !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value?.levels > 0;
+  });
+  const frames = [];
+  for (const level of LEVELS) {
+    await page.waitForFunction(({ level, tick_ms }) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      if (engine.reveal.value.level >= level) return true;
+      /** @type {any} */ (window).clock.advance(tick_ms);
+      return false;
+    }, { level, tick_ms: TICK_MS });
+    frames.push(await page.screenshot());
+  }
+  await page.close();
+  await write(`levels-${theme}.webp`, await webp([...frames, whole], 0.86));
+}
+await browser.close();
