@@ -22,7 +22,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
         // The aim is 120. Of the 162 measured, 20 are texts and tables, 4 JavaScript, and the rest code: a third of that the
         // formula language, a tenth each the quality figures and the sampler. Optimising everything for size would save
-        // another tenth and take two to three times as long to sample, so the rest has to come from less code.
+        // another tenth and take three times as long to sample, so the rest has to come from less code.
         Bundle::Core => 168.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
