@@ -156,6 +156,20 @@ describe('a run', () => {
   });
 });
 
+test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
+  const { client, store, columns, say } = page();
+  client.sample(request('x'));
+  say(columnsMessage(1, 7));
+  say(done(1, 'complete', 7));
+  client.sample(request('x'));
+  say(done(2, 'refused', 0, { progress: null, message: 'there is not enough memory for about 3000000 particles: choose fewer' }));
+  expect(store.notice.value).toMatchObject({ id: 'refused', kind: 'warn' });
+  expect(store.notice.value?.text).toContain('choose fewer');
+  expect(store.busy.value).toBe(false);
+  expect(columns.count).toBe(7);
+  expect(told.at(-1)).toBe('dim');
+});
+
 describe('a formula with a fault', () => {
   const fault = { ok: false, error: { kind: 'syntax', message: 'no', start: 0, end: 1, suggestion: null, names: [] } };
 

@@ -311,6 +311,31 @@ test('a canvas of no size and back again draws', async ({ page }) => {
   await expectCanvasShown(page);
 });
 
+test.describe('on a screen with four pixels to one', () => {
+  test.use({ deviceScaleFactor: 4 });
+  test('two are drawn', async ({ page }) => {
+    await open(page);
+    const [drawn, seen] = await page.evaluate(() => {
+      const canvas = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
+      return [canvas.width, canvas.getBoundingClientRect().width];
+    });
+    expect(drawn).toBeLessThanOrEqual(2 * seen + 1);
+    expect(drawn).toBeGreaterThanOrEqual(seen);
+    await expectSurface(page);
+  });
+});
+
+test('changes leave no trail for the Back button', async ({ page }) => {
+  await open(page);
+  const before = await page.evaluate(() => history.length);
+  for (const value of [0.7, 0.8, 0.9]) {
+    await page.evaluate((a) => /** @type {any} */ (window).marchingParticles.set({ parameters: { a } }), value);
+    await expect.poll(() => page.evaluate(() => location.hash)).not.toBe('');
+  }
+  await page.waitForTimeout(700);
+  expect(await page.evaluate(() => history.length)).toBe(before);
+});
+
 test.describe('files', () => {
   test('PLY and CSV hold every particle', async ({ page }) => {
     await open(page);

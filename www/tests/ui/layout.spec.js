@@ -2,7 +2,7 @@ import AxeBuilder from '@axe-core/playwright';
 import { expect, test } from '@playwright/test';
 import { open, state } from './helpers.js';
 
-const SIZES = /** @type {const} */ ([[1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
+const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
 
 for (const [width, height] of SIZES) {
   test(`nothing overflows at ${width} by ${height}`, async ({ page }) => {

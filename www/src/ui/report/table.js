@@ -44,7 +44,7 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  * @param {ReportRow} row
  */
 function createRow(report, row) {
-  const term = h('button', { type: 'button', class: 'term' }, row.label, row.unit ? h('span', { class: 'unit' }, ` ${row.unit}`) : null);
+  const term = h('button', { type: 'button', class: 'term' }, row.label, row.unit ? h('span', { class: 'unit' }, `\u00a0${row.unit}`) : null);
   explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) }), { tap: true, side: 'left' });
   const before = h('td');
   const now = h('td', { class: 'now' });
