@@ -12,6 +12,8 @@ import { FIELD_OF_VIEW_RAD } from '../../src/engine/view/camera.js';
 const PICTURE_PX = 160;
 /** Drawn larger and scaled down: smoother edges than one sample per pixel. */
 const DRAWN_PX = 480;
+/** After so many the frame is exact to a fraction of a pixel. */
+const FRAMING_ROUNDS = 6;
 const POSTER_PX = 720;
 /** Dots of the poster: its radius as a share of the box's diagonal. */
 const POSTER_SHARE = 0.008;
@@ -29,7 +31,7 @@ const initial = await page.evaluate(() => /** @type {any} */ (window).marchingPa
 /** @type {string[]} */
 const ids = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.surfaces.map((/** @type {{ id: string }} */ { id }) => id));
 for (const id of ids) {
-  const bytes = await page.evaluate(async ({ id, drawn, size, view_rad, initial }) => {
+  const bytes = await page.evaluate(async ({ id, drawn, size, view_rad, initial, rounds }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
     await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02, camera: initial } });
     mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
@@ -37,20 +39,25 @@ for (const id of ids) {
     const { positions, count } = mp.particles();
     const { yaw, pitch, distance, target } = mp.state.view.camera;
     const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
-    let reach = 0;
-    for (let i = 0; i < count; i += 1) {
-      const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
-      const depth = distance - (cy * cp * x + sy * cp * y + sp * z);
-      reach = Math.max(reach, Math.abs(cy * y - sy * x) / depth, Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth);
+    // What comes nearer grows: a few rounds find the distance at which the outermost particle is just inside.
+    let near = distance;
+    for (let round = 0; round < rounds; round += 1) {
+      let reach = 0;
+      for (let i = 0; i < count; i += 1) {
+        const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
+        const depth = near - (cy * cp * x + sy * cp * y + sp * z);
+        reach = Math.max(reach, Math.abs(cy * y - sy * x) / depth, Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth);
+      }
+      near *= reach / (0.97 * Math.tan(view_rad / 2));
     }
-    mp.engine.zoom((0.97 * Math.tan(view_rad / 2)) / reach);
+    mp.engine.zoom(distance / near);
     const png = await mp.engine.savePng({ width: drawn, height: drawn, transparent: true });
     const bitmap = await createImageBitmap(png, { resizeWidth: size, resizeHeight: size, resizeQuality: 'high' });
     const canvas = new OffscreenCanvas(size, size);
     canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
     const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.82 });
     return [...new Uint8Array(await webp.arrayBuffer())];
-  }, { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial });
+  }, { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS });
   await writeFile(`${folder}gallery/${id}.webp`, new Uint8Array(bytes));
   console.log(`${id} ${bytes.length} bytes`);
 }
