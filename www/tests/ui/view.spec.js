@@ -28,6 +28,29 @@ test('the legend shows what the chosen colours mean', async ({ page }) => {
   await expect(page.locator('.ends')).toHaveText(/\d.*\d/);
 });
 
+for (const width of [1280, 320]) {
+  test(`the name of every colouring can be read in full at ${width} pixels`, async ({ page }) => {
+    await open(page, { width, height: 640 });
+    const choose = page.getByRole('combobox', { name: 'Colour by' });
+    const ids = await choose.locator('option').evaluateAll((options) => options.map((option) => /** @type {HTMLOptionElement} */ (option).value));
+    expect(ids.length).toBeGreaterThan(4);
+    for (const id of ids) {
+      await choose.selectOption(id);
+      const { room, text } = await choose.evaluate((element) => {
+        const select = /** @type {HTMLSelectElement} */ (element);
+        const style = getComputedStyle(select);
+        const context = /** @type {CanvasRenderingContext2D} */ (document.createElement('canvas').getContext('2d'));
+        context.font = style.font;
+        return {
+          room: select.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight),
+          text: context.measureText(select.selectedOptions[0].text).width,
+        };
+      });
+      expect(room, id).toBeGreaterThanOrEqual(text - 1);
+    }
+  });
+}
+
 test('buttons zoom, turn and fit for those who cannot drag', async ({ page }) => {
   await open(page);
   const camera = async () => (await state(page)).view.camera;
