@@ -48,7 +48,8 @@ const MAX_ATTEMPTS: u32 = 4;
 /// Attempts at a wanted count may overshoot it by this factor before they run into the limit on particles.
 const COUNT_ROOM: f64 = 1.1;
 
-/// Bytes that a run takes per particle at its peak, the columns included: what tests/memory.rs holds it to.
+/// Bytes to ask for per particle before a run: more than a run takes at its peak, which tests/memory.rs holds, so that the
+/// figures measured after it have room too.
 const BYTES_PER_PARTICLE: usize = 216;
 
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
