@@ -48,9 +48,9 @@ const MAX_ATTEMPTS: u32 = 4;
 /// Attempts at a wanted count may overshoot it by this factor before they run into the limit on particles.
 const COUNT_ROOM: f64 = 1.1;
 
-/// Bytes to ask for per particle before a run: more than a run takes at its peak, which tests/memory.rs holds, so that the
-/// figures measured after it have room too.
-const BYTES_PER_PARTICLE: usize = 216;
+/// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
+/// but no more than the peak that tests/memory.rs holds it to.
+const BYTES_PER_PARTICLE: usize = 120;
 
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
