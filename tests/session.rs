@@ -35,6 +35,20 @@ fn a_run_cut_into_single_units_is_the_same_run() {
 }
 
 #[test]
+fn the_figures_of_the_front_do_not_depend_on_the_steps() {
+    let before = |budget| {
+        let mut session = Session::new();
+        run(&mut session, &sized(900), budget);
+        session.report().quality_before.expect("figures of the front")
+    };
+    let whole = before(u32::MAX);
+    assert!(whole.six > 0.5);
+    // As text, because an undefined figure is not equal to itself.
+    assert_eq!(format!("{:?}", before(1)), format!("{whole:?}"));
+    assert_eq!(format!("{:?}", before(1_234)), format!("{whole:?}"));
+}
+
+#[test]
 fn a_session_can_be_used_again_with_the_same_result() {
     let mut session = Session::new();
     run(&mut session, &sized(500), 1000);

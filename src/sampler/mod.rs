@@ -390,11 +390,12 @@ impl Sampler {
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
-    /// relaxation step.
+    /// relaxation step. Returns early where the relaxation begins, so that the particles of the front can be seen.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
         let mut left = budget;
         let before = self.projector.evaluations;
-        while left > 0 {
+        let relaxing = self.phase == Phase::Relaxation;
+        while left > 0 && (relaxing || self.phase != Phase::Relaxation) {
             match self.phase {
                 Phase::Idle | Phase::Done => break,
                 Phase::Seeding => left = self.seed(field, left),
