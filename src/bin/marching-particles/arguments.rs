@@ -183,7 +183,7 @@ fn bounds(text: &str) -> Result<Bounds, String> {
     if bounds.is_valid() {
         Ok(bounds)
     } else {
-        Err("the box is empty: it needs min < max on every axis".to_owned())
+        Err("the box is empty: give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1".to_owned())
     }
 }
 
