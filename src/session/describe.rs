@@ -301,6 +301,13 @@ const REPORT: &[ReportRow] = &[
         "Fronts started, each from a point that no particle covered: at least one for every connected piece of the surface.",
     ),
     row(
+        "gaps_filled",
+        "Gaps filled",
+        ("Run", "", 0),
+        ("", None),
+        "Particles placed after the fronts had met, in gaps wide enough for one.",
+    ),
+    row(
         "evaluations_per_particle",
         "Evaluations per particle",
         ("Run", "", 2),
