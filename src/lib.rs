@@ -44,7 +44,8 @@
 //!
 //! ```text
 //! math ← field ← sampler ← session ← web
-//!              ↖ quality ← export ↙
+//!           ↑  ↖ quality ← export ↙
+//!         points
 //! ```
 //!
 //! An arrow points at what is used; `tests/architecture.rs` names every use that is allowed and fails on any other.
@@ -54,6 +55,7 @@
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
+//! * [`points`]: from a file of points to a field (feature `points`, on by default).
 //! * [`export`]: PLY, CSV, XYZ and NPY.
 //! * [`json`]: what crosses between the core and the page, as text.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
@@ -65,6 +67,8 @@ pub mod field;
 pub mod json;
 pub mod math;
 pub mod particles;
+#[cfg(feature = "points")]
+pub mod points;
 pub mod quality;
 pub mod render;
 pub mod sampler;

@@ -2,6 +2,7 @@
 
 pub mod formula;
 pub mod gallery;
+pub mod model;
 
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
