@@ -288,6 +288,8 @@ export function createEngine({ canvasHost }) {
       change({ surface: id, formula: surface.formula, parameters: {}, declared: [], bounds: null });
       resample(false, { grow: true, fit: true });
     },
+    async openFile() {},
+    cancelLoading() {},
     setFormula(text) {
       if (text === store.state.value.formula) return;
       change({ formula: text });

@@ -41,6 +41,9 @@ export function createStore() {
     partial: cell(false),
     empty: cell(false),
     lastDrag: cell(/** @type {import('./types.js').LastDrag | null} */ (null)),
+    loading: cell(/** @type {import('./types.js').Loading | null} */ (null)),
+    loadingError: cell(/** @type {import('./types.js').LoadingError | null} */ (null)),
+    model: cell(/** @type {import('./types.js').ModelInfo | null} */ (null)),
     theme: cell(/** @type {'light' | 'dark'} */ ('light')),
   };
 }

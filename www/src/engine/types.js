@@ -50,7 +50,7 @@
  * @property {string} unit
  * @property {{value: string, label: string}[]} [choices]
  * @property {string} help
- * @property {{name: string, value: number | string}} [when]  shown only while that other setting has that value
+ * @property {{name: string, value: string}[]} [when]  shown only while all of these other settings have these values
  */
 /**
  * One row of the report. `key` is a path into {@link Report}, for example `quality.six`.
@@ -65,11 +65,34 @@
  * @property {string} help
  */
 /**
+ * A built-in model from points. Its `id` goes where a gallery surface's does.
+ * @typedef {object} PointModel
+ * @property {string} id
+ * @property {string} name
+ * @property {string} story
+ * @property {string} credit  whom to thank for the points; may be empty
+ * @property {number} points
+ */
+/**
+ * What is known of a model from points once it is solved.
+ * @typedef {object} ModelInfo
+ * @property {string} name  the built-in model's, or the file's
+ * @property {string} credit
+ * @property {number} points  points that were read
+ * @property {number} centres  points that the function interpolates
+ * @property {number} condition  estimate of the condition number of the system
+ * @property {number} residual_mean  mean distance of all points from the surface, as a share of the diagonal of their box
+ * @property {number} residual_max
+ * @property {'given' | 'from_mesh' | 'estimated'} normals
+ * @property {string[]} warnings
+ */
+/**
  * Everything the interface is generated from.
  * @typedef {object} Description
  * @property {string} version
  * @property {string} default_surface
  * @property {SurfaceInfo[]} surfaces
+ * @property {PointModel[]} models
  * @property {SettingInfo[]} settings
  * @property {ReportRow[]} report
  * @property {{name: string, label: string, help: string}[]} fates
@@ -78,7 +101,9 @@
  */
 
 /**
+ * `points` names a solved model; with it only the clip box counts.
  * @typedef {object} FieldRequest
+ * @property {string} [points]
  * @property {string} [surface]
  * @property {string} [formula]
  * @property {Record<string, number>} [parameters]
@@ -88,8 +113,10 @@
 /**
  * @typedef {object} FieldOk
  * @property {true} ok
- * @property {string | null} surface  null once the formula is no longer the gallery's
- * @property {string} formula
+ * @property {'formula' | 'points'} kind
+ * @property {ModelInfo | null} model  for points
+ * @property {string | null} surface  null once the formula is no longer the gallery's; of a model its id, of a file {@link FILE_SURFACE}
+ * @property {string} formula  empty for points
  * @property {Parameter[]} parameters
  * @property {string[]} auto  parameters that became sliders by themselves
  * @property {Bounds} bounds
@@ -162,6 +189,9 @@
  * @property {number} gt90
  * @property {number} edge_cv
  * @property {number} boundary_excluded
+ * @property {number} size_cv
+ * @property {number} cover_local
+ * @property {number} overlap_min
  */
 /** @typedef {{seeding: number, generation: number, relaxation: number, quality: number}} Seconds */
 /**
@@ -171,6 +201,11 @@
  * @property {number} levels
  * @property {number} components_seeded
  * @property {number} radius
+ * @property {number} radius_min  of the smallest particle
+ * @property {number} radius_max
+ * @property {number} components  connected pieces
+ * @property {number | null} undecided_cells  cells of the box that may still hold surface; null where no proof was attempted
+ * @property {'proven' | 'searched'} search  whether every piece is proven found, or a dense search found these
  * @property {number} evaluations
  * @property {number} evaluations_per_particle
  * @property {{added: number, matched: number, not_converged: number, outside: number, undefined: number, capped: number}} fates
@@ -187,7 +222,7 @@
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
-/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'normal' | 'plain'} ColourMode */
+/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
 /**
  * Where the eye is: on a sphere around `target`, z up. With `fit` the engine chooses target and distance itself and
  * follows the surface; any zoom or pan by hand ends that, the fit command starts it again.
@@ -199,11 +234,14 @@
  * @property {number} size  disc radius as a share of the repulsion radius, 0.2 … 1.5; 0.92 by default
  * @property {'auto' | 'light' | 'dark'} theme
  * @property {boolean} box  draw the clip box
+ * @property {boolean} points  draw the points that a model interpolates
  * @property {CameraState} camera
  */
 /**
  * The whole shareable state, plain JSON. `surface` is the gallery entry started from, `formula` the text in the editor
- * (the gallery's own until it is edited), `parameters` and `settings` hold only what differs from the defaults.
+ * (the gallery's own until it is edited), `parameters` and `settings` hold only what differs from the defaults. Where `surface`
+ * is a model's id, or {@link FILE_SURFACE} for the file that was opened last, `formula` is empty; a formula typed then starts
+ * from the default surface. A file's points are not in the state, so a link to it falls back on the default surface.
  * @typedef {object} State
  * @property {1} v
  * @property {string} surface
@@ -219,8 +257,8 @@
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**
- * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `cap`, …);
- * a later notice of the same cause replaces it. `details` is a report worth copying.
+ * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `cap`, `file`,
+ * `share-file`, …); a later notice of the same cause replaces it. `details` is a report worth copying.
  * @typedef {object} Notice
  * @property {string} id
  * @property {'info' | 'warn' | 'error'} kind
@@ -246,12 +284,13 @@
  */
 /** @typedef {{label: string, colour: string, count?: number}} LegendEntry  colour is `#rrggbb` */
 /**
- * What the colours mean. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to `range[1]`.
+ * What the colours mean. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to `range[1]`. A
+ * diverging ramp has 0 in its middle; values beyond its range take the colour of its end.
  * `entries` name categories. `pending` says that the figures behind the colours are still being worked out.
  * @typedef {object} Legend
  * @property {string} title
  * @property {string} unit
- * @property {'cyclic' | 'categories' | 'sequential' | 'plain' | 'normal'} kind
+ * @property {'cyclic' | 'categories' | 'sequential' | 'diverging' | 'plain' | 'normal'} kind
  * @property {LegendEntry[]} [entries]
  * @property {[number, number]} [range]
  * @property {number} [mark]  a value on the ramp worth a tick (the ideal distance 2r)
@@ -268,6 +307,25 @@
  * How far the picture of a new run has come: particles appear level by level, at a pace that the eye can follow, however fast
  * the sampler was.
  * @typedef {{level: number, levels: number, particles: number}} Reveal
+ */
+
+/**
+ * How far a model or a file has come, from its choice to the surface. `label` is the core's word for the stage.
+ * @typedef {object} Loading
+ * @property {string} id  of the model, or {@link FILE_SURFACE}
+ * @property {string} name
+ * @property {'starting' | 'reading' | 'thinning' | 'normals' | 'solving'} stage
+ * @property {string} label
+ * @property {number} fraction  0 … 1 of the whole way
+ */
+/**
+ * Why a model or a file did not become a surface; the surface before it stays.
+ * @typedef {object} LoadingError
+ * @property {string} id
+ * @property {string} name
+ * @property {string} kind  the core's word, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle`
+ * @property {string} message  with the line where there is one
+ * @property {number | null} line  from 1
  */
 
 /**
@@ -291,10 +349,15 @@
  * @property {ReadonlySignal<boolean>} empty  the last run found no surface
  * @property {ReadonlySignal<LastDrag | null>} lastDrag
  * @property {ReadonlySignal<'light' | 'dark'>} theme  the theme in force, after `auto` is resolved
+ * @property {ReadonlySignal<Loading | null>} loading  a model or a file is on its way
+ * @property {ReadonlySignal<LoadingError | null>} loadingError  until the next surface is chosen; a notice `file` says the same
+ * @property {ReadonlySignal<ModelInfo | null>} model  of the surface shown; null for a formula
  */
 /**
  * @typedef {object} EngineCommands
- * @property {(id: string) => void} setSurface
+ * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last
+ * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled, refused or given up
+ * @property {() => void} cancelLoading  gives up the model or file on its way
  * @property {(text: string) => void} setFormula
  * @property {(name: string, value: number, options?: {live?: boolean}) => void} setParameter  `live` while it is dragged; call once more without it at rest
  * @property {(name: string) => void} resetParameter  back to the value of the gallery or of the declaration
@@ -321,4 +384,9 @@
  */
 /** @typedef {EngineSignals & EngineCommands} Engine */
 
-export {};
+/** `State.surface` of a surface from a file. */
+export const FILE_SURFACE = 'file';
+/** Larger files are not read. */
+export const LARGEST_FILE_BYTES = 50e6;
+/** What `openFile` reads, for a file chooser's `accept`. */
+export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.txt';

@@ -15,6 +15,7 @@ export const description = {
       bounds: { min: [-2, -2, -1], max: [2, 2, 1] }, degree: 4, genus: 1, story: '', mathml: '',
     },
   ],
+  models: [{ id: 'bunny', name: 'Bunny', story: '', credit: 'Stanford', points: 200 }],
   settings: [
     { name: 'size_mode', label: 'Size', group: 'size', kind: 'choice', default: 'radius', min: 0, max: 0, step: 0, scale: 'linear', unit: '', choices: [{ value: 'radius', label: 'Radius' }, { value: 'count', label: 'Count' }], help: '' },
     { name: 'radius_share', label: 'Radius', group: 'size', kind: 'number', default: 0.006, min: 0.0005, max: 0.1, step: 0.0001, scale: 'log', unit: '', help: '' },

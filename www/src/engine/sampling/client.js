@@ -177,7 +177,7 @@ export class SamplingClient {
     const { store } = this;
     if (message.type === 'ready') {
       const first = store.description.value === null;
-      store.description.value = message.description;
+      store.description.value = { ...message.description, models: message.description.models ?? [] };
       this.supervisor.setBusy(this.current !== null && !this.current.ended);
       if (first) this.onReady();
       return;

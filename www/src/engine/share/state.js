@@ -25,11 +25,11 @@ const FARTHEST = 1e6;
 const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
-export const COLOUR_MODES = ['level', 'fate', 'valence', 'nearest', 'normal', 'plain'];
+export const COLOUR_MODES = ['level', 'fate', 'valence', 'nearest', 'radius', 'curvature', 'component', 'normal', 'plain'];
 export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
 /** @returns {import('../types.js').ViewState} */
-const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, camera: homeCamera() });
+const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, points: true, camera: homeCamera() });
 
 /** The state before the core has told which surfaces there are. @returns {State} */
 export const emptyState = () => ({
@@ -198,9 +198,10 @@ export function validView(raw, view, reset = []) {
     if (raw.theme === 'auto' || raw.theme === 'light' || raw.theme === 'dark') out.theme = raw.theme;
     else reset.push('theme');
   }
-  if (raw.box !== undefined) {
-    if (typeof raw.box === 'boolean') out.box = raw.box;
-    else reset.push('box');
+  for (const [key, name] of /** @type {const} */ ([['box', 'box'], ['points', 'points of the model']])) {
+    if (raw[key] === undefined) continue;
+    if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);
+    else reset.push(name);
   }
   if (raw.camera !== undefined) {
     const c = isRecord(raw.camera) ? raw.camera : {};

@@ -23,11 +23,12 @@ export function createSetting(engine, info) {
   // A finger cannot hover: it taps the name.
   explain(label, help, { tap: true });
 
-  const condition = info.when;
-  if (condition) {
-    const shown = computed(() => engine.state.value.settings[condition.name] ?? engine.description.value?.settings.find(({ name }) => name === condition.name)?.default);
-    effect(() => { element.hidden = shown.value !== condition.value; });
-  }
+  const conditions = [info.when ?? []].flat();
+  const holds = computed(() => conditions.every(({ name, value: wanted }) => {
+    const now = engine.state.value.settings[name] ?? engine.description.value?.settings.find((other) => other.name === name)?.default;
+    return now === wanted;
+  }));
+  effect(() => { element.hidden = !holds.value; });
   return element;
 }
 

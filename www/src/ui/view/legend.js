@@ -57,6 +57,7 @@ const SCALES = {
       count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
     ))),
   ],
+  diverging: (legend) => SCALES.sequential(legend),
   normal: (legend) => (legend.entries?.length ? SCALES.categories(legend) : SCALES.cyclic(legend)),
   sequential: ({ colours, range, mark, unit }) => {
     const ramp = h('div', { class: 'ramp', 'aria-hidden': 'true' });
