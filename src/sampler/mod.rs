@@ -12,7 +12,7 @@ mod settings;
 mod survey;
 mod uniform;
 
-pub use settings::{GapPolicy, Settings, SettingsError, SizeMode};
+pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
 pub use uniform::FateCounts;
 
 use crate::field::Field;

@@ -4,7 +4,7 @@
 use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::math::Bounds;
-use crate::sampler::{GapPolicy, Settings, SizeMode};
+use crate::sampler::{GapPolicy, LawKind, Placement, Sampling, Settings, SizeMode};
 use serde::Serialize;
 
 /// The whole description.
@@ -78,8 +78,8 @@ pub struct Setting {
     pub choices: Vec<Choice>,
     /// One line of explanation.
     pub help: &'static str,
-    /// Shown only when another setting has this value.
-    pub when: Option<Condition>,
+    /// Shown only while all of these hold; always if there is none.
+    pub when: Vec<Condition>,
 }
 
 /// The value of a setting.
@@ -94,15 +94,23 @@ pub enum Value {
     Size(SizeMode),
     /// Of the choice about gaps.
     Gaps(GapPolicy),
+    /// Of the choice between one size and many.
+    Sampling(Sampling),
+    /// Of the choice of the radius law.
+    Law(LawKind),
+    /// Of the choice of the placement.
+    Placement(Placement),
 }
 
-/// When a setting is shown.
+/// Another setting's value, on which it depends whether a setting is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Condition {
     /// Name of another setting.
     pub name: &'static str,
-    /// The value that it has then.
-    pub value: SizeMode,
+    /// One of its choices.
+    pub value: &'static str,
+    /// Whether it has that value then, or another one.
+    pub equal: bool,
 }
 
 /// One value of a choice.
@@ -206,10 +214,23 @@ fn settings() -> Vec<Setting> {
             unit: "",
             choices: Vec::new(),
             help: "",
-            when: None,
+            when: Vec::new(),
         }
     };
+    let when = |name, value| Condition { name, value, equal: true };
+    let uniform = when("sampling", "uniform");
+    let adaptive = when("sampling", "adaptive");
     vec![
+        Setting {
+            kind: "choice",
+            step: None,
+            choices: vec![
+                Choice { value: "uniform", label: "Uniform" },
+                Choice { value: "adaptive", label: "Adaptive" },
+            ],
+            help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
+            ..number("sampling", "Sampling", Value::Sampling(default.sampling), 0.0)
+        },
         Setting {
             kind: "choice",
             step: None,
@@ -217,33 +238,92 @@ fn settings() -> Vec<Setting> {
                 Choice { value: "radius", label: "Radius" },
                 Choice { value: "count", label: "Count" },
             ],
-            help: "Give the size of the particles, or how many there should be.",
+            help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
             ..number("size_mode", "Size by", Value::Size(default.size_mode), 0.0)
         },
         Setting {
             scale: "log",
             unit: "%",
             help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
-            when: Some(Condition { name: "size_mode", value: SizeMode::Radius }),
+            when: vec![uniform, when("size_mode", "radius")],
             ..number("radius_share", "Radius", Value::Number(default.radius_share), 0.01)
         },
         Setting {
             scale: "log",
             unit: "particles",
-            help: "Wanted number of particles, met within 3 %.",
-            when: Some(Condition { name: "size_mode", value: SizeMode::Count }),
+            help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
+            when: vec![when("size_mode", "count")],
             ..number("count", "Count", Value::Integer(default.count.into()), 0.01)
+        },
+        Setting {
+            kind: "choice",
+            step: None,
+            choices: vec![
+                Choice { value: "chord_error", label: "Chord error" },
+                Choice { value: "max_curvature", label: "Largest curvature" },
+                Choice { value: "sum_of_curvatures", label: "Sum of curvatures" },
+            ],
+            help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
+            when: vec![adaptive],
+            ..number("radius_law", "Radius law", Value::Law(default.radius_law), 0.0)
+        },
+        Setting {
+            scale: "log",
+            unit: "%",
+            help: "Largest gap between the surface and an edge that joins two neighbours, as a share of the box diagonal.",
+            when: vec![adaptive, when("radius_law", "chord_error")],
+            ..number("chord_error", "Chord error", Value::Number(default.chord_error), 0.01)
+        },
+        Setting {
+            scale: "log",
+            unit: "× 1/κ",
+            help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
+            when: vec![adaptive, Condition { equal: false, ..when("radius_law", "chord_error") }],
+            ..number("curvature_scale", "Curvature scale", Value::Number(default.curvature_scale), 0.01)
+        },
+        Setting {
+            scale: "log",
+            unit: "%",
+            help: "No particle is smaller than this share of the box diagonal.",
+            when: vec![adaptive],
+            ..number("radius_min_share", "Smallest radius", Value::Number(default.radius_min_share), 0.01)
+        },
+        Setting {
+            scale: "log",
+            unit: "%",
+            help: "No particle is larger than this share of the box diagonal.",
+            when: vec![adaptive],
+            ..number("radius_max_share", "Largest radius", Value::Number(default.radius_max_share), 0.01)
+        },
+        Setting {
+            group: "Advanced",
+            help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
+            when: vec![adaptive],
+            ..number("grading", "Grading", Value::Number(default.grading), 0.01)
+        },
+        Setting {
+            kind: "choice",
+            step: None,
+            group: "Advanced",
+            choices: vec![
+                Choice { value: "direct", label: "Direct" },
+                Choice { value: "faithful", label: "As in the paper" },
+            ],
+            help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
+            when: vec![adaptive],
+            ..number("placement", "Placement", Value::Placement(default.placement), 0.0)
         },
         Setting {
             max: Some(100.0),
             unit: "steps",
-            help: "Steps of Gaussian repulsion after the generation. The paper takes ten.",
+            help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
             ..number("relax_steps", "Relaxation", Value::Integer(default.relax_steps.into()), 1.0)
         },
         Setting {
             unit: "× 2r",
             group: "Advanced",
             help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+            when: vec![uniform],
             ..number("match_tolerance", "Match tolerance", Value::Number(default.match_tolerance), 0.01)
         },
         Setting {

@@ -24,12 +24,26 @@ Examples:
   marching-particles surfaces
   marching-particles sample --surface torus --out torus.ply
   marching-particles sample --surface ellipsoid --count 55748 --json
+  marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Gaps {
     Fill,
     Leave,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Law {
+    ChordError,
+    MaxCurvature,
+    SumOfCurvatures,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Placement {
+    Direct,
+    Faithful,
 }
 
 #[derive(Debug, Subcommand)]
@@ -87,12 +101,45 @@ pub(crate) struct Sample {
     pub(crate) bounds: Option<Bounds>,
 
     /// Radius of the particles: a share of the box diagonal (0.6%, the default) or a length (0.01)
-    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = radius, conflicts_with = "count", help_heading = "Sampling")]
-    pub(crate) radius: Option<Radius>,
+    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, conflicts_with = "count", help_heading = "Sampling")]
+    pub(crate) radius: Option<Length>,
 
     /// Number of particles, met within 3 %
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
     pub(crate) count: Option<u32>,
+
+    /// Let the size of the particles follow the curvature
+    #[arg(long, conflicts_with = "radius", help_heading = "Adaptive sampling")]
+    pub(crate) adaptive: bool,
+
+    /// How the radius follows from the principal curvatures; the paper takes their sum
+    #[arg(long, value_enum, default_value_t = Law::ChordError, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) law: Law,
+
+    /// Largest gap between the surface and an edge between neighbours, for the law `chord-error`: a share of the box
+    /// diagonal (0.0035%, the default) or a length
+    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) chord_error: Option<Length>,
+
+    /// Radius times curvature, for the other laws
+    #[arg(long, value_name = "NUMBER", default_value_t = defaults().curvature_scale, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) curvature_scale: f64,
+
+    /// Smallest radius [default: 0.1%]
+    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) radius_min: Option<Length>,
+
+    /// Largest radius [default: 3%]
+    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) radius_max: Option<Length>,
+
+    /// Slope of the radius along the surface: L lets neighbours differ by the factor (1 + L)/(1 - L)
+    #[arg(long, value_name = "SLOPE", default_value_t = defaults().grading, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) grading: f64,
+
+    /// How children are placed: by solving for the tangent place, or pushed step by step as in the paper
+    #[arg(long, value_enum, default_value_t = Placement::Direct, requires = "adaptive", help_heading = "Adaptive sampling")]
+    pub(crate) placement: Placement,
 
     /// Relaxation steps
     #[arg(long, value_name = "STEPS", default_value_t = defaults().relax_steps, help_heading = "Sampling")]
@@ -136,13 +183,23 @@ pub(crate) struct Surfaces {
     pub(crate) json: bool,
 }
 
-/// The size of the particles.
+/// A length, as it is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Radius {
+pub(crate) enum Length {
     /// Share of the box diagonal.
     Share(f64),
     /// In the field's units.
-    Length(f64),
+    Units(f64),
+}
+
+impl Length {
+    /// The length as a share of the box diagonal.
+    pub(crate) fn share(self, diagonal: f64) -> f64 {
+        match self {
+            Self::Share(share) => share,
+            Self::Units(length) => length / diagonal,
+        }
+    }
 }
 
 fn defaults() -> marching_particles::sampler::Settings {
@@ -161,14 +218,14 @@ fn parameter(text: &str) -> Result<(String, f64), String> {
     Ok((name.trim().to_owned(), number(value)?))
 }
 
-fn radius(text: &str) -> Result<Radius, String> {
-    let radius = match text.strip_suffix('%') {
-        Some(share) => Radius::Share(number(share)? / 100.0),
-        None => Radius::Length(number(text)?),
+fn length(text: &str) -> Result<Length, String> {
+    let length = match text.strip_suffix('%') {
+        Some(share) => Length::Share(number(share)? / 100.0),
+        None => Length::Units(number(text)?),
     };
-    match radius {
-        Radius::Share(value) | Radius::Length(value) if value > 0.0 => Ok(radius),
-        _ => Err("a radius must be positive".to_owned()),
+    match length {
+        Length::Share(value) | Length::Units(value) if value > 0.0 => Ok(length),
+        _ => Err("it must be positive".to_owned()),
     }
 }
 
@@ -198,12 +255,12 @@ mod tests {
     }
 
     #[test]
-    fn radius_is_a_share_or_a_length() {
-        assert_eq!(radius("0.6%"), Ok(Radius::Share(0.006)));
-        assert_eq!(radius("2 %"), Ok(Radius::Share(0.02)));
-        assert_eq!(radius("0.01"), Ok(Radius::Length(0.01)));
+    fn length_is_a_share_or_in_units() {
+        assert_eq!(length("0.6%"), Ok(Length::Share(0.006)));
+        assert_eq!(length("2 %"), Ok(Length::Share(0.02)));
+        assert_eq!(length("0.01"), Ok(Length::Units(0.01)));
         for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
-            assert!(radius(bad).is_err(), "{bad}");
+            assert!(length(bad).is_err(), "{bad}");
         }
     }
 

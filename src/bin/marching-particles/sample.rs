@@ -1,6 +1,6 @@
 //! `sample`: one run, its files and its figures.
 
-use crate::arguments::{Gaps, Radius, Sample};
+use crate::arguments::{Gaps, Law, Length, Placement as Placed, Sample};
 use crate::failure::{Failure, LIMIT};
 use crate::summary;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,7 +8,9 @@ use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{GapPolicy, Phase, Progress, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{
+    GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason,
+};
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Report, Session};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -183,12 +185,24 @@ fn unknown_surface(id: &str) -> String {
 
 fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
     let default = Settings::default();
+    let share = |length: Option<Length>, default| length.map_or(default, |l| l.share(bounds.diagonal()));
     Settings {
+        sampling: if arguments.adaptive { Sampling::Adaptive } else { Sampling::Uniform },
         size_mode: if arguments.count.is_some() { SizeMode::Count } else { SizeMode::Radius },
-        radius_share: match arguments.radius {
-            None => default.radius_share,
-            Some(Radius::Share(share)) => share,
-            Some(Radius::Length(length)) => length / bounds.diagonal(),
+        radius_share: share(arguments.radius, default.radius_share),
+        radius_law: match arguments.law {
+            Law::ChordError => LawKind::ChordError,
+            Law::MaxCurvature => LawKind::MaxCurvature,
+            Law::SumOfCurvatures => LawKind::SumOfCurvatures,
+        },
+        chord_error: share(arguments.chord_error, default.chord_error),
+        curvature_scale: arguments.curvature_scale,
+        radius_min_share: share(arguments.radius_min, default.radius_min_share),
+        radius_max_share: share(arguments.radius_max, default.radius_max_share),
+        grading: arguments.grading,
+        placement: match arguments.placement {
+            Placed::Direct => Placement::Direct,
+            Placed::Faithful => Placement::Faithful,
         },
         count: arguments.count.unwrap_or(default.count),
         relax_steps: arguments.relax,

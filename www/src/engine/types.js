@@ -50,7 +50,8 @@
  * @property {string} unit
  * @property {{value: string, label: string}[]} [choices]
  * @property {string} help
- * @property {{name: string, value: string}[]} [when]  shown only while all of these other settings have these values
+ * @property {{name: string, value: string, equal?: boolean}[]} [when]  shown only while all of these other settings have these values, or with
+ *   `equal` false other ones
  */
 /**
  * One row of the report. `key` is a path into {@link Report}, for example `quality.six`.

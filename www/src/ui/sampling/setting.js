@@ -24,9 +24,9 @@ export function createSetting(engine, info) {
   explain(label, help, { tap: true });
 
   const conditions = [info.when ?? []].flat();
-  const holds = computed(() => conditions.every(({ name, value: wanted }) => {
+  const holds = computed(() => conditions.every(({ name, value: wanted, equal = true }) => {
     const now = engine.state.value.settings[name] ?? engine.description.value?.settings.find((other) => other.name === name)?.default;
-    return now === wanted;
+    return (now === wanted) === equal;
   }));
   effect(() => { element.hidden = !holds.value; });
   return element;
