@@ -1,9 +1,12 @@
-//! A sparse cell grid over points in space: insertion one by one, and all points within a radius.
+//! A sparse cell grid over points in space: insertion one by one, and all points within a radius. For points that are all
+//! there at once and spread unevenly, a tree.
 //!
 //! Cells are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, found through an open-addressing hash table;
 //! a cell holds its points in blocks of eight, coordinates and all, so that a query reads a few contiguous blocks
 //! and compares eight distances at a time. Memory is proportional to the occupied cells and a query costs the same
 //! at 10³ and 10⁶ points.
+
+pub(crate) mod tree;
 
 use crate::math::{LANES, Lanes};
 use glam::Vec3;

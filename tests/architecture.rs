@@ -12,7 +12,7 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     ("field", &["math"]),
     ("differential", &["math", "field"]),
     // From a file to a field. The core that samples is built without it.
-    ("points", &["math", "field"]),
+    ("points", &["math", "field", "spatial"]),
     // Particles and the search among them know no field: they hold whatever made them.
     ("spatial", &["math"]),
     ("particles", &["math"]),

@@ -1,8 +1,8 @@
 //! Which points lie near the border that a clip box cuts into the surface.
 
-use super::tree::Tree;
 use crate::field::Field;
 use crate::math::Bounds;
+use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
 /// Points nearer to the border than this many d_hex are left out of the per-point figures: their neighbourhood is cut.

@@ -1,8 +1,8 @@
 //! Places of the surface between the points: corners of the Voronoi cells, and random ones.
 
-use super::tree::Tree;
 use super::triangles::area_vector;
 use crate::field::Field;
+use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;

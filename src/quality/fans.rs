@@ -1,8 +1,8 @@
 //! The natural neighbours of every point, counter-clockwise round its normal.
 
 use super::cell::Cell;
-use super::tree::{Tree, key, unkey};
 use crate::math::tangent_frame;
+use crate::spatial::tree::{Tree, key, unkey};
 use glam::{DVec2, DVec3, Vec3};
 
 /// How many of the nearest points are tried in turn when a cell is not proven complete. The first try takes the

@@ -2,11 +2,11 @@
 
 use super::border::Border;
 use super::fans::unroll;
-use super::tree::{key, unkey};
 use super::triangles::{Triangles, area_vector, topology};
 use super::{Options, Scene, Sizes, cover, probe};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
+use crate::spatial::tree::{key, unkey};
 use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
 

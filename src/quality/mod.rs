@@ -18,16 +18,15 @@ mod cover;
 mod fans;
 mod figures;
 mod probe;
-mod tree;
 mod triangles;
 
 pub use figures::{Figures, Histogram};
 
 use crate::field::Field;
 use crate::math::Bounds;
+use crate::spatial::tree::Tree;
 use fans::Fans;
 use glam::{DVec3, Vec3};
-use tree::Tree;
 use triangles::Triangles;
 
 /// Points closer than this many d_hex to an earlier one are duplicates of it.

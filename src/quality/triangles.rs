@@ -1,7 +1,7 @@
 //! Triangles of natural neighbours that their corners agree on, and what they add up to.
 
 use super::fans::Fans;
-use super::tree::{key, unkey};
+use crate::spatial::tree::{key, unkey};
 use glam::{DVec3, Vec3};
 
 /// The triangles of a set of points; indices in tree order, counter-clockwise round the normal of the first corner.

@@ -29,31 +29,31 @@ impl Node {
 
 /// Points in tree order: those of a leaf are contiguous, and near leaves are near in memory.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     /// The points, in tree order.
-    pub(super) position: Vec<Vec3>,
+    pub(crate) position: Vec<Vec3>,
     /// Tree order → index given to [`Tree::new`].
-    pub(super) origin: Vec<u32>,
+    pub(crate) origin: Vec<u32>,
     nodes: Vec<Node>,
 }
 
 /// A squared distance and a point: ordered by distance, ties by index.
 #[inline]
-pub(super) fn key(distance_sq: f32, index: u32) -> u64 {
+pub(crate) fn key(distance_sq: f32, index: u32) -> u64 {
     // Non-negative floats are ordered like their bits.
     u64::from(distance_sq.to_bits()) << 32 | u64::from(index)
 }
 
 /// The parts of a [`key`].
 #[inline]
-pub(super) fn unkey(key: u64) -> (f32, u32) {
+pub(crate) fn unkey(key: u64) -> (f32, u32) {
     (f32::from_bits((key >> 32) as u32), key as u32)
 }
 
 impl Tree {
     /// The tree over those `points` that `keep` names; they must be finite. The result depends on the points and
     /// their indices alone.
-    pub(super) fn new(points: &[Vec3], keep: impl Iterator<Item = u32>) -> Self {
+    pub(crate) fn new(points: &[Vec3], keep: impl Iterator<Item = u32>) -> Self {
         let mut items: Vec<(Vec3, u32)> = keep.map(|i| (points[i as usize], i)).collect();
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
         if !items.is_empty() {
@@ -64,12 +64,12 @@ impl Tree {
     }
 
     /// Number of points.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.position.len()
     }
 
     /// Every leaf, in order: its range of points and its box.
-    pub(super) fn leaves(&self) -> impl Iterator<Item = (core::ops::Range<usize>, Vec3, Vec3)> {
+    pub(crate) fn leaves(&self) -> impl Iterator<Item = (core::ops::Range<usize>, Vec3, Vec3)> {
         self.nodes
             .iter()
             .filter(|node| node.second == 0)
@@ -107,7 +107,7 @@ impl Tree {
     }
 
     /// Squared distance from `p` to the nearest point other than `except` if it is below `bound_sq`, else `bound_sq`.
-    pub(super) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
+    pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
         let mut best = bound_sq;
         self.search(p, bound_sq, |first, end, bound| {
             for i in first..end {
@@ -122,7 +122,7 @@ impl Tree {
     }
 
     /// The `count` nearest points to `p` that pass `accept`, nearest first, as keys in `out`.
-    pub(super) fn nearest_many(
+    pub(crate) fn nearest_many(
         &self,
         p: Vec3,
         count: usize,
@@ -150,7 +150,7 @@ impl Tree {
     }
 
     /// Appends to `out` every point in the closed box from `lo` to `hi`, in tree order.
-    pub(super) fn within_box(&self, lo: Vec3, hi: Vec3, out: &mut Vec<u32>) {
+    pub(crate) fn within_box(&self, lo: Vec3, hi: Vec3, out: &mut Vec<u32>) {
         let mut index = 0;
         let mut stack = [0_u32; STACK];
         let mut depth = 0;
