@@ -1,5 +1,6 @@
 //! What a user of the whole core sees: a field, a run, a report.
 
+use marching_particles::math::Bounds;
 use marching_particles::sampler::{Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldError, FieldRequest, Session, describe};
 
@@ -246,4 +247,44 @@ fn every_row_of_the_report_is_in_the_report() {
         );
     }
     assert_eq!(settings.as_object().unwrap().len(), description.settings.len());
+}
+
+#[test]
+fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
+    use marching_particles::field::model::ModelInfo;
+    use marching_particles::field::rbf::RbfData;
+    use marching_particles::session::FieldKind;
+
+    // r³ − 1, a sphere: one centre with α = 1 falls to 0 at the centre, and a far one with a small share adds a constant.
+    let data = RbfData {
+        centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
+        alpha: vec![1.0, -1e-9],
+        beta: vec![[0.0; 3]; 2],
+    };
+    let info = ModelInfo { name: "ball".into(), points: 2, centres: 2, ..ModelInfo::default() };
+    let mut session = Session::new();
+    let before = session.answer();
+    assert_eq!((before.kind, before.model), (FieldKind::Formula, None));
+    let answer = session.set_points(data.clone(), info.clone(), Bounds::cube(1.5)).expect("a field");
+    assert_eq!((answer.kind, answer.model.as_ref()), (FieldKind::Points, Some(&info)));
+    assert_eq!((answer.surface, answer.formula.as_str()), (None, ""));
+
+    session.start(&Settings { radius_share: 0.02, ..Settings::default() }).expect("valid settings");
+    while session.step(1000).stop_reason.is_none() {}
+    let report = session.report();
+    assert_eq!(report.stop_reason, Some(StopReason::Complete));
+    assert_eq!(report.quality.expect("particles").euler, 2);
+    assert!(session.particles().position.iter().all(|p| (p.length() - 1.0).abs() < 1e-2));
+
+    // Only the box of such a field can be changed; a bad one changes nothing.
+    let smaller = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
+    let answer = session.set_field(&smaller).expect("a box");
+    assert_eq!((answer.kind, answer.bounds), (FieldKind::Points, Bounds::cube(1.2)));
+    assert!(session.set_points(RbfData::default(), info.clone(), Bounds::cube(1.0)).is_err());
+    assert!(session.set_points(data, info, Bounds { min: [1.0; 3], max: [0.0; 3] }).is_err());
+    assert_eq!(session.answer(), answer);
+
+    let formula = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 1".into()), ..FieldRequest::default() };
+    let answer = session.set_field(&formula).expect("a formula");
+    assert_eq!((answer.kind, answer.model, answer.bounds), (FieldKind::Formula, None, Bounds::cube(1.2)));
 }

@@ -3,6 +3,7 @@
 pub mod formula;
 pub mod gallery;
 pub mod model;
+pub mod rbf;
 
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};

@@ -1,4 +1,5 @@
-//! What is known of a model from points, beside its function: where its points come from and how well they are met.
+//! What is known of models from points, beside their functions: what the built-in ones are, where points come from and how
+//! well they are met. The points themselves and the fitting are in the module `points`, which the core does without.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,4 +37,47 @@ pub struct ModelInfo {
     pub normals: NormalSource,
     /// Things the user should know, in words.
     pub warnings: Vec<String>,
+}
+
+/// A built-in model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Model {
+    /// Identifier: lower case, words joined by hyphens; no gallery surface has the same.
+    pub id: &'static str,
+    /// Name for a person.
+    pub name: &'static str,
+    /// Two sentences about it.
+    pub story: &'static str,
+    /// Whom to thank for the points.
+    pub credit: &'static str,
+    /// Number of points.
+    pub points: u32,
+}
+
+const STANFORD: &str = "Stanford Computer Graphics Laboratory";
+
+/// The built-in models.
+pub static MODELS: &[Model] = &[
+    Model {
+        id: "bunny",
+        name: "Stanford bunny",
+        story: "A clay rabbit scanned at Stanford in 1994, here from 200 points with normals. The paper's model of the \
+                same name has 200 points, too.",
+        credit: STANFORD,
+        points: 200,
+    },
+    Model {
+        id: "bunny-joined",
+        name: "Bunny with joined ears",
+        story: "The bunny without its points between the ears: nothing keeps them apart there, and they grow together \
+                to a handle, as in figure 9 of the paper. It takes no change of the method to sample it.",
+        credit: STANFORD,
+        points: 190,
+    },
+];
+
+/// The built-in model with this identifier.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static Model> {
+    MODELS.iter().find(|model| model.id == id)
 }

@@ -3,6 +3,7 @@
 
 use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
 use crate::field::gallery::{self, Surface};
+use crate::field::model::{MODELS, Model};
 use crate::math::Bounds;
 use crate::sampler::{GapPolicy, LawKind, Placement, Sampling, Settings, SizeMode};
 use serde::Serialize;
@@ -16,6 +17,8 @@ pub struct Description {
     pub default_surface: &'static str,
     /// The gallery.
     pub surfaces: Vec<SurfaceEntry>,
+    /// The models from points.
+    pub models: Vec<Model>,
     /// Settings of a run.
     pub settings: Vec<Setting>,
     /// Rows of the report.
@@ -174,6 +177,7 @@ pub fn describe() -> Description {
         version: env!("CARGO_PKG_VERSION"),
         default_surface: gallery::SURFACES[0].id,
         surfaces: gallery::SURFACES.iter().map(surface).collect(),
+        models: MODELS.to_vec(),
         settings: settings(),
         report: REPORT.to_vec(),
         fates: FATES.to_vec(),

@@ -7,8 +7,11 @@ pub use describe::{
     Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
 };
 
+use crate::field::Field;
 use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, Parameter};
 use crate::field::gallery::{self, Surface};
+use crate::field::model::ModelInfo;
+use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures, Histogram};
@@ -36,12 +39,26 @@ pub struct FieldRequest {
     pub bounds: Option<Bounds>,
 }
 
+/// What a field is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FieldKind {
+    /// A formula.
+    Formula,
+    /// Points with normals.
+    Points,
+}
+
 /// The field as it now is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FieldAnswer {
+    /// What it is made of.
+    pub kind: FieldKind,
+    /// The model, if it is made of points.
+    pub model: Option<ModelInfo>,
     /// Gallery surface, if the formula is still its own.
     pub surface: Option<&'static str>,
-    /// Text of the formula.
+    /// Text of the formula; empty if there is none.
     pub formula: String,
     /// Parameters with values and ranges.
     pub parameters: Vec<Parameter>,
@@ -65,6 +82,9 @@ pub enum FieldError {
     /// The box is not one.
     #[error("the box must have finite corners and a positive size on every axis")]
     Box,
+    /// The centres and coefficients make no field.
+    #[error(transparent)]
+    Points(#[from] DataError),
 }
 
 /// Everything worth knowing about a run.
@@ -104,9 +124,32 @@ pub struct Report {
     pub nearest_histogram: Histogram,
 }
 
+/// The field of a session.
+#[expect(clippy::large_enum_variant, reason = "there is one in a session")]
+enum Source {
+    Formula(FormulaField),
+    Points { field: RbfField, info: ModelInfo },
+}
+
+impl Source {
+    fn field(&mut self) -> &mut dyn Field {
+        match self {
+            Self::Formula(field) => field,
+            Self::Points { field, .. } => field,
+        }
+    }
+
+    fn formula(&self) -> Option<&FormulaField> {
+        match self {
+            Self::Formula(field) => Some(field),
+            Self::Points { .. } => None,
+        }
+    }
+}
+
 /// A field, a sampler and a run.
 pub struct Session {
-    field: FormulaField,
+    source: Source,
     surface: Option<&'static Surface>,
     declared: Vec<Parameter>,
     bounds: Bounds,
@@ -131,7 +174,7 @@ impl Session {
     pub fn new() -> Self {
         let surface = &gallery::SURFACES[0];
         Self {
-            field: surface.field(),
+            source: Source::Formula(surface.field()),
             surface: Some(surface),
             declared: surface.declared(),
             bounds: surface.bounds,
@@ -145,8 +188,8 @@ impl Session {
     }
 
     /// The present field.
-    pub fn field(&mut self) -> &mut FormulaField {
-        &mut self.field
+    pub fn field(&mut self) -> &mut dyn Field {
+        self.source.field()
     }
 
     /// The clip box.
@@ -177,13 +220,27 @@ impl Session {
     /// The field as it is.
     #[must_use]
     pub fn answer(&self) -> FieldAnswer {
-        FieldAnswer {
-            surface: self.surface.map(|surface| surface.id),
-            formula: self.field.text().to_owned(),
-            parameters: self.field.parameters().to_vec(),
-            auto: self.field.auto().to_vec(),
-            bounds: self.bounds,
-            mathml: self.field.mathml(),
+        match &self.source {
+            Source::Formula(field) => FieldAnswer {
+                kind: FieldKind::Formula,
+                model: None,
+                surface: self.surface.map(|surface| surface.id),
+                formula: field.text().to_owned(),
+                parameters: field.parameters().to_vec(),
+                auto: field.auto().to_vec(),
+                bounds: self.bounds,
+                mathml: field.mathml(),
+            },
+            Source::Points { info, .. } => FieldAnswer {
+                kind: FieldKind::Points,
+                model: Some(info.clone()),
+                surface: None,
+                formula: String::new(),
+                parameters: Vec::new(),
+                auto: Vec::new(),
+                bounds: self.bounds,
+                mathml: String::new(),
+            },
         }
     }
 
@@ -202,10 +259,16 @@ impl Session {
         if !bounds.is_valid() {
             return Err(FieldError::Box);
         }
-        let text = match (&request.formula, surface) {
-            (Some(text), _) => text.as_str(),
-            (None, Some(surface)) => surface.formula,
-            (None, None) => self.field.text(),
+        let present = self.source.formula();
+        let text = match (&request.formula, surface, present) {
+            (Some(text), _, _) => text.as_str(),
+            (None, Some(surface), _) => surface.formula,
+            (None, None, Some(field)) => field.text(),
+            // Of a model from points only the box can be changed.
+            (None, None, None) => {
+                self.bounds = bounds;
+                return Ok(self.answer());
+            }
         };
         // A declared parameter that the formula does not use stays declared: it may come back with the next key.
         let mut declared = surface.map_or_else(
@@ -218,10 +281,9 @@ impl Session {
                 None => declared.push(parameter.clone()),
             }
         }
-        let mut field = if text == self.field.text() && declared == self.declared {
-            self.field.clone()
-        } else {
-            FormulaField::parse(text, &declared)?
+        let mut field = match present {
+            Some(field) if text == field.text() && declared == self.declared => field.clone(),
+            _ => FormulaField::parse(text, &declared)?,
         };
         for (name, &value) in &request.parameters {
             match field.set_parameter(name, value) {
@@ -233,8 +295,30 @@ impl Session {
         self.surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
-        self.field = field;
+        self.source = Source::Formula(field);
         self.declared = declared;
+        self.bounds = bounds;
+        Ok(self.answer())
+    }
+
+    /// Changes the field to one from points, as `points::fit` makes it. [`Session::set_field`] with a surface or a formula
+    /// changes it back. Particles of an earlier run stay until the next [`Session::start`].
+    ///
+    /// # Errors
+    ///
+    /// If the data makes no field or the box is not one; nothing is changed then.
+    pub fn set_points(
+        &mut self,
+        data: RbfData,
+        info: ModelInfo,
+        bounds: Bounds,
+    ) -> Result<FieldAnswer, FieldError> {
+        if !bounds.is_valid() {
+            return Err(FieldError::Box);
+        }
+        self.source = Source::Points { field: RbfField::new(data)?, info };
+        self.surface = None;
+        self.declared.clear();
         self.bounds = bounds;
         Ok(self.answer())
     }
@@ -245,7 +329,7 @@ impl Session {
     ///
     /// If a setting is out of its range.
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
-        let start = self.sampler.start(&mut self.field, &self.bounds, settings)?;
+        let start = self.sampler.start(self.source.field(), &self.bounds, settings)?;
         self.warnings.clone_from(&start.warnings);
         self.last = None;
         self.front.0.clear();
@@ -257,7 +341,7 @@ impl Session {
 
     /// Does up to `budget` units of work; see [`Sampler::step`].
     pub fn step(&mut self, budget: u32) -> Progress {
-        let progress = self.sampler.step(&mut self.field, budget);
+        let progress = self.sampler.step(self.source.field(), budget);
         let particles = self.sampler.particles();
         if progress.phase == Phase::Relaxation
             && self.front.0.is_empty()
@@ -297,13 +381,14 @@ impl Session {
         self.measured = quality::measure(
             &particles.position,
             &particles.normal,
-            &mut self.field,
+            self.source.field(),
             Some(&self.bounds),
             &options,
         );
         if self.front_figures.is_none() && !self.front.0.is_empty() {
             let (position, normal) = &self.front;
-            let before = quality::measure(position, normal, &mut self.field, Some(&self.bounds), &options);
+            let before =
+                quality::measure(position, normal, self.source.field(), Some(&self.bounds), &options);
             self.front_figures = Some(before.figures);
         }
         let mut level_counts = Vec::new();

@@ -84,6 +84,7 @@ impl Core {
             }
             Err(error @ FieldError::UnknownSurface(_)) => refusal("unknown_surface", &error.to_string()),
             Err(error @ FieldError::Box) => refusal("box", &error.to_string()),
+            Err(error @ FieldError::Points(_)) => refusal("points", &error.to_string()),
         }
     }
 

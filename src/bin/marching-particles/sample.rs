@@ -164,7 +164,7 @@ fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, F
             Failure::Formula { text: arguments.formula.clone().unwrap_or_default(), error: Box::new(error) }
         }
         FieldError::UnknownSurface(id) => Failure::Usage(unknown_surface(&id)),
-        FieldError::Box => Failure::Usage(error.to_string()),
+        FieldError::Box | FieldError::Points(_) => Failure::Usage(error.to_string()),
     })?;
     for (name, _) in &arguments.parameters {
         if !answer.parameters.iter().any(|parameter| parameter.name == *name) {

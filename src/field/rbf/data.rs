@@ -1,0 +1,147 @@
+//! Centres and coefficients, their form as bytes, and the field in double precision.
+
+use crate::field::Jet;
+use crate::math::Sym3;
+use glam::DVec3;
+
+/// First bytes of the byte form, with its version.
+const MAGIC: [u8; 8] = *b"mp-hrbf1";
+/// Numbers per centre: position, α, β.
+const NUMBERS: usize = 7;
+/// More centres than this are refused: each point of each batch visits every centre.
+const MOST_CENTRES: usize = 100_000;
+
+/// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ), φ(r) = r³. The three lists are equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RbfData {
+    /// Centres cⱼ.
+    pub centres: Vec<[f64; 3]>,
+    /// Coefficients αⱼ.
+    pub alpha: Vec<f64>,
+    /// Coefficients βⱼ.
+    pub beta: Vec<[f64; 3]>,
+}
+
+/// Why data describes no field.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DataError {
+    /// There is no centre.
+    #[error("a field needs at least one centre")]
+    Empty,
+    /// More centres than can be evaluated in reasonable time.
+    #[error("{count} centres are more than {MOST_CENTRES}")]
+    TooMany {
+        /// Number of centres.
+        count: usize,
+    },
+    /// The lists differ in length.
+    #[error("{centres} centres with {alpha} and {beta} coefficients")]
+    Lengths {
+        /// Length of the list of centres.
+        centres: usize,
+        /// Length of the list of α.
+        alpha: usize,
+        /// Length of the list of β.
+        beta: usize,
+    },
+    /// A number is infinite or not a number.
+    #[error("centre {index} or its coefficients are not finite")]
+    NotFinite {
+        /// Index of the centre.
+        index: usize,
+    },
+    /// Bytes of another kind, version or length.
+    #[error("these bytes are not the centres and coefficients of a field")]
+    Bytes,
+}
+
+impl RbfData {
+    /// Whether the lists are equally long, not empty and finite.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, if they are not.
+    pub fn check(&self) -> Result<(), DataError> {
+        let (centres, alpha, beta) = (self.centres.len(), self.alpha.len(), self.beta.len());
+        if centres != alpha || centres != beta {
+            return Err(DataError::Lengths { centres, alpha, beta });
+        }
+        match centres {
+            0 => return Err(DataError::Empty),
+            count if count > MOST_CENTRES => return Err(DataError::TooMany { count }),
+            _ => {}
+        }
+        match (0..centres).find(|&j| !self.numbers(j).iter().all(|number| number.is_finite())) {
+            Some(index) => Err(DataError::NotFinite { index }),
+            None => Ok(()),
+        }
+    }
+
+    fn numbers(&self, j: usize) -> [f64; NUMBERS] {
+        let ([x, y, z], a, [u, v, w]) = (self.centres[j], self.alpha[j], self.beta[j]);
+        [x, y, z, a, u, v, w]
+    }
+
+    /// The data as bytes: a magic of eight, then seven little-endian doubles per centre.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        for j in 0..self.centres.len() {
+            bytes.extend(self.numbers(j).iter().flat_map(|number| number.to_le_bytes()));
+        }
+        bytes
+    }
+
+    /// Reads what [`RbfData::to_bytes`] wrote, and checks it.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not of that form or the data fails [`RbfData::check`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, DataError> {
+        let body = bytes.strip_prefix(&MAGIC).ok_or(DataError::Bytes)?;
+        let (numbers, rest) = body.as_chunks::<{ size_of::<f64>() }>();
+        let (rows, short) = numbers.as_chunks::<NUMBERS>();
+        if !rest.is_empty() || !short.is_empty() {
+            return Err(DataError::Bytes);
+        }
+        let mut data = Self::default();
+        for row in rows {
+            let [x, y, z, a, u, v, w] = row.map(f64::from_le_bytes);
+            data.centres.push([x, y, z]);
+            data.alpha.push(a);
+            data.beta.push([u, v, w]);
+        }
+        data.check()?;
+        Ok(data)
+    }
+
+    /// f, ∇f and ∇∇f at `p`. The sums run over the centres in their order.
+    #[must_use]
+    pub fn jet(&self, p: DVec3) -> Jet {
+        let mut value = 0.0;
+        let mut gradient = DVec3::ZERO;
+        let [mut xx, mut xy, mut xz, mut yy, mut yz, mut zz] = [0.0; 6];
+        for j in 0..self.centres.len() {
+            let d = p - DVec3::from_array(self.centres[j]);
+            let r = d.length();
+            if r == 0.0 {
+                continue;
+            }
+            let (alpha, beta) = (self.alpha[j], DVec3::from_array(self.beta[j]));
+            let (u, along) = (d / r, beta.dot(d));
+            value += r * (alpha * r * r + 3.0 * along);
+            gradient += 3.0 * (alpha * r + along / r) * d + 3.0 * r * beta;
+            // ∇∇(β·∇φ) = 3 ((β·u)(I − u uᵀ) + β uᵀ + u βᵀ) with u = d/r.
+            let slope = beta.dot(u);
+            let (identity, outer) = (3.0 * (alpha * r + slope), 3.0 * (alpha * r - slope));
+            let entry = |a: usize, b: usize| outer * u[a] * u[b] + 3.0 * (beta[a] * u[b] + u[a] * beta[b]);
+            xx += identity + entry(0, 0);
+            xy += entry(0, 1);
+            xz += entry(0, 2);
+            yy += identity + entry(1, 1);
+            yz += entry(1, 2);
+            zz += identity + entry(2, 2);
+        }
+        Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
+}
