@@ -194,3 +194,22 @@ fn every_run_ends_whatever_the_field() {
         sampled(formula, 1.0, &Settings { max_particles: 20_000, ..coarse() });
     }
 }
+
+#[test]
+fn a_formula_may_be_in_any_units() {
+    let ellipsoid = "x^2 + 2y^2 + 3z^2 - 0.7";
+    let (plain, _, _) = sampled(ellipsoid, 1.0, &coarse());
+    for factor in ["2^100", "2^-100"] {
+        // A power of two changes no digit.
+        let (session, _, report) = sampled(&format!("{factor} * ({ellipsoid})"), 1.0, &coarse());
+        assert_eq!(session.particles().digest(), plain.particles().digest(), "{factor}");
+        assert_eq!(report.quality.expect("there are particles").euler, 2, "{factor}");
+    }
+    for factor in ["1e30", "1e-30"] {
+        let formula = format!("{factor} x^2 + 2 * {factor} y^2 + 3 * {factor} z^2 = 0.7 * {factor}");
+        let (_, progress, report) = sampled(&formula, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        let figures = report.quality.expect("there are particles");
+        assert!(figures.cover < 1.4 && figures.euler == 2, "{formula}: {figures:?}");
+    }
+}

@@ -4,6 +4,7 @@ pub mod formula;
 pub mod gallery;
 pub mod model;
 pub mod rbf;
+pub(crate) mod scaled;
 
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};

@@ -80,6 +80,21 @@ pub struct Sym3<T> {
     pub zz: T,
 }
 
+impl<T: Copy> Sym3<T> {
+    /// `f` applied to every entry.
+    #[must_use]
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Sym3<U> {
+        Sym3 {
+            xx: f(self.xx),
+            xy: f(self.xy),
+            xz: f(self.xz),
+            yy: f(self.yy),
+            yz: f(self.yz),
+            zz: f(self.zz),
+        }
+    }
+}
+
 impl Sym3<f64> {
     /// The matrix applied to `v`.
     #[must_use]

@@ -23,6 +23,7 @@ mod triangles;
 pub use figures::{Figures, Histogram};
 
 use crate::field::Field;
+use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::Bounds;
 use crate::spatial::tree::Tree;
 use fans::Fans;
@@ -151,6 +152,8 @@ pub fn measure(
     bounds: Option<&Bounds>,
     options: &Options,
 ) -> Report {
+    let factor = comfortable_factor(field, position.iter().copied());
+    let field = &mut Scaled::new(field, factor);
     let Prepared { scene, triangles, mesh, duplicates, not_finite, drop } =
         prepare(position, normal, field, options.area);
     let mut figures = figures::figures(&scene, &triangles, &mesh, field, bounds, options, duplicates);
@@ -185,7 +188,8 @@ pub fn measure(
 /// triangle at most; counter-clockwise seen from outside. Input and cost as in [`measure`], of which this is part.
 #[must_use]
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
-    let Prepared { scene, mesh, .. } = prepare(position, normal, field, None);
+    let factor = comfortable_factor(field, position.iter().copied());
+    let Prepared { scene, mesh, .. } = prepare(position, normal, &mut Scaled::new(field, factor), None);
     let origin = &scene.tree.origin;
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }

@@ -16,6 +16,7 @@ pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsEr
 pub use uniform::FateCounts;
 
 use crate::field::Field;
+use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use gaps::{Gaps, Ground};
@@ -157,6 +158,8 @@ pub struct Counts {
 pub struct Sampler {
     settings: Settings,
     bounds: Bounds,
+    /// What the field is multiplied by, so that its gradient can be squared.
+    factor: f32,
     radius: f64,
     tolerance: Tolerance,
     phase: Phase,
@@ -196,6 +199,7 @@ impl Sampler {
         Self {
             settings: Settings::default(),
             bounds: Bounds::cube(1.0),
+            factor: 1.0,
             radius: 1.0,
             tolerance: Tolerance::default(),
             phase: Phase::Idle,
@@ -274,7 +278,8 @@ impl Sampler {
         self.stop_reason = None;
         self.attempt = 0;
         self.pilot = false;
-        self.survey = survey(field, bounds, &mut self.projector);
+        self.factor = comfortable_factor(field, spread(bounds));
+        self.survey = survey(&mut Scaled::new(field, self.factor), bounds, &mut self.projector);
         self.counts.seeding_evaluations = self.projector.evaluations;
 
         let area = self.survey.area;
@@ -392,6 +397,7 @@ impl Sampler {
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
     /// relaxation step. Returns early where the relaxation begins, so that the particles of the front can be seen.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
+        let field = &mut Scaled::new(field, self.factor);
         let mut left = budget;
         let before = self.projector.evaluations;
         let relaxing = self.phase == Phase::Relaxation;

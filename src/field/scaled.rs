@@ -1,0 +1,108 @@
+//! A field times a constant, so that formulas in any units can be squared in single precision.
+
+use super::{Field, Interval, Jet};
+use crate::math::{Bounds, Sym3, sort_numbers};
+use glam::{DVec3, Vec3};
+
+/// Points at which the size of a gradient is looked at: one batch.
+const SAMPLES: usize = 128;
+
+/// A gradient within 2^±[`COMFORTABLE`] needs no factor: its square, and that of a value a million times smaller or
+/// larger, are numbers in single precision.
+const COMFORTABLE: i32 = 40;
+
+/// Another field times a positive power of two, which has the same surface and the same digits.
+pub(crate) struct Scaled<'a> {
+    field: &'a mut dyn Field,
+    factor: f32,
+}
+
+impl<'a> Scaled<'a> {
+    /// `field` times `factor`, which [`comfortable_factor`] has chosen.
+    pub(crate) fn new(field: &'a mut dyn Field, factor: f32) -> Self {
+        Self { field, factor }
+    }
+}
+
+/// The power of two that brings the median gradient at `points` (at most 128 of them are looked at) near 1, or 1 where
+/// that is not needed. It depends on the points in no other way, so that nearly all choices of points give the same.
+pub(crate) fn comfortable_factor(field: &mut dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> f32 {
+    let stride = points.len().div_ceil(SAMPLES).max(1);
+    let points: Vec<Vec3> = points.step_by(stride).collect();
+    let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
+    field.gradients(&points, &mut value, &mut gradient);
+    let mut size: Vec<f32> =
+        gradient.iter().map(|g| g.abs().max_element()).filter(|s| s.is_finite() && *s > 0.0).collect();
+    sort_numbers(&mut size);
+    let Some(&median) = size.get(size.len() / 2) else { return 1.0 };
+    let exponent = exponent(median);
+    if exponent.abs() <= COMFORTABLE { 1.0 } else { power_of_two(-exponent) }
+}
+
+/// Points spread over a box: a coarse grid, off its faces and its planes of symmetry.
+pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
+    const SIDE: usize = 5;
+    let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
+    (0..SIDE * SIDE * SIDE).map(move |i| {
+        let node = DVec3::new((i % SIDE) as f64, (i / SIDE % SIDE) as f64, (i / SIDE / SIDE) as f64);
+        (lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / SIDE as f64).as_vec3()
+    })
+}
+
+/// The exponent of a positive normal number; subnormal ones count as the smallest normal.
+fn exponent(x: f32) -> i32 {
+    ((x.to_bits() >> 23 & 0xff) as i32).max(1) - 127
+}
+
+/// 2^`exponent`, for −126 ≤ `exponent` ≤ 127.
+fn power_of_two(exponent: i32) -> f32 {
+    f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
+}
+
+impl Field for Scaled<'_> {
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        self.field.values(points, value);
+        if self.factor != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
+        }
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        self.field.gradients(points, value, gradient);
+        if self.factor != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.factor);
+        }
+    }
+
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        self.field.hessians(points, value, gradient, hessian);
+        if self.factor != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.factor);
+            hessian[..points.len()].iter_mut().for_each(|h| *h = h.map(|entry| entry * self.factor));
+        }
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        let factor = f64::from(self.factor);
+        let jet = self.field.jet(p);
+        Jet {
+            value: jet.value * factor,
+            gradient: jet.gradient * factor,
+            hessian: jet.hessian.map(|entry| entry * factor),
+        }
+    }
+
+    fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
+        let factor = f64::from(self.factor);
+        let range = self.field.interval(lo, hi);
+        Interval { lo: range.lo * factor, hi: range.hi * factor, ..range }
+    }
+}
