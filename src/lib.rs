@@ -43,8 +43,8 @@
 //! # Modules
 //!
 //! ```text
-//! math ← field ← sampler ← session ← web
-//!           ↑  ↖ quality ← export ↙
+//! math ← field ← differential ← sampler ← session ← web
+//!           ↑              ↖ quality ← export ↙
 //!         points
 //! ```
 //!
@@ -52,6 +52,7 @@
 //!
 //! * [`math`]: lanes, elementary functions, symmetric matrices, boxes.
 //! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
+//! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
@@ -62,6 +63,7 @@
 //! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).
 //! * `web`: what JavaScript sees, on `wasm32` only.
 
+pub mod differential;
 pub mod export;
 pub mod field;
 pub mod json;

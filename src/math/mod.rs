@@ -4,8 +4,10 @@
 pub mod decimal;
 pub mod functions;
 mod lanes;
+mod real;
 
 pub use lanes::{LANES, Lanes};
+pub use real::Real;
 
 use glam::{DVec3, Vec3};
 
@@ -95,15 +97,24 @@ impl<T: Copy> Sym3<T> {
     }
 }
 
+impl<T: Real> Sym3<T> {
+    /// The matrix times the column `[x, y, z]`.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(&self, [x, y, z]: [T; 3]) -> [T; 3] {
+        [
+            self.xx * x + self.xy * y + self.xz * z,
+            self.xy * x + self.yy * y + self.yz * z,
+            self.xz * x + self.yz * y + self.zz * z,
+        ]
+    }
+}
+
 impl Sym3<f64> {
     /// The matrix applied to `v`.
     #[must_use]
     pub fn apply(&self, v: DVec3) -> DVec3 {
-        DVec3::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
-        )
+        self.times(v.to_array()).into()
     }
 }
 
@@ -111,11 +122,7 @@ impl Sym3<f32> {
     /// The matrix applied to `v`.
     #[must_use]
     pub fn apply(&self, v: Vec3) -> Vec3 {
-        Vec3::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
-        )
+        self.times(v.to_array()).into()
     }
 }
 
@@ -151,10 +158,19 @@ pub fn sort_numbers(numbers: &mut [f32]) {
 /// number. A non-finite `n` gives non-finite vectors.
 #[must_use]
 pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {
-    let sign = 1.0_f32.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    (Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y))
+    let (u, v) = frame_of(n.to_array());
+    (u.into(), v.into())
+}
+
+/// [`tangent_frame`] over any numbers.
+#[inline(always)]
+#[must_use]
+pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
+    let one = T::of(1.0);
+    let sign = z.sign();
+    let a = -one / (sign + z);
+    let b = x * y * a;
+    ([one + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y])
 }
 
 #[cfg(test)]

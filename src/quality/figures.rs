@@ -4,6 +4,7 @@ use super::border::Border;
 use super::fans::unroll;
 use super::triangles::{Triangles, area_vector, topology};
 use super::{Options, Scene, Sizes, cover, probe};
+use crate::differential::exact_curvature;
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
 use crate::spatial::tree::{key, unkey};
@@ -411,7 +412,7 @@ fn edges(scene: &Scene, inner: &[bool], field: &mut dyn Field, sizes: Sizes, fig
             .tree
             .position
             .iter()
-            .map(|&p| 1.0 / super::largest_curvature(field, p).max(lowest).min(highest))
+            .map(|&p| 1.0 / exact_curvature(&field.jet(p.as_dvec3())).max_abs().max(lowest).min(highest))
             .collect(),
     };
     let mut size = Moments::default();

@@ -27,7 +27,7 @@ use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::Bounds;
 use crate::spatial::tree::Tree;
 use fans::Fans;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use triangles::Triangles;
 
 /// Points closer than this many d_hex to an earlier one are duplicates of it.
@@ -277,17 +277,4 @@ fn drop_close(scene: &Scene, limit: f32, drop: &mut [bool]) -> bool {
         }
     }
     any
-}
-
-/// A principal curvature of the largest magnitude, from the gradient and the Hessian: κ = (a + c)/2 ± √(((a − c)/2)² + b²)
-/// with the shape operator [a b; b c] in a tangent basis.
-fn largest_curvature(field: &mut dyn Field, p: Vec3) -> f64 {
-    let jet = field.jet(p.as_dvec3());
-    let slope = jet.gradient.length();
-    let (u, v) = crate::math::tangent_frame((jet.gradient / slope).as_vec3());
-    let (u, v): (DVec3, DVec3) = (u.as_dvec3(), v.as_dvec3());
-    let (hu, hv) = (jet.hessian.apply(u), jet.hessian.apply(v));
-    let (a, b, c) = (u.dot(hu) / slope, v.dot(hu) / slope, v.dot(hv) / slope);
-    let mean = 0.5 * (a + c);
-    mean.abs() + (0.25 * (a - c) * (a - c) + b * b).sqrt()
 }
