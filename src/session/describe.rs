@@ -288,6 +288,7 @@ fn settings() -> Vec<Setting> {
         Setting {
             scale: "log",
             unit: "%",
+            group: "Advanced",
             help: "No particle is smaller than this share of the box diagonal.",
             when: vec![adaptive],
             ..number("radius_min_share", "Smallest radius", Value::Number(default.radius_min_share), 0.01)
@@ -295,6 +296,7 @@ fn settings() -> Vec<Setting> {
         Setting {
             scale: "log",
             unit: "%",
+            group: "Advanced",
             help: "No particle is larger than this share of the box diagonal.",
             when: vec![adaptive],
             ..number("radius_max_share", "Largest radius", Value::Number(default.radius_max_share), 0.01)

@@ -1,6 +1,6 @@
 /** Puts the interface together over an engine. */
 import { effect } from '@preact/signals-core';
-import { byId, h } from './dom.js';
+import { byId, h, once } from './dom.js';
 import { mountField } from './field/panel.js';
 import { mountLayout } from './layout.js';
 import { mountReport } from './report/panel.js';
@@ -80,19 +80,12 @@ export function mountInterface(engine) {
   });
 }
 
-/** A second press so soon after the first is a double click, not a wish to stop. */
-const DOUBLE_CLICK_MS = 500;
-
 /** Run or stop, always in reach on a phone. @param {Engine} engine */
 function goButton(engine) {
-  let last = -Infinity;
-  const press = () => {
-    const now = performance.now();
-    if (now - last < DOUBLE_CLICK_MS) return;
-    last = now;
+  const press = once(() => {
     if (engine.busy.peek()) engine.stop();
     else engine.run();
-  };
+  });
   const button = h('button', { type: 'button', class: 'button primary go', on: { click: press } });
   effect(() => { button.textContent = engine.busy.value ? 'Stop' : 'Run'; });
   return button;

@@ -84,6 +84,20 @@ export function byId(id) {
   return element;
 }
 
+/** A second press so soon after the first is a double click, not a second wish. */
+const DOUBLE_CLICK_MS = 500;
+
+/** Does `act` once for a double click. @param {() => void} act */
+export function once(act) {
+  let last = -Infinity;
+  return () => {
+    const now = performance.now();
+    if (now - last < DOUBLE_CLICK_MS) return;
+    last = now;
+    act();
+  };
+}
+
 let last = 0;
 /** An id that no other element has. @param {string} stem */
 export function uniqueId(stem) {

@@ -51,7 +51,9 @@ function hide() {
   if (popover?.matches(':popover-open')) popover.hidePopover();
 }
 
-/** @param {Element} anchor @param {Explanation} explanation @param {'below' | 'left'} [side] */
+/** Where a popover stands if there is room. @typedef {'below' | 'above' | 'left'} Side */
+
+/** @param {Element} anchor @param {Explanation} explanation @param {Side} [side] */
 function show(anchor, explanation, side) {
   clearTimeout(timer);
   const element = ensure();
@@ -70,17 +72,18 @@ function show(anchor, explanation, side) {
 }
 
 /**
- * Places a popover below its anchor, or above where there is no room; on the left of it where that is asked for and fits.
+ * Places a popover below its anchor, or above, or on the left of it, where that is asked for and fits.
  * @param {HTMLElement} element
  * @param {DOMRect} anchor
- * @param {'below' | 'left'} [side]
+ * @param {Side} [side]
  */
 export function place(element, anchor, side = 'below') {
   const { width, height } = element.getBoundingClientRect();
   const beside = anchor.left - width - MARGIN_PX;
   const left = side === 'left' && beside >= MARGIN_PX;
-  const below = anchor.bottom + MARGIN_PX / 2;
-  const y = left ? anchor.top : below + height <= innerHeight - MARGIN_PX ? below : anchor.top - height - MARGIN_PX / 2;
+  const [above, below] = [anchor.top - height - MARGIN_PX / 2, anchor.bottom + MARGIN_PX / 2];
+  const over = side === 'above' ? above >= MARGIN_PX : below + height > innerHeight - MARGIN_PX;
+  const y = left ? anchor.top : over ? above : below;
   const x = left ? beside : anchor.left;
   element.style.left = `${clamp(x, MARGIN_PX, Math.max(MARGIN_PX, innerWidth - width - MARGIN_PX))}px`;
   element.style.top = `${clamp(y, MARGIN_PX, Math.max(MARGIN_PX, innerHeight - height - MARGIN_PX))}px`;
@@ -90,7 +93,7 @@ export function place(element, anchor, side = 'below') {
  * Gives `target` an explanation.
  * @param {Element} target hovered or focused
  * @param {() => Explanation | null} read
- * @param {{ tap?: boolean, side?: 'below' | 'left' }} [options] with `tap`, a press toggles it (for elements that do nothing else)
+ * @param {{ tap?: boolean, side?: Side }} [options] with `tap`, a press toggles it (for elements that do nothing else)
  */
 export function explain(target, read, options = {}) {
   const open = () => {

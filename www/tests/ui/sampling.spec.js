@@ -5,13 +5,56 @@ test('the settings are those that the core describes, each with its help', async
   await open(page);
   const settings = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.settings);
   await expect(page.locator('.setting')).toHaveCount(settings.length);
+  await page.getByRole('button', { name: 'Advanced' }).click();
   for (const { name, label, help } of settings) {
     const setting = page.locator(`.setting[data-setting="${name}"]`);
     await expect(setting).toContainText(label);
     if (!(await setting.isVisible())) continue;
-    await setting.locator('.setting-label').hover();
+    await setting.hover();
     await expect(page.locator('#explain')).toContainText(help.slice(0, 40));
   }
+});
+
+/** @param {import('@playwright/test').Page} page */
+const shownSettings = (page) => page.locator('.setting:visible').evaluateAll((all) => all.map((one) => one.getAttribute('data-setting')));
+
+test('Uniform and Adaptive each show their own settings, and the bar keeps its height', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const bar = page.locator('#panel-sampling');
+  const height = (await bar.boundingBox())?.height;
+  const uniform = await shownSettings(page);
+  expect(uniform).toContain('radius_share');
+  await page.getByRole('radio', { name: 'Adaptive' }).check();
+  await expect.poll(async () => (await state(page)).settings.sampling).toBe('adaptive');
+  const adaptive = await shownSettings(page);
+  expect(adaptive).toContain('radius_law');
+  expect(adaptive).not.toContain('radius_share');
+  expect((await bar.boundingBox())?.height).toBe(height);
+  // One row of them.
+  expect(new Set(await page.locator('.setting:visible:not([data-setting=sampling])').evaluateAll((all) => all.map((one) => Math.round(one.getBoundingClientRect().top)))).size).toBe(1);
+  await page.getByRole('combobox', { name: 'Radius law' }).selectOption('max_curvature');
+  await expect(page.locator('.setting[data-setting="curvature_scale"]')).toBeVisible();
+  await expect(page.locator('.setting[data-setting="chord_error"]')).toBeHidden();
+  await page.getByRole('radio', { name: 'Adaptive' }).focus();
+  await page.keyboard.press('ArrowLeft');
+  await expect(page.getByRole('radio', { name: 'Uniform' })).toBeChecked();
+  await expect.poll(() => shownSettings(page)).toEqual(uniform);
+  await clean();
+});
+
+test('what few need is behind a button that says how much of it was changed', async ({ page }) => {
+  await open(page, { width: 1440, height: 900 });
+  const more = page.getByRole('button', { name: 'Advanced' });
+  await expect(more).toHaveAttribute('aria-expanded', 'false');
+  await expect(page.locator('.setting[data-setting="seed"]')).toBeHidden();
+  await more.click();
+  await expect(more).toHaveAttribute('aria-expanded', 'true');
+  const seed = page.getByRole('spinbutton', { name: 'Seed' });
+  await seed.fill('7');
+  await seed.press('Enter');
+  await expect(more).toContainText('1 changed');
+  await more.click();
+  await expect(seed).toBeHidden();
 });
 
 test('a double click on Run is one run', async ({ page }) => {
@@ -36,6 +79,14 @@ test('generate only leaves the front unrelaxed; relax one step moves it', async 
   expect(front.digest).not.toBe(relaxed.digest);
   await page.getByRole('button', { name: 'Relax one step' }).click();
   await expect.poll(async () => (await report(page))?.digest ?? front.digest).not.toBe(front.digest);
+});
+
+test('a double click on Relax one step is one step', async ({ page }) => {
+  await open(page);
+  const { relax_steps } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress);
+  await page.getByRole('button', { name: 'Relax one step' }).dblclick();
+  await settled(page);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress.relax_step)).toBe(relax_steps + 1);
 });
 
 test('typing a radius samples with it', async ({ page }) => {
@@ -85,6 +136,7 @@ test('the particles and the picture can be taken away', async ({ page }) => {
 test('more particles than the limit are asked for first, and the answer is heeded', async ({ page }) => {
   await open(page);
   const before = await report(page);
+  await page.getByRole('button', { name: 'Advanced' }).click();
   const limit = page.locator('.setting[data-setting="max_particles"] input[type=number]');
   await limit.fill('2000');
   await limit.press('Enter');

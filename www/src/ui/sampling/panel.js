@@ -1,10 +1,13 @@
-/** The sampling bar: what to do, how far it is, and the settings that the core describes. */
+/** The sampling bar: which kind, what to do, how far it is, and the settings that the core describes. */
 import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
+import { plural } from '../format.js';
 import { createSetting } from './setting.js';
+import { arrange, countChanged } from './settings.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
 
 /**
  * @param {HTMLElement} body
@@ -12,33 +15,48 @@ import { createSetting } from './setting.js';
  * @param {import('../../engine/types.js').Description} description
  * @param {{ head: HTMLElement[] }} extras buttons at the end of the first line
  */
-export function mountSampling(body, engine, description, { head }) {
-  const busy = engine.busy;
-  const some = computed(() => engine.progress.value.particles > 0);
+export function mountSampling(body, engine, { settings }, { head }) {
+  const { kind, plain, advanced } = arrange(settings);
+  const create = (/** @type {SettingInfo} */ info) => createSetting(engine, settings, info);
+  const more = createAdvanced(engine, settings, advanced, create);
+  fill(
+    body,
+    createTrack(engine),
+    h('div', { class: 'sampling-head' }, kind ? create(kind) : null, createActions(engine), head),
+    h('div', { class: 'settings', role: 'group', 'aria-label': 'Settings' }, plain.map(create), more.button),
+    more.section,
+  );
+}
+
+/** How far the run is. @param {Engine} engine */
+function createTrack({ busy, reveal, progress }) {
   // The bar follows the picture while that still grows, and the run otherwise.
-  const growing = computed(() => busy.value || engine.reveal.value !== null);
+  const growing = computed(() => busy.value || reveal.value !== null);
   const fraction = computed(() => {
-    const reveal = engine.reveal.value;
-    const { particles, fraction: done } = engine.progress.value;
-    const share = reveal ? reveal.particles / Math.max(1, particles) : busy.value ? done : 0;
+    const { particles, fraction: done } = progress.value;
+    const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : busy.value ? done : 0;
     return Math.round(Math.min(1, share) * 200) / 200;
   });
-
   const track = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Sampling', 'aria-valuemin': 0, 'aria-valuemax': 100 });
   effect(() => {
     track.style.setProperty('--fraction', String(fraction.value));
     track.dataset.busy = String(growing.value);
     track.setAttribute('aria-valuenow', String(Math.round(fraction.value * 100)));
   });
+  return track;
+}
 
-  const actions = h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
-    action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), computed(() => true), 'primary in-tabs'),
+/** @param {Engine} engine */
+function createActions(engine) {
+  const { busy } = engine;
+  const always = computed(() => true);
+  const some = computed(() => engine.progress.value.particles > 0);
+  return h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
+    action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), always, 'primary in-tabs'),
     action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), busy, 'in-tabs'),
-    action('Generate only', 'Places the particles level by level and leaves them unrelaxed. Key G.', () => engine.generateOnly(), computed(() => true)),
+    action('Generate only', 'Places the particles level by level and leaves them unrelaxed. Key G.', () => engine.generateOnly(), always),
     action('Relax one step', 'Moves the present particles one relaxation step further. Key E.', () => engine.relax(1), computed(() => some.value && !busy.value)),
   ]);
-  const settings = h('div', { class: 'settings', role: 'group', 'aria-label': 'Settings' }, description.settings.map((info) => createSetting(engine, info)));
-  fill(body, track, h('div', { class: 'sampling-head' }, actions, head), settings);
 }
 
 /**
@@ -49,12 +67,38 @@ export function mountSampling(body, engine, description, { head }) {
  * @param {string} [kind]
  */
 function action(label, help, act, enabled, kind = '') {
+  const press = once(act);
   // It stays focusable while it can do nothing, so that a keyboard user does not lose the place.
-  const button = h('button', { type: 'button', class: `button ${kind}`, on: { click: () => { if (enabled.peek()) act(); } } }, label);
+  const button = h('button', { type: 'button', class: `button ${kind}`, on: { click: () => { if (enabled.peek()) press(); } } }, label);
   effect(() => {
     if (enabled.value) button.removeAttribute('aria-disabled');
     else button.setAttribute('aria-disabled', 'true');
   });
-  explain(button, () => ({ text: help }));
+  explain(button, () => ({ text: help }), { side: 'above' });
   return button;
+}
+
+/**
+ * Settings that few need, behind a button that says how many of them were changed.
+ * @param {Engine} engine
+ * @param {SettingInfo[]} all
+ * @param {SettingInfo[]} advanced
+ * @param {(info: SettingInfo) => HTMLElement} create
+ */
+function createAdvanced(engine, all, advanced, create) {
+  const id = uniqueId('advanced');
+  const section = h('div', { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: true }, advanced.map(create));
+  const changed = h('span', { class: 'unit' });
+  const button = h('button', { type: 'button', class: 'button plain disclose', 'aria-controls': id, 'aria-expanded': 'false', on: { click: () => {
+    section.hidden = !section.hidden;
+    button.setAttribute('aria-expanded', String(!section.hidden));
+  } } }, 'Advanced', changed);
+  const count = computed(() => countChanged(advanced, all, engine.state.value.settings));
+  effect(() => {
+    changed.hidden = count.value === 0;
+    changed.textContent = `${count.value} changed`;
+  });
+  explain(button, () => ({ text: count.peek() ? `${plural(count.peek(), 'setting')} changed. A double click on a slider takes its default back.` : 'Settings that few need.' }), { side: 'above' });
+  button.hidden = advanced.length === 0;
+  return { button, section };
 }

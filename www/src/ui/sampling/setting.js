@@ -4,33 +4,36 @@ import { h, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { wantsSlider } from '../scale.js';
+import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
+import { isSegmented, isShown } from './settings.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
 
 /**
  * @param {Engine} engine
+ * @param {SettingInfo[]} all
  * @param {SettingInfo} info
  */
-export function createSetting(engine, info) {
+export function createSetting(engine, all, info) {
   const value = computed(() => engine.state.value.settings[info.name] ?? info.default);
   const label = h('span', { class: 'setting-label' }, info.label, info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null);
   const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
-  const element = h('div', { class: 'setting', data: { setting: info.name, kind: info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number' } }, label, control);
+  const element = h('div', { class: 'setting', data: { setting: info.name, kind: kindOf(info) } }, label, control);
   const help = () => ({ title: info.label, text: info.help });
-  explain(element, help);
+  // Below it would lie over the next row.
+  explain(element, help, { side: 'above' });
   // A finger cannot hover: it taps the name.
-  explain(label, help, { tap: true });
+  explain(label, help, { tap: true, side: 'above' });
 
-  const conditions = [info.when ?? []].flat();
-  const holds = computed(() => conditions.every(({ name, value: wanted, equal = true }) => {
-    const now = engine.state.value.settings[name] ?? engine.description.value?.settings.find((other) => other.name === name)?.default;
-    return (now === wanted) === equal;
-  }));
+  const holds = computed(() => isShown(info, all, engine.state.value.settings));
   effect(() => { element.hidden = !holds.value; });
   return element;
 }
+
+/** @param {SettingInfo} info */
+const kindOf = (info) => (isSegmented(info) ? 'segmented' : info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number');
 
 /**
  * @param {Engine} engine
@@ -38,6 +41,11 @@ export function createSetting(engine, info) {
  * @param {import('@preact/signals-core').ReadonlySignal<number | string>} value
  */
 function createChoice(engine, info, value) {
+  if (isSegmented(info)) {
+    const segmented = createSegmented({ name: info.label, choices: info.choices ?? [], change: (next) => engine.setSetting(info.name, next) });
+    effect(() => segmented.set(String(value.value)));
+    return segmented.element;
+  }
   const select = h(
     'select',
     { class: 'select', id: uniqueId('setting'), 'aria-label': info.label, on: { change: () => engine.setSetting(info.name, select.value) } },

@@ -1,0 +1,27 @@
+/** Two or three values side by side, chosen like radio buttons: which they are. */
+import { h, uniqueId } from './dom.js';
+
+/**
+ * @param {object} options
+ * @param {string} options.name what assistive technology calls it
+ * @param {{ value: string, label: string }[]} options.choices
+ * @param {(value: string) => void} options.change
+ */
+export function createSegmented({ name, choices, change }) {
+  const group = uniqueId('segmented');
+  const inputs = choices.map(({ value }) => h('input', {
+    type: 'radio', name: group, value, on: { change: () => change(value) },
+  }));
+  const element = h(
+    'div',
+    { class: 'segmented', role: 'radiogroup', 'aria-label': name },
+    choices.map(({ label }, i) => h('label', { class: 'segment' }, inputs[i], h('span', null, label))),
+  );
+  return {
+    element,
+    /** @param {string} value */
+    set(value) {
+      for (const input of inputs) input.checked = input.value === value;
+    },
+  };
+}
