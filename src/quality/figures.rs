@@ -1,6 +1,7 @@
 //! The figures themselves.
 
 use super::border::Border;
+use super::components;
 use super::fans::unroll;
 use super::triangles::{Triangles, area_vector, topology};
 use super::{Options, Scene, Sizes, cover, probe};
@@ -63,7 +64,7 @@ pub struct Figures {
     pub agree: f64,
     /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
     pub euler: i64,
-    /// Connected components of the same.
+    /// Connected pieces of the surface by the natural neighbours: those of the same triangles, and points far from all of them.
     pub components: usize,
     /// Smallest angle of any triangle, in degrees.
     pub ang_min: f64,
@@ -211,6 +212,7 @@ pub(super) fn area(scene: &Scene, mesh: &[[u32; 3]]) -> f64 {
     mesh.iter().map(|&triangle| 0.5 * area_vector(&scene.tree.position, triangle).length()).sum()
 }
 
+/// The figures, and the connected piece of each point.
 pub(super) fn figures(
     scene: &Scene,
     triangles: &Triangles,
@@ -219,11 +221,11 @@ pub(super) fn figures(
     bounds: Option<&Bounds>,
     options: &Options,
     duplicates: usize,
-) -> Figures {
+) -> (Figures, Vec<u32>) {
     let mut figures = Figures { dup: duplicates, ..Figures::default() };
     let n = scene.tree.len();
     if n == 0 {
-        return figures;
+        return (figures, Vec::new());
     }
     figures.area = options.area.unwrap_or_else(|| area(scene, mesh));
     figures.d_hex = d_hex(figures.area, n + duplicates);
@@ -241,7 +243,10 @@ pub(super) fn figures(
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
     shapes(scene, &kept, &mut figures);
-    (figures.euler, figures.components) = topology(n, mesh);
+    let (euler, root) = topology(n, mesh);
+    figures.euler = euler;
+    let (component, count) = components::label(scene, root, options.sizes, figures.d_hex);
+    figures.components = count;
     let unanimous = triangles.kept[..triangles.unanimous].iter().filter(away).count();
     figures.agree = share(unanimous, kept.len() + triangles.single.iter().filter(away).count());
     figures.tri_ok = if figures.boundary_excluded == 0 {
@@ -260,7 +265,7 @@ pub(super) fn figures(
         let mean_sq = gaps.mean_sq * (1.0 - missed.share) + missed.sum_sq;
         figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
     }
-    figures
+    (figures, component)
 }
 
 /// Places of the surface farther from every particle than any place that the triangles span.

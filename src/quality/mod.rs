@@ -14,6 +14,7 @@
 
 mod border;
 mod cell;
+mod components;
 mod cover;
 mod fans;
 mod figures;
@@ -25,7 +26,7 @@ pub use figures::{Figures, Histogram};
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::Bounds;
-use crate::spatial::tree::Tree;
+use crate::spatial::tree::{Tree, unkey};
 use fans::Fans;
 use glam::Vec3;
 use triangles::Triangles;
@@ -87,6 +88,9 @@ pub struct Report {
     pub nearest: Vec<f32>,
     /// First-order distance to the surface |f|/|∇f|, in the field's units; NaN where that is undefined.
     pub residual: Vec<f32>,
+    /// Connected piece of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is on the
+    /// piece of the particle it equals; `u32::MAX` for a non-finite position.
+    pub component: Vec<u32>,
     /// Counts of `nearest` / d_hex.
     pub histogram: Histogram,
 }
@@ -156,7 +160,8 @@ pub fn measure(
     let field = &mut Scaled::new(field, factor);
     let Prepared { scene, triangles, mesh, duplicates, not_finite, drop } =
         prepare(position, normal, field, options.area);
-    let mut figures = figures::figures(&scene, &triangles, &mesh, field, bounds, options, duplicates);
+    let (mut figures, component) =
+        figures::figures(&scene, &triangles, &mesh, field, bounds, options, duplicates);
     figures.not_finite = not_finite;
 
     let n = position.len();
@@ -164,6 +169,7 @@ pub fn measure(
         valence: vec![0; n],
         nearest: (0..n).map(|i| if drop[i] && position[i].is_finite() { 0.0 } else { f32::NAN }).collect(),
         residual: vec![f32::NAN; n],
+        component: vec![components::NO_LABEL; n],
         ..Report::default()
     };
     for (k, &i) in scene.tree.origin.iter().enumerate() {
@@ -171,11 +177,16 @@ pub fn measure(
         report.valence[i] = scene.fans.valence(k).min(255) as u8;
         report.nearest[i] = scene.nearest(k);
         report.residual[i] = scene.residual[k] as f32;
+        report.component[i] = component[k];
     }
+    let mut nearest = Vec::new();
     for i in 0..n {
         if drop[i] && position[i].is_finite() {
             let jet = field.jet(position[i].as_dvec3());
             report.residual[i] = (jet.value.abs() / jet.gradient.length()) as f32;
+            scene.tree.nearest_many(position[i], 1, |_| true, &mut nearest);
+            report.component[i] =
+                nearest.first().map_or(components::NO_LABEL, |&k| component[unkey(k).1 as usize]);
         }
     }
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);

@@ -133,9 +133,9 @@ pub(super) fn area_vector(position: &[Vec3], [a, b, c]: [u32; 3]) -> DVec3 {
     (position[b as usize].as_dvec3() - a).cross(position[c as usize].as_dvec3() - a)
 }
 
-/// Euler number and number of connected components of a set of triangles over `points` points; points in no triangle
-/// do not count.
-pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, usize) {
+/// Euler number of a set of triangles over `points` points, and for each point a point of its connected component, the
+/// same for all of it; points in no triangle do not count for the number, and stand for themselves.
+pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, Vec<u32>) {
     // Each edge is written once, by its smaller end; the lists are short, so a linear look is enough.
     let mut start = vec![0_u32; points + 1];
     for triangle in triangles {
@@ -168,12 +168,14 @@ pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, usize) {
         }
     }
     let vertices = used.iter().filter(|&&used| used).count();
-    let components = (0..points).filter(|&i| used[i] && root[i] as usize == i).count();
-    (vertices as i64 - edges + triangles.len() as i64, components)
+    for i in 0..points as u32 {
+        root[i as usize] = find(&mut root, i);
+    }
+    (vertices as i64 - edges + triangles.len() as i64, root)
 }
 
 /// Representative of `i`, halving the path to it.
-fn find(root: &mut [u32], mut i: u32) -> u32 {
+pub(super) fn find(root: &mut [u32], mut i: u32) -> u32 {
     while root[i as usize] != i {
         root[i as usize] = root[root[i as usize] as usize];
         i = root[i as usize];

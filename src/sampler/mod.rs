@@ -8,10 +8,12 @@ mod gaps;
 mod pairs;
 mod project;
 mod relax;
+mod search;
 mod settings;
 mod survey;
 mod uniform;
 
+pub use search::Search;
 pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
 pub use uniform::FateCounts;
 
@@ -244,6 +246,19 @@ impl Sampler {
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Whether every connected piece is proven to have been found.
+    #[must_use]
+    pub fn search(&self) -> Search {
+        Search::Searched
+    }
+
+    /// Cells of the box in which the proof could not decide whether a piece of its own begins there; `None` where no proof
+    /// was attempted.
+    #[must_use]
+    pub fn undecided_cells(&self) -> Option<u64> {
+        None
     }
 
     /// The settings of the run.

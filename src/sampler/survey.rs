@@ -20,6 +20,9 @@ const POLE_PROBE: f32 = 4.0;
 /// Boxes looked at, at most, to prove that there is no surface.
 const MAX_PROOF_BOXES: usize = 20_000;
 
+/// Area that a place stands for where f does not change its sign.
+const NO_CROSSING: f32 = -1.0;
+
 /// What a survey found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Survey {
@@ -27,6 +30,8 @@ pub(super) struct Survey {
     pub(super) position: Vec<Vec3>,
     /// Unit normals there.
     pub(super) normal: Vec<Vec3>,
+    /// Area that each point stands for; together they are about `area`. 0 for points that no crossing of the grid gave.
+    pub(super) weight: Vec<f32>,
     /// Estimated area inside the box.
     pub(super) area: f64,
     /// Median |∇f| over those points.
@@ -84,7 +89,8 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
     };
     let mut out = Survey::default();
     let mut start: Vec<Vec3> = Vec::new();
-    let mut crosses: Vec<bool> = Vec::new();
+    // Area that each place stands for; [`NO_CROSSING`] where f keeps its sign.
+    let mut areas: Vec<f32> = Vec::new();
     let mut layers =
         [0, 1].map(|_| Layer { value: vec![f32::NAN; nx * ny], gradient: vec![Vec3::ZERO; nx * ny] });
     let (mut least, mut greatest, mut defined) = (f32::INFINITY, f32::NEG_INFINITY, 0_usize);
@@ -135,26 +141,26 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
                         }
                         let t = here.1 / (here.1 - end.1);
                         start.push(here.0 + (end.0 - here.0) * t);
-                        crosses.push(true);
                         crossings += 1;
                         let n = (here.2 + (end.2 - here.2) * t).normalize_or_zero().abs().as_dvec3();
                         let weight = n.x + n.y + n.z;
-                        if weight > 0.0 {
-                            // Projected cell face perpendicular to the axis.
-                            out.area += step[(axis + 1) % 3] * step[(axis + 2) % 3] / weight;
-                        }
+                        // Projected cell face perpendicular to the axis.
+                        let face = step[(axis + 1) % 3] * step[(axis + 2) % 3];
+                        let area = if weight > 0.0 { face / weight } else { 0.0 };
+                        out.area += area;
+                        areas.push(area as f32);
                     }
                     let slope = here.2.length();
                     if crossings == 0 && slope > 0.0 && here.1.abs() <= slope * spacing as f32 {
                         start.push(here.0 - here.2 * (here.1 / (slope * slope)));
-                        crosses.push(false);
+                        areas.push(NO_CROSSING);
                     }
                 }
             }
         }
         layers.swap(0, 1);
     }
-    project(field, bounds, projector, &mut start, &crosses, spacing as f32, &mut out);
+    project(field, bounds, projector, &mut start, &areas, spacing as f32, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
         out.absence = if defined == 0 {
@@ -163,7 +169,7 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
             Absence::Constant
         } else if proven_empty(field, bounds) {
             Absence::Proven
-        } else if crosses.contains(&true) {
+        } else if areas.iter().any(|&area| area != NO_CROSSING) {
             Absence::NoZero
         } else {
             Absence::NotSeen
@@ -172,24 +178,25 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
     out
 }
 
-/// Moves the places in `start` onto the surface and keeps those that arrive inside the box. `crosses` tells of each
-/// whether f changes its sign there.
+/// Moves the places in `start` onto the surface and keeps those that arrive inside the box. `areas` holds the area that
+/// each stands for, or [`NO_CROSSING`].
 fn project(
     field: &mut dyn Field,
     bounds: &Bounds,
     projector: &mut Projector,
     start: &mut [Vec3],
-    crosses: &[bool],
+    areas: &[f32],
     spacing: f32,
     out: &mut Survey,
 ) {
     // The gradient at the surface: where f changes its sign, unless it nowhere does. Where f is small beside its gradient
     // without a change of sign, both may be of any size.
-    let by_crossings = crosses.contains(&true);
+    let crosses = |area: f32| area != NO_CROSSING;
+    let by_crossings = areas.iter().any(|&area| crosses(area));
     let mut slopes = Vec::new();
-    for (chunk, crosses) in start.chunks(BATCH).zip(crosses.chunks(BATCH)) {
+    for (chunk, areas) in start.chunks(BATCH).zip(areas.chunks(BATCH)) {
         let (_, gradient) = projector.evaluate_batch(field, chunk);
-        let counted = gradient.iter().zip(crosses).filter(|(_, crosses)| **crosses || !by_crossings);
+        let counted = gradient.iter().zip(areas).filter(|(_, area)| crosses(**area) || !by_crossings);
         slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
     sort_numbers(&mut slopes);
@@ -201,7 +208,7 @@ fn project(
         Tolerance { residual: (1e-4 * spacing).max(ulps), ..tolerance(0.0, 0.0, out.gradient_scale) };
     let mut normal = [Vec3::ZERO; BATCH];
     let mut ok = [false; BATCH];
-    for chunk in start.chunks_mut(BATCH) {
+    for (chunk, areas) in start.chunks_mut(BATCH).zip(areas.chunks(BATCH)) {
         projector.land_along_gradient(
             field,
             chunk,
@@ -216,6 +223,7 @@ fn project(
             if ok[i] && bounds.contains(chunk[i]) {
                 out.position.push(chunk[i]);
                 out.normal.push(normal[i]);
+                out.weight.push(if crosses(areas[i]) { areas[i] } else { 0.0 });
             }
         }
     }

@@ -15,7 +15,9 @@ use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::quality::{self, Figures, Histogram};
-use crate::sampler::{FateCounts, Phase, Progress, Sampler, Settings, SettingsError, Start, StopReason};
+use crate::sampler::{
+    FateCounts, Phase, Progress, Sampler, Search, Settings, SettingsError, Start, StopReason,
+};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -96,6 +98,12 @@ pub struct Report {
     pub levels: u32,
     /// Fronts started, each from a seed of its own.
     pub components_seeded: u32,
+    /// Connected pieces of the surface, by the natural neighbours of the particles.
+    pub components: usize,
+    /// Whether every connected piece is proven to have been found.
+    pub search: Search,
+    /// Cells of the box in which the proof could not decide; none where no proof was attempted.
+    pub undecided_cells: Option<u64>,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,
     /// Repulsion radius.
@@ -414,6 +422,9 @@ impl Session {
             count,
             levels: level_counts.len() as u32,
             components_seeded: counts.seeds,
+            components: self.measured.figures.components,
+            search: self.sampler.search(),
+            undecided_cells: self.sampler.undecided_cells(),
             gaps_filled: counts.gaps_filled,
             radius: self.sampler.radius(),
             evaluations,
