@@ -5,14 +5,19 @@
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
 mod gaps;
+#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
+mod laws;
 mod pairs;
 mod project;
 mod relax;
 mod search;
 mod settings;
+#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
+mod sizing;
 mod survey;
 mod uniform;
 
+pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
 pub use search::Search;
 pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
 pub use uniform::FateCounts;

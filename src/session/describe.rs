@@ -274,7 +274,7 @@ fn settings() -> Vec<Setting> {
         Setting {
             scale: "log",
             unit: "%",
-            help: "Largest gap between the surface and an edge that joins two neighbours, as a share of the box diagonal.",
+            help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
             when: vec![adaptive, when("radius_law", "chord_error")],
             ..number("chord_error", "Chord error", Value::Number(default.chord_error), 0.01)
         },

@@ -116,8 +116,8 @@ pub(crate) struct Sample {
     #[arg(long, value_enum, default_value_t = Law::ChordError, requires = "adaptive", help_heading = "Adaptive sampling")]
     pub(crate) law: Law,
 
-    /// Largest gap between the surface and an edge between neighbours, for the law `chord-error`: a share of the box
-    /// diagonal (0.0035%, the default) or a length
+    /// Largest gap between the surface and a triangle of neighbours, for the law `chord-error`: a share of the box
+    /// diagonal (0.0045%, the default) or a length
     #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
     pub(crate) chord_error: Option<Length>,
 

@@ -1,0 +1,70 @@
+use super::*;
+use crate::field::gallery::{self, SURFACES, Surface};
+use crate::sampler::project::Projector;
+use crate::sampler::settings::LawKind;
+use crate::sampler::survey::survey;
+
+const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
+
+fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
+    let mut field = surface.field();
+    let mut projector = Projector::new();
+    let found = survey(&mut field, &surface.bounds, &mut projector);
+    Sizing::new(&mut field, &surface.bounds, settings, &found, &mut 0)
+}
+
+fn smooth() -> impl Iterator<Item = &'static Surface> {
+    SURFACES.iter().filter(|surface| surface.smooth)
+}
+
+#[test]
+fn a_sphere_has_one_radius_and_the_count_of_its_area() {
+    let sphere = gallery::find("sphere").expect("in the gallery");
+    for radius_law in LAWS {
+        let settings = Settings { radius_law, ..Settings::default() };
+        let sizing = sizing_of(sphere, &settings);
+        assert!(sizing.largest() / sizing.smallest() - 1.0 < 1e-3, "{radius_law:?}");
+        let radius = f64::from(sizing.smallest());
+        let exact = 4.0 * core::f64::consts::PI / (CELL_AREA * radius * radius);
+        assert!((sizing.predicted_count() / exact - 1.0).abs() < 0.02, "{radius_law:?}");
+    }
+}
+
+#[test]
+fn the_envelope_lies_above_the_law_by_no_more_than_a_cell() {
+    for surface in smooth() {
+        let sizing = sizing_of(surface, &Settings::default());
+        for site in &sizing.site {
+            // In the middle of a cell the nodes are half a diagonal away.
+            let slack = sizing.slope * sizing.envelope.cell * 0.87;
+            let law = sizing.law.radius(&site.curvature);
+            let bound = sizing.envelope(site.position);
+            assert!(bound <= law + 1.001 * slack, "{}: envelope {bound}, law {law}", surface.id);
+            assert!(bound >= sizing.law.least() && bound <= sizing.law.greatest());
+            assert!(sizing.radius(site.position, &site.curvature) <= law);
+        }
+    }
+}
+
+#[test]
+fn a_count_is_met_by_one_factor() {
+    for surface in smooth() {
+        for radius_law in LAWS {
+            let mut sizing = sizing_of(surface, &Settings { radius_law, ..Settings::default() });
+            for count in [800.0, 20_000.0, 300_000.0] {
+                sizing.scale_to(count);
+                let off = sizing.predicted_count() / count;
+                assert!((off - 1.0).abs() < 0.01, "{} {radius_law:?}: {off} of {count}", surface.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn places_outside_the_box_and_places_that_are_none_have_a_radius() {
+    let sizing = sizing_of(&SURFACES[0], &Settings::default());
+    let nowhere = Curvature { k1: f32::NAN, k2: f32::NAN, direction: Vec3::NAN };
+    for p in [Vec3::splat(1e9), Vec3::splat(-1e9), Vec3::NAN, Vec3::INFINITY] {
+        assert_eq!(sizing.radius(p, &nowhere), sizing.law.least(), "{p}");
+    }
+}
