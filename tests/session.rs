@@ -288,3 +288,15 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     let answer = session.set_field(&formula).expect("a formula");
     assert_eq!((answer.kind, answer.model, answer.bounds), (FieldKind::Formula, None, Bounds::cube(1.2)));
 }
+
+#[test]
+fn a_run_beyond_the_memory_is_refused_and_a_smaller_one_goes_on() {
+    let mut session = Session::new();
+    session.limit_memory(16 << 20);
+    let large = Settings { size_mode: SizeMode::Count, count: 100_000, ..Settings::default() };
+    let error = session.start(&large).expect_err("100,000 particles and their report take 38 MB").to_string();
+    assert!(error.contains("about 100000 particles") && error.contains("choose fewer"), "{error}");
+    session.start(&Settings { count: 20_000, ..large }).expect("20,000 take 8 MB");
+    while session.step(65_536).stop_reason.is_none() {}
+    assert!(session.count().abs_diff(20_000) <= 600);
+}

@@ -191,6 +191,8 @@ pub struct Sampler {
     particles: Particles,
     counts: Counts,
     moved: bool,
+    /// Most bytes that a run may need.
+    memory_limit: usize,
 }
 
 impl Default for Sampler {
@@ -226,6 +228,7 @@ impl Sampler {
             particles: Particles::default(),
             counts: Counts::default(),
             moved: false,
+            memory_limit: usize::MAX,
         }
     }
 
@@ -346,12 +349,18 @@ impl Sampler {
         Ok(Start { radius: self.radius, predicted_count: predicted as u64, area, warnings })
     }
 
+    /// Refuses runs that need more than about `bytes` from now on.
+    pub fn limit_memory(&mut self, bytes: usize) {
+        self.memory_limit = bytes;
+    }
+
     /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
     /// of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
+        let bytes = |particles: usize| particles.checked_mul(BYTES_PER_PARTICLE);
         let more = particles.saturating_sub(self.particles.position.capacity());
-        more.checked_mul(BYTES_PER_PARTICLE)
-            .is_some_and(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
+        bytes(particles).is_some_and(|all| all <= self.memory_limit)
+            && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
     }
 
     /// Empties the columns and prepares a front of the present radius.

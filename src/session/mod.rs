@@ -25,6 +25,10 @@ use std::collections::BTreeMap;
 /// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
 const MAX_KEPT: usize = 400_000;
 
+/// Memory of a run as a share of what it takes with the positions kept and the report: 120 of 120 + 24 + 240 bytes per
+/// particle, the last as measured.
+const SHARE_OF_RUN: f64 = 0.31;
+
 /// What a caller asks of the field; everything is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -331,11 +335,16 @@ impl Session {
         Ok(self.answer())
     }
 
+    /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
+    pub fn limit_memory(&mut self, bytes: usize) {
+        self.sampler.limit_memory((bytes as f64 * SHARE_OF_RUN) as usize);
+    }
+
     /// Starts a run on the present field.
     ///
     /// # Errors
     ///
-    /// If a setting is out of its range.
+    /// If a setting is out of its range, or there is no memory for the particles to expect.
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
         let start = self.sampler.start(self.source.field(), &self.bounds, settings)?;
         self.warnings.clone_from(&start.warnings);

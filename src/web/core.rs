@@ -88,6 +88,11 @@ impl Core {
         }
     }
 
+    /// Refuses runs that need more than about `megabytes` with their report.
+    pub fn limit_memory(&mut self, megabytes: usize) {
+        self.session.limit_memory(megabytes << 20);
+    }
+
     /// Starts a run: `Settings`, of which what is missing has its default.
     pub fn start(&mut self, settings: &str) -> String {
         let settings: Settings = match json::from_str(settings) {

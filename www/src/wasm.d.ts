@@ -17,6 +17,7 @@ declare module '*/wasm/core/core.js' {
     positions(from: number): Float32Array<ArrayBuffer>;
     normals(from: number): Float32Array<ArrayBuffer>;
     levels(from: number): Uint32Array<ArrayBuffer>;
+    limit_memory(megabytes: number): void;
     parents(from: number): Uint32Array<ArrayBuffer>;
     slots(from: number): Uint32Array<ArrayBuffer>;
     radii(from: number): Float32Array<ArrayBuffer>;

@@ -16,6 +16,12 @@ import { BEAT_MS } from './protocol.js';
  * @typedef {import('./protocol.js').Job} Job
  */
 
+/** Most that a run may take with its report: a browser ends a page that takes much more, on a phone much sooner. */
+const MEMORY_MB = { desk: 512, phone: 256 };
+
+/** @param {WorkerNavigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
+const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) => (userAgentData?.mobile ?? /Mobi/.test(userAgent)) || deviceMemory < 4;
+
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
@@ -148,6 +154,7 @@ async function boot() {
     try {
       raw = await init({ module_or_path: module });
       core = new Core();
+      core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
       post({ type: 'ready', description: JSON.parse(core.describe()) });
     } catch (error) {
       throw new LoadError('init', `The sampler did not start: ${last_words || words(error)}`);
