@@ -1,11 +1,11 @@
 //! The formula language: what it accepts, what it means, and how it says no.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::Field;
 use marching_particles::field::formula::{
     FUNCTIONS, FormulaError, FormulaErrorKind as Kind, FormulaField, MAX_DEPTH, MAX_FORMULA_BYTES, Parameter,
     utf16_offset,
 };
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Sym3;
 
 fn parse(text: &str) -> FormulaField {
@@ -387,6 +387,35 @@ fn a_field_without_a_zero_is_seen_by_its_interval() {
     let mut field = parse("x^2 + y^2 + z^2 + 1");
     let bounds = field.interval(DVec3::splat(-10.0), DVec3::splat(10.0));
     assert!(bounds.lo > 0.9 && bounds.hi < 302.0 && bounds.defined, "{bounds:?}");
+}
+
+#[test]
+fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
+    let known = |text: &str, x: [f64; 2]| {
+        let mut out = [Enclosure::UNKNOWN];
+        parse(text).enclose(&[[DVec3::new(x[0], 0.1, 0.1), DVec3::new(x[1], 0.2, 0.2)]], &mut out);
+        out[0]
+    };
+    // On both sides of a pole there is still no zero.
+    for (text, x) in [("1/x", [-0.5, 0.7]), ("(1 + y)/x", [-0.5, 0.7]), ("tan(x)", [1.5, 1.6])] {
+        let known = known(text, x);
+        assert!(
+            !known.may_vanish && !known.defined && known.value[0] < 0.0 && known.value[1] > 0.0,
+            "{known:?}"
+        );
+    }
+    assert!(known("1/x + 1", [-0.5, 0.7]).may_vanish);
+    assert!(known("tan(x)", [1.5, 3.2]).may_vanish);
+    for (text, jump) in
+        [("floor(x)", [0.9, 1.1]), ("sign(x)", [-0.1, 0.1]), ("atan2(y - 0.15, x)", [-0.2, 0.1])]
+    {
+        assert!(!known(text, jump).continuous, "{text}");
+        assert!(known(text, [0.2, 0.3]).continuous && known(text, [0.2, 0.3]).defined, "{text}");
+    }
+    assert!(known("abs(x) + min(x, y)", [-0.5, 0.7]).continuous);
+    assert!(!known("ln(x)", [-0.1, 0.1]).defined && known("ln(x)", [0.1, 0.2]).defined);
+    assert_eq!(known("ln(x)", [-2.0, -1.0]), Enclosure::NOWHERE);
+    assert_eq!(known("x + 0*ln(x)", [-2.0, -1.0]), Enclosure::NOWHERE);
 }
 
 #[test]

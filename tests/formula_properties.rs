@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES};
 use marching_particles::field::gallery::SURFACES;
-use marching_particles::field::{Field, Jet};
+use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::Sym3;
 use proptest::prelude::*;
 
@@ -122,6 +122,53 @@ proptest! {
         } else {
             prop_assert!(bounds.lo <= value && value <= bounds.hi, "{text} = {value} at {p}, not in {bounds:?}");
         }
+    }
+
+    #[test]
+    fn the_gradient_and_every_mean_slope_lie_within_the_bounds_of_a_box_where_the_value_has_no_jump(
+        text in formulas(),
+        low in prop::array::uniform3(-3.0..3.0_f64),
+        size in prop::array::uniform3(0.0..2.0_f64),
+        places in prop::array::uniform6(0.0..1.0_f64),
+        exponent in 0..12_i32,
+        a in -2.0..2.0_f64,
+    ) {
+        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        for name in field.auto().to_vec() {
+            field.set_parameter(&name, a).unwrap();
+        }
+        let lo = DVec3::from_array(low);
+        let size = DVec3::from_array(size) * 0.25_f64.powi(exponent);
+        let at = |k: usize| lo + size * DVec3::new(places[k], places[k + 1], places[k + 2]);
+        let (p, q) = (at(0), at(3));
+        let mut out = [Enclosure::UNKNOWN];
+        field.enclose(&[[lo, lo + size]], &mut out);
+        let known = out[0];
+        if !(known.defined && known.continuous) {
+            return Ok(());
+        }
+        let gradient = field.transformed_jet(p).gradient;
+        for axis in 0..3 {
+            let [lo, hi] = known.gradient[axis];
+            prop_assert!(!lo.is_nan() && !hi.is_nan() && lo <= hi, "{known:?}");
+            prop_assert!(
+                !gradient[axis].is_finite() || lo <= gradient[axis] && gradient[axis] <= hi,
+                "{text}: {gradient} at {p}, not in {known:?}"
+            );
+        }
+        // f(q) − f(p) is a slope of the box times q − p, also across kinks.
+        let (from, to) = (field.jet(p).value, field.jet(q).value);
+        let mut rise = [0.0, 0.0];
+        for axis in 0..3 {
+            let way = q[axis] - p[axis];
+            let [a, b] = known.gradient[axis].map(|slope| if way == 0.0 { 0.0 } else { slope * way });
+            rise = [rise[0] + a.min(b), rise[1] + a.max(b)];
+        }
+        let slack = 1e-11 * (from.abs() + to.abs() + known.value[0].abs() + known.value[1].abs());
+        prop_assert!(
+            !(to - from < rise[0] - slack || to - from > rise[1] + slack),
+            "{text}: {from} at {p} and {to} at {q}, but {known:?}"
+        );
     }
 
     #[test]

@@ -33,6 +33,37 @@ pub struct Interval {
     pub defined: bool,
 }
 
+/// What is known of a field and its gradient over a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// Lower and upper bound of f, never NaN; the lower one is above the upper one where f is defined nowhere.
+    pub value: [f64; 2],
+    /// Lower and upper bounds of ∂f/∂x, ∂f/∂y and ∂f/∂z where they exist, and of every slope between the one-sided ones
+    /// where they do not; never NaN.
+    pub gradient: [[f64; 2]; 3],
+    /// Whether f is certainly defined everywhere in the box: no NaN and no pole.
+    pub defined: bool,
+    /// Whether f is certainly continuous where it is defined.
+    pub continuous: bool,
+    /// Whether f may be 0 somewhere in the box. It can be excluded even where the bounds have both signs, as for 1/x.
+    pub may_vanish: bool,
+}
+
+impl Enclosure {
+    /// Nothing is known.
+    pub const UNKNOWN: Self = Self {
+        value: [f64::NEG_INFINITY, f64::INFINITY],
+        gradient: [[f64::NEG_INFINITY, f64::INFINITY]; 3],
+        defined: false,
+        continuous: false,
+        may_vanish: true,
+    };
+
+    /// f is defined nowhere in the box.
+    pub const NOWHERE: Self =
+        Self { value: [f64::INFINITY, f64::NEG_INFINITY], may_vanish: false, ..Self::UNKNOWN };
+}
+
 /// A scalar field with its derivatives.
 ///
 /// Batched methods read `points` and write the first `points.len()` entries of each output; they take `&mut self`
@@ -65,4 +96,10 @@ pub trait Field {
     /// Bounds of f over the box from `lo` to `hi`, rounded outward: 0 outside the bounds proves that the box holds
     /// no point of the surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
+
+    /// Bounds of f and ∇f over each box, given by its smallest and largest corner; `out[i]` belongs to `boxes[i]`. By
+    /// default nothing is known.
+    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        out[..boxes.len()].fill(Enclosure::UNKNOWN);
+    }
 }

@@ -1,6 +1,6 @@
 //! A field times a constant, so that formulas in any units can be squared in single precision.
 
-use super::{Field, Interval, Jet};
+use super::{Enclosure, Field, Interval, Jet};
 use crate::math::{Bounds, Sym3, sort_numbers};
 use glam::{DVec3, Vec3};
 
@@ -104,5 +104,16 @@ impl Field for Scaled<'_> {
         let factor = f64::from(self.factor);
         let range = self.field.interval(lo, hi);
         Interval { lo: range.lo * factor, hi: range.hi * factor, ..range }
+    }
+
+    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        let factor = f64::from(self.factor);
+        self.field.enclose(boxes, out);
+        if factor != 1.0 {
+            for known in &mut out[..boxes.len()] {
+                known.value = known.value.map(|bound| bound * factor);
+                known.gradient = known.gradient.map(|bounds| bounds.map(|bound| bound * factor));
+            }
+        }
     }
 }

@@ -37,7 +37,7 @@ mod tests;
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use error::{FormulaError, FormulaErrorKind, utf16_offset};
 
-use super::{Field, Interval, Jet};
+use super::{Enclosure, Field, Interval, Jet};
 use crate::math::Sym3;
 use ast::{COORDINATES, Constant, Equation, Function};
 use glam::{DVec3, Vec3};
@@ -118,7 +118,8 @@ pub struct FormulaField {
     hessian: [Id; 6],
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
-    ranges: interval::RangeScratch,
+    /// Compiled when first asked for.
+    box_program: Option<interval::BoxProgram>,
 }
 
 impl FormulaField {
@@ -171,7 +172,7 @@ impl FormulaField {
             hessian: [root; 6],
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
-            ranges: Vec::new(),
+            box_program: None,
         };
         field.update();
         Ok(field)
@@ -266,6 +267,9 @@ impl FormulaField {
         self.value_program.set_parameters(&self.values);
         self.gradient_program.set_parameters(&self.values);
         if let Some(program) = &mut self.hessian_program {
+            program.set_parameters(&self.values);
+        }
+        if let Some(program) = &mut self.box_program {
             program.set_parameters(&self.values);
         }
     }
@@ -426,6 +430,18 @@ impl Field for FormulaField {
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        interval::interval(&self.graph, self.root, &self.values, [lo, hi], &mut self.ranges)
+        let mut out = [Enclosure::UNKNOWN];
+        self.enclose(&[[lo, hi]], &mut out);
+        Interval { lo: out[0].value[0], hi: out[0].value[1], defined: out[0].defined }
+    }
+
+    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        let program = self.box_program.get_or_insert_with(|| {
+            let [x, y, z] = self.gradient;
+            let mut program = interval::BoxProgram::compile(&self.graph, [self.root, x, y, z]);
+            program.set_parameters(&self.values);
+            program
+        });
+        program.run(boxes, &mut out[..boxes.len()]);
     }
 }

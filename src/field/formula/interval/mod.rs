@@ -1,0 +1,278 @@
+//! Interval arithmetic over the graph: bounds of f and of its gradient that hold at every point of a box, many boxes at a
+//! time.
+//!
+//! Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by a unit in the last place or more where IEEE
+//! arithmetic rounds correctly, by a few where the value comes from a mathematical library whose error is below one or two.
+//! The bounds of the gradient are those of the derivative expressions. At a kink (abs, min, max) they hold every slope
+//! between the one-sided ones, Clarke's generalised gradient, so that the mean value theorem holds there too.
+
+mod flags;
+mod range;
+mod rows;
+
+use super::graph::{Graph, Id, Node};
+use super::operations::{Binary, Unary};
+use crate::field::Enclosure;
+use glam::DVec3;
+use range::Range;
+use rows::{BOXES, Row};
+
+/// What a step does with its operands a, b and c, which are rows unless said otherwise.
+#[derive(Clone, Copy, Debug)]
+enum Op {
+    /// Uniform a, over every box.
+    Fill,
+    Unary(Unary),
+    Power(i32),
+    Binary(Binary),
+    /// Row a times uniform b.
+    Scale,
+    Smin,
+    IfLe,
+    IfGt,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    op: Op,
+    out: u32,
+    operands: [u32; 3],
+}
+
+/// A graph compiled for boxes: f and its gradient.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BoxProgram {
+    /// What depends on no coordinate; operands by their place in this list.
+    uniform_nodes: Vec<Node>,
+    /// Its present bounds: a little wider than one number where the arithmetic rounds.
+    uniforms: Vec<Range>,
+    steps: Vec<Step>,
+    /// Rows of f and its three derivatives.
+    outputs: [u32; 4],
+    /// The first three are the coordinates.
+    rows: Vec<Row>,
+}
+
+impl BoxProgram {
+    pub(super) fn compile(graph: &Graph, outputs: [Id; 4]) -> Self {
+        let live = graph.live(&outputs);
+        let mut program = Self::default();
+        let mut uniform = vec![0_u32; graph.len()];
+        // Virtual rows, one per value, to begin with.
+        let mut row = vec![u32::MAX; graph.len()];
+        let mut next = 3_u32;
+        for (id, &node) in graph.nodes().iter().enumerate().filter(|(id, _)| live[*id]) {
+            if graph.is_uniform(id as Id) {
+                uniform[id] = program.uniform_nodes.len() as u32;
+                program.uniform_nodes.push(node.mapped(|operand| uniform[operand as usize]));
+                continue;
+            }
+            if let Node::Coordinate(axis) = node {
+                row[id] = u32::from(axis);
+                continue;
+            }
+            let exact = |operand: Id| graph.is_uniform(operand);
+            let scaled = matches!(node, Node::Binary(Binary::Mul, _, b) if exact(b));
+            let mut operands = [0; 3];
+            let mut k = 0;
+            node.operands(|operand| {
+                operands[k] = if scaled && k == 1 {
+                    uniform[operand as usize]
+                } else {
+                    program.row_of(graph, operand, &uniform, &mut row, &mut next)
+                };
+                k += 1;
+            });
+            let op = match node {
+                Node::Unary(operation, _) => Op::Unary(operation),
+                Node::Power(_, n) => Op::Power(n),
+                Node::Binary(_, _, _) if scaled => Op::Scale,
+                Node::Binary(operation, _, _) => Op::Binary(operation),
+                Node::Smin(_, _, _) => Op::Smin,
+                Node::IfLe(_, _, _) => Op::IfLe,
+                Node::IfGt(_, _, _) => Op::IfGt,
+                Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => {
+                    unreachable!("dealt with above")
+                }
+            };
+            row[id] = next;
+            program.steps.push(Step { op, out: next, operands });
+            next += 1;
+        }
+        program.outputs = outputs.map(|id| program.row_of(graph, id, &uniform, &mut row, &mut next));
+        program.allocate(next);
+        program
+    }
+
+    /// The row of a node; a uniform one is broadcast into a row of its own.
+    fn row_of(&mut self, graph: &Graph, id: Id, uniform: &[u32], row: &mut [u32], next: &mut u32) -> u32 {
+        if graph.is_uniform(id) && row[id as usize] == u32::MAX {
+            self.steps.push(Step { op: Op::Fill, out: *next, operands: [uniform[id as usize], 0, 0] });
+            row[id as usize] = *next;
+            *next += 1;
+        }
+        row[id as usize]
+    }
+
+    /// Virtual rows to real ones: a row is free again after its last use.
+    fn allocate(&mut self, count: u32) {
+        let mut last = vec![0_usize; count as usize];
+        for (at, step) in self.steps.iter().enumerate() {
+            step.rows().for_each(|row| last[row as usize] = at);
+        }
+        for kept in self.outputs.into_iter().chain(0..3) {
+            last[kept as usize] = usize::MAX;
+        }
+        let mut real: Vec<u32> = (0..count).collect();
+        let mut free: Vec<u32> = Vec::new();
+        let mut rows = 3;
+        for at in 0..self.steps.len() {
+            // The result never takes the place of an operand.
+            let out = self.steps[at].out as usize;
+            real[out] = free.pop().unwrap_or_else(|| {
+                rows += 1;
+                rows - 1
+            });
+            let step = self.steps[at];
+            for operand in step.rows().filter(|&operand| last[operand as usize] == at) {
+                let row = real[operand as usize];
+                if !free.contains(&row) {
+                    free.push(row);
+                }
+            }
+            if last[out] == 0 {
+                free.push(real[out]);
+            }
+            let step = &mut self.steps[at];
+            step.out = real[out];
+            let [a, b, c] = step.op.row_operands();
+            for (operand, used) in step.operands.iter_mut().zip([a, b, c]) {
+                if used {
+                    *operand = real[*operand as usize];
+                }
+            }
+        }
+        self.outputs = self.outputs.map(|row| real[row as usize]);
+        self.rows = vec![Row::ZERO; rows as usize];
+    }
+
+    /// Recomputes the bounds of what depends on no coordinate.
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.uniforms.clear();
+        for &node in &self.uniform_nodes {
+            let known = |id: Id| self.uniforms[id as usize];
+            let range = match node {
+                Node::Constant(bits) => Range::exactly(f64::from_bits(bits)),
+                Node::Parameter(index) => Range::exactly(parameters[index as usize]),
+                Node::Coordinate(_) => unreachable!("a coordinate is not uniform"),
+                Node::Unary(operation @ (Unary::Sin | Unary::Cos), a) => {
+                    Row::fill(known(a)).sine(operation == Unary::Cos).at(0)
+                }
+                Node::Unary(operation, a) => known(a).unary(operation),
+                Node::Power(a, n) => known(a).power(n),
+                Node::Binary(operation, a, b) => known(a).binary(operation, known(b)),
+                Node::Smin(a, b, k) => Range::smooth_minimum(known(a), known(b), known(k)),
+                Node::IfLe(a, b, v) => Range::choice(known(a), known(b), known(v), true),
+                Node::IfGt(a, b, v) => Range::choice(known(a), known(b), known(v), false),
+            };
+            self.uniforms.push(range);
+        }
+    }
+
+    /// Bounds over each of the boxes.
+    pub(super) fn run(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        for (boxes, out) in boxes.chunks(BOXES).zip(out.chunks_mut(BOXES)) {
+            let n = boxes.len();
+            for axis in 0..3 {
+                let row = &mut self.rows[axis];
+                for k in 0..BOXES {
+                    // Beyond the last box: the last one again, so that no lane is slow.
+                    let [lo, hi] = boxes[k.min(n - 1)];
+                    (row.lo[k], row.hi[k]) = (lo[axis].min(hi[axis]), lo[axis].max(hi[axis]));
+                }
+            }
+            for at in 0..self.steps.len() {
+                let step = self.steps[at];
+                self.rows[step.out as usize] = self.execute(&step, n);
+            }
+            let [f, x, y, z] = self.outputs.map(|row| &self.rows[row as usize]);
+            for (k, out) in out.iter_mut().enumerate() {
+                *out = enclosure(f.at(k), [x.at(k), y.at(k), z.at(k)]);
+            }
+        }
+    }
+
+    fn execute(&self, step: &Step, n: usize) -> Row {
+        let [a, b, c] = step.operands;
+        let row = |operand: u32| &self.rows[operand as usize];
+        match step.op {
+            Op::Fill => Row::fill(self.uniforms[a as usize]),
+            Op::Unary(operation) => match operation {
+                Unary::Neg => row(a).neg(),
+                Unary::Square => row(a).square(),
+                Unary::Abs => row(a).abs(),
+                Unary::Sqrt => row(a).sqrt(),
+                Unary::Sign => row(a).sign(),
+                Unary::Sin => row(a).sine(false),
+                Unary::Cos => row(a).sine(true),
+                _ => Row::each(n, |k| row(a).at(k).unary(operation)),
+            },
+            Op::Power(2) => row(a).square(),
+            Op::Power(n_th) => Row::each(n, |k| row(a).at(k).power(n_th)),
+            Op::Scale => {
+                let factor = self.uniforms[b as usize];
+                if factor.lo == factor.hi && !factor.is_empty() {
+                    row(a).scale(factor.lo)
+                } else {
+                    row(a).mul(&Row::fill(factor))
+                }
+            }
+            Op::Binary(operation) => match operation {
+                Binary::Add => row(a).add(row(b)),
+                Binary::Sub => row(a).sub(row(b)),
+                Binary::Mul => row(a).mul(row(b)),
+                Binary::Min => row(a).min(row(b)),
+                Binary::Max => row(a).max(row(b)),
+                _ => Row::each(n, |k| row(a).at(k).binary(operation, row(b).at(k))),
+            },
+            Op::Smin => Row::each(n, |k| Range::smooth_minimum(row(a).at(k), row(b).at(k), row(c).at(k))),
+            Op::IfLe => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), true)),
+            Op::IfGt => Row::each(n, |k| Range::choice(row(a).at(k), row(b).at(k), row(c).at(k), false)),
+        }
+    }
+}
+
+impl Op {
+    /// Which of the operands are rows.
+    fn row_operands(self) -> [bool; 3] {
+        match self {
+            Self::Fill => [false; 3],
+            Self::Unary(_) | Self::Power(_) | Self::Scale => [true, false, false],
+            Self::Binary(_) => [true, true, false],
+            Self::Smin | Self::IfLe | Self::IfGt => [true; 3],
+        }
+    }
+}
+
+impl Step {
+    fn rows(&self) -> impl Iterator<Item = u32> {
+        let (used, operands) = (self.op.row_operands(), self.operands);
+        (0..3).filter(move |&k| used[k]).map(move |k| operands[k])
+    }
+}
+
+fn enclosure(f: Range, gradient: [Range; 3]) -> Enclosure {
+    if f.is_empty() {
+        return Enclosure::NOWHERE;
+    }
+    let slope = |range: Range| {
+        if range.is_empty() { [f64::NEG_INFINITY, f64::INFINITY] } else { [range.lo, range.hi] }
+    };
+    Enclosure {
+        value: [f.lo, f.hi],
+        gradient: gradient.map(slope),
+        defined: f.flags & flags::DEFINED != 0,
+        continuous: f.flags & flags::CONTINUOUS != 0,
+        may_vanish: !f.is_nonzero(),
+    }
+}

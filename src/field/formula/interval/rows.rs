@@ -1,0 +1,255 @@
+//! Intervals over many boxes at once: the bounds of one operation as columns, which the compiler turns into SIMD code.
+//!
+//! Only what formulas consist of mostly is written out here; the rest goes through [`Range`], box by box.
+
+use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
+use super::range::{Range, down, product, up};
+
+/// Boxes in a row.
+pub(super) const BOXES: usize = 32;
+
+/// Bounds of one operation over up to [`BOXES`] boxes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) lo: [f64; BOXES],
+    pub(super) hi: [f64; BOXES],
+    pub(super) flags: [u8; BOXES],
+}
+
+impl Row {
+    pub(super) const ZERO: Self = Self { lo: [0.0; BOXES], hi: [0.0; BOXES], flags: [REGULAR; BOXES] };
+
+    pub(super) fn at(&self, k: usize) -> Range {
+        Range { lo: self.lo[k], hi: self.hi[k], flags: self.flags[k] }
+    }
+
+    /// The same bounds over every box.
+    pub(super) fn fill(range: Range) -> Self {
+        Self { lo: [range.lo; BOXES], hi: [range.hi; BOXES], flags: [range.flags; BOXES] }
+    }
+
+    /// `f` over each of the first `n` boxes.
+    #[inline(always)]
+    pub(super) fn each(n: usize, f: impl Fn(usize) -> Range) -> Self {
+        let mut out = Self::ZERO;
+        for k in 0..n {
+            let range = f(k);
+            (out.lo[k], out.hi[k], out.flags[k]) = (range.lo, range.hi, range.flags);
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn bounds(f: impl Fn(usize) -> (f64, f64), flags: [u8; BOXES]) -> Self {
+        let mut out = Self { flags, ..Self::ZERO };
+        for k in 0..BOXES {
+            (out.lo[k], out.hi[k]) = f(k);
+        }
+        out
+    }
+
+    fn joined(&self, other: &Self) -> [u8; BOXES] {
+        core::array::from_fn(|k| joined(self.flags[k], other.flags[k]))
+    }
+
+    pub(super) fn neg(&self) -> Self {
+        Self::bounds(|k| (-self.hi[k], -self.lo[k]), self.flags)
+    }
+
+    pub(super) fn add(&self, other: &Self) -> Self {
+        let sum = |k: usize| (down(self.lo[k] + other.lo[k]), up(self.hi[k] + other.hi[k]));
+        Self::bounds(sum, self.joined(other))
+    }
+
+    pub(super) fn sub(&self, other: &Self) -> Self {
+        let difference = |k: usize| (down(self.lo[k] - other.hi[k]), up(self.hi[k] - other.lo[k]));
+        Self::bounds(difference, self.joined(other))
+    }
+
+    pub(super) fn mul(&self, other: &Self) -> Self {
+        let mut out = Self::bounds(
+            |k| {
+                let (a, b, c, d) = (self.lo[k], self.hi[k], other.lo[k], other.hi[k]);
+                let (p, q, r, s) = (product(a, c), product(a, d), product(b, c), product(b, d));
+                (down(least(least(p, q), least(r, s))), up(greatest(greatest(p, q), greatest(r, s))))
+            },
+            self.joined(other),
+        );
+        for k in 0..BOXES {
+            out.flags[k] |= self.nonzero(k) & other.nonzero(k);
+        }
+        out
+    }
+
+    /// Times an exact number.
+    pub(super) fn scale(&self, factor: f64) -> Self {
+        let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
+        Self::bounds(
+            |k| {
+                let (p, q) = (product(self.lo[k], factor), product(self.hi[k], factor));
+                (down(least(p, q)), up(greatest(p, q)))
+            },
+            flags,
+        )
+    }
+
+    /// [`NONZERO`] where 0 is certainly not among the values.
+    #[inline(always)]
+    fn nonzero(&self, k: usize) -> u8 {
+        self.flags[k] & NONZERO | if self.lo[k] > 0.0 || self.hi[k] < 0.0 { NONZERO } else { 0 }
+    }
+
+    pub(super) fn square(&self) -> Self {
+        let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]) | self.flags[k] & NONZERO);
+        Self::bounds(
+            |k| {
+                let (a, b) = (self.lo[k], self.hi[k]);
+                let near = greatest(0.0, greatest(a, -b));
+                let far = greatest(-a, b);
+                (down(near * near), up(far * far))
+            },
+            flags,
+        )
+    }
+
+    pub(super) fn abs(&self) -> Self {
+        let far = |k: usize| greatest(-self.lo[k], self.hi[k]);
+        Self::bounds(|k| (greatest(0.0, greatest(self.lo[k], -self.hi[k])), far(k)), self.flags)
+    }
+
+    pub(super) fn min(&self, other: &Self) -> Self {
+        let lesser = |k: usize| (least(self.lo[k], other.lo[k]), least(self.hi[k], other.hi[k]));
+        Self::bounds(lesser, self.joined(other))
+    }
+
+    pub(super) fn max(&self, other: &Self) -> Self {
+        let greater = |k: usize| (greatest(self.lo[k], other.lo[k]), greatest(self.hi[k], other.hi[k]));
+        Self::bounds(greater, self.joined(other))
+    }
+
+    pub(super) fn sqrt(&self) -> Self {
+        let mut out = Self::bounds(
+            |k| (down(greatest(self.lo[k], 0.0).sqrt()), up(greatest(self.hi[k], 0.0).sqrt())),
+            core::array::from_fn(|k| joined(self.flags[k], self.flags[k])),
+        );
+        for k in 0..BOXES {
+            out.flags[k] &= if self.lo[k] < 0.0 { !DEFINED } else { !0 };
+            out.flags[k] |= if self.hi[k] < 0.0 { EMPTY } else { 0 };
+        }
+        out
+    }
+
+    /// The slope of an absolute value: between −1 and 1 where the sign changes.
+    pub(super) fn sign(&self) -> Self {
+        let sign = |x: f64| {
+            if x > 0.0 {
+                1.0
+            } else if x < 0.0 {
+                -1.0
+            } else {
+                0.0
+            }
+        };
+        let mut out = Self::bounds(|k| (sign(self.lo[k]), sign(self.hi[k])), self.flags);
+        for k in 0..BOXES {
+            out.flags[k] = joined(self.flags[k], self.flags[k]);
+            out.flags[k] &= if out.lo[k] == out.hi[k] { !0 } else { !CONTINUOUS };
+        }
+        out
+    }
+
+    /// Sine, or cosine: from the middle m of the argument and its half-width h, by sin(m + t) = sin m cos t + cos m sin t,
+    /// with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. The excess is of second order in h.
+    pub(super) fn sine(&self, cosine: bool) -> Self {
+        let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
+        Self::bounds(
+            |k| {
+                let middle = 0.5 * (self.lo[k] + self.hi[k]);
+                let half = greatest(middle - self.lo[k], self.hi[k] - middle);
+                let (s, c) = sine_cosine(middle);
+                // cos m = sin(m + π/2), whose own cosine is −sin m; only its size matters below.
+                let (value, slope) = if cosine { (c, s) } else { (s, c) };
+                let least_cosine = 1.0 - 0.5 * half * half;
+                let other = value * least_cosine;
+                let swing = slope.abs() * half + SINE_SLACK;
+                let lo = greatest(least(value, other) - swing, -1.0);
+                let hi = least(greatest(value, other) + swing, 1.0);
+                // Also false for what is not finite.
+                let trusted = half <= 1.0 && middle.abs() <= TRUSTED_ANGLE;
+                if trusted { (lo, hi) } else { (-1.0, 1.0) }
+            },
+            flags,
+        )
+    }
+}
+
+/// Most that the rounding of [`Row::sine`] can come to: a few units in the last place of 1.
+const SINE_SLACK: f64 = 1e-14;
+
+/// Largest angle whose reduction by π/2 below is exact to that slack.
+const TRUSTED_ANGLE: f64 = 1e5;
+
+/// Sine and cosine for |x| ≤ 10⁵, to a few 10⁻¹⁶: the nearest multiple of π/2 is taken off in two parts (Cody and
+/// Waite), then the Taylor series, whose next terms are below 10⁻¹⁷ for |r| ≤ π/4.
+#[inline(always)]
+fn sine_cosine(x: f64) -> (f64, f64) {
+    // Added to 1.5 · 2⁵², a number is rounded to a whole one that stands in the low bits of the sum.
+    const INTEGER: f64 = 6_755_399_441_055_744.0;
+    // π/2 in two parts, the first of 33 bits so that its product with a quadrant below 2²⁰ is exact.
+    const HALF_PI_HEAD: f64 = 1.570_796_326_734_125_6;
+    const HALF_PI_TAIL: f64 = 6.077_100_506_506_192e-11;
+    let shifted = x * core::f64::consts::FRAC_2_PI + INTEGER;
+    let quadrant = shifted.to_bits();
+    let turns = shifted - INTEGER;
+    let r = (x - turns * HALF_PI_HEAD) - turns * HALF_PI_TAIL;
+    let q = r * r;
+    let mut sine = -1.0 / 1_307_674_368_000.0;
+    for inverse in
+        [1.0 / 6_227_020_800.0, -1.0 / 39_916_800.0, 1.0 / 362_880.0, -1.0 / 5_040.0, 1.0 / 120.0, -1.0 / 6.0]
+    {
+        sine = sine * q + inverse;
+    }
+    let sine = r + r * q * sine;
+    let mut cosine = 1.0 / 20_922_789_888_000.0;
+    for inverse in [
+        -1.0 / 87_178_291_200.0,
+        1.0 / 479_001_600.0,
+        -1.0 / 3_628_800.0,
+        1.0 / 40_320.0,
+        -1.0 / 720.0,
+        1.0 / 24.0,
+        -0.5,
+    ] {
+        cosine = cosine * q + inverse;
+    }
+    let cosine = 1.0 + q * cosine;
+    let swap = quadrant & 1 != 0;
+    let (s, c) = if swap { (cosine, sine) } else { (sine, cosine) };
+    let s = if quadrant & 2 != 0 { -s } else { s };
+    let c = if (quadrant + 1) & 2 != 0 { -c } else { c };
+    (s, c)
+}
+
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greatest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_are_those_of_the_library() {
+        for k in -200_000..200_000 {
+            let x = f64::from(k) * 0.499_873;
+            let (s, c) = sine_cosine(x);
+            assert!((s - libm::sin(x)).abs() < 1e-15 && (c - libm::cos(x)).abs() < 1e-15, "{x}: {s} {c}");
+        }
+    }
+}
