@@ -1,0 +1,149 @@
+//! Which format a file has, by its content.
+
+use super::input::{number, words};
+use super::{ReadError, xyz};
+use core::fmt;
+
+/// A format that is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Polygon file, text or binary.
+    Ply,
+    /// Wavefront object.
+    Obj,
+    /// Stereolithography, as text.
+    StlText,
+    /// Stereolithography, binary.
+    StlBinary,
+    /// Lines of numbers.
+    Xyz,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ply => "PLY",
+            Self::Obj => "OBJ",
+            Self::StlText | Self::StlBinary => "STL",
+            Self::Xyz => "XYZ",
+        })
+    }
+}
+
+impl Format {
+    /// The ending of `name` if it is that of another format.
+    pub(super) fn other_ending(self, name: &str) -> Option<&'static str> {
+        let ending = ending(name);
+        let known = ["ply", "obj", "stl", "xyz"].into_iter().find(|known| *known == ending)?;
+        (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
+    }
+}
+
+/// The ending of a file's name, in lower case.
+fn ending(name: &str) -> String {
+    name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// Bytes that are looked at to tell text from binary data.
+const LOOKED_AT: usize = 4096;
+
+/// Length of a binary STL file's header with the number of triangles, and of a triangle.
+pub(super) const STL_HEADER: usize = 84;
+pub(super) const STL_TRIANGLE: usize = 50;
+
+const CONVERT: &str = "open it in a mesh program such as MeshLab or Blender and export it as PLY";
+const CHOOSE: &str = "choose a file of points or of a mesh";
+
+/// Beginnings of files that people have in the same folder.
+const KNOWN: [(&[u8], &str, &str); 17] = [
+    (b"glTF", "a binary glTF file", CONVERT),
+    (b"LASF", "a LAS point cloud", CONVERT),
+    (b"ASTM-E57", "an E57 point cloud", CONVERT),
+    (b"Kaydara FBX", "an FBX file", CONVERT),
+    (b"\x93NUMPY", "a NumPy array", "save its rows as text, one point a line, as XYZ"),
+    (b"PK\x03\x04", "a ZIP archive (3MF and USDZ are such)", "unpack it, or export it as PLY"),
+    (b"\x1f\x8b", "a gzip archive", "unpack it first"),
+    (b"BZh", "a bzip2 archive", "unpack it first"),
+    (b"\xfd7zXZ", "an xz archive", "unpack it first"),
+    (b"7z\xbc\xaf", "a 7z archive", "unpack it first"),
+    (b"Rar!", "a RAR archive", "unpack it first"),
+    (b"\x89PNG", "a PNG picture", CHOOSE),
+    (b"\xff\xd8\xff", "a JPEG picture", CHOOSE),
+    (b"%PDF", "a PDF document", CHOOSE),
+    (b"\x7fELF", "a program", CHOOSE),
+    (b"\xff\xfe", "text in UTF-16", "save it as UTF-8"),
+    (b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
+];
+
+/// Words that a statement of an OBJ file begins with.
+const OBJ_WORDS: [&[u8]; 14] =
+    [b"v", b"vn", b"vt", b"vp", b"f", b"o", b"g", b"s", b"l", b"p", b"mtllib", b"usemtl", b"usemap", b"mg"];
+
+/// The format of a file that is not empty.
+pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
+    if bytes.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace)) {
+        return Ok(Format::Ply);
+    }
+    if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
+        return Err(ReadError::Unknown { found, advice });
+    }
+    // Many programs begin a binary STL file with the word that begins a text one, so its size is asked first.
+    if stl_size(bytes).is_some_and(|size| size == bytes.len() as u64) {
+        return Ok(Format::StlBinary);
+    }
+    let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
+    if looked_at.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c)) {
+        if ending(name) == "stl" || bytes.starts_with(b"solid") {
+            return Ok(Format::StlBinary);
+        }
+        return Err(ReadError::Unknown { found: "a binary file of no known kind", advice: CHOOSE });
+    }
+    of_text(name, bytes)
+}
+
+/// The size that a binary STL file's header promises.
+pub(super) fn stl_size(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(STL_HEADER - 4..STL_HEADER)?;
+    let count = u32::from_le_bytes(count.try_into().ok()?);
+    Some(STL_HEADER as u64 + u64::from(count) * STL_TRIANGLE as u64)
+}
+
+fn of_text(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#") && !line.starts_with(b"//"));
+    let line = first.unwrap_or_default();
+    let word = words(line).next().unwrap_or_default();
+    if word.eq_ignore_ascii_case(b"solid") {
+        return Ok(Format::StlText);
+    }
+    if OBJ_WORDS.contains(&word) {
+        return Ok(Format::Obj);
+    }
+    if xyz::words(line).next().is_some_and(|word| number(word).is_some())
+        || xyz::Columns::named(line).is_some()
+    {
+        return Ok(Format::Xyz);
+    }
+    let unknown = |found, advice| Err(ReadError::Unknown { found, advice });
+    if [&b"OFF"[..], b"NOFF", b"COFF", b"STOFF"].contains(&word) {
+        return unknown("an OFF file", CONVERT);
+    }
+    if words(text).take(3).any(|word| word == b".PCD") {
+        return unknown("a PCD point cloud", CONVERT);
+    }
+    if line.starts_with(b"<") {
+        return unknown("an XML or HTML document", CHOOSE);
+    }
+    if line.starts_with(b"{") {
+        return unknown("JSON (glTF is such)", CONVERT);
+    }
+    // A mistake in the first line is better named by its place than by "no known kind".
+    match ending(name).as_str() {
+        "obj" => Ok(Format::Obj),
+        "stl" => Ok(Format::StlText),
+        "xyz" | "txt" | "csv" | "asc" | "pts" => Ok(Format::Xyz),
+        _ if line.is_empty() => unknown("a text file without content", CHOOSE),
+        _ => unknown("a text file of no known kind", CHOOSE),
+    }
+}

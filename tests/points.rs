@@ -1,0 +1,195 @@
+//! From clouds of points to a few hundred centres with normals: what is thinned out, chosen and estimated.
+#![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
+
+use glam::DVec3;
+use marching_particles::points::normals::Estimator;
+use marching_particles::points::thin::{KEPT, Merger, Spreader, Thinner, check_spread};
+use marching_particles::points::{Cloud, CloudError, NormalSource};
+
+fn merged(cloud: Cloud) -> (Cloud, usize) {
+    let mut merger = Merger::new(cloud);
+    while !merger.step(7).expect("memory enough") {}
+    merger.finish()
+}
+
+fn thinned(cloud: Cloud) -> Cloud {
+    let mut thinner = Thinner::new(cloud);
+    while !thinner.step(1000).expect("memory enough") {}
+    thinner.finish()
+}
+
+fn estimate(cloud: &mut Cloud) -> Vec<String> {
+    let mut estimator = Estimator::new(&cloud.position);
+    while !estimator.step(100) {}
+    estimator.finish(cloud).expect("memory enough")
+}
+
+/// Fibonacci points on the unit sphere.
+fn sphere(count: usize) -> Vec<DVec3> {
+    let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let point = |i: usize| {
+        let z = 1.0 - (2 * i + 1) as f64 / count as f64;
+        let (sin, cos) = (turn * i as f64).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        DVec3::new(r * cos, r * sin, z)
+    };
+    (0..count).map(point).collect()
+}
+
+/// Points on the torus of radii 1 and 0.4 about z, spread evenly, with their normals.
+fn torus(count: usize) -> (Vec<DVec3>, Vec<DVec3>) {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let tau = std::f64::consts::TAU;
+    let (mut position, mut normal) = (Vec::new(), Vec::new());
+    let mut k = 0;
+    while position.len() < count {
+        k += 1;
+        let (u, v) = (
+            tau * (f64::from(k) * golden).fract(),
+            tau * (f64::from(k) * golden * golden * 0.754_877).fract(),
+        );
+        // Fewer on the inner side, where the same angles take less area.
+        if 1.0 + 0.4 * v.cos() < 1.4 * (f64::from(k) * 0.569_840).fract() {
+            continue;
+        }
+        let n = DVec3::new(u.cos() * v.cos(), u.sin() * v.cos(), v.sin());
+        position.push(DVec3::new(u.cos(), u.sin(), 0.0) + 0.4 * n);
+        normal.push(n);
+    }
+    (position, normal)
+}
+
+#[test]
+fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
+    for (count, worst_deg, mean_deg) in [(1000, 14.0, 4.0), (5_000, 10.0, 2.0), (20_000, 3.0, 0.6)] {
+        let on_sphere = sphere(count);
+        let shapes = [("sphere", on_sphere.clone(), on_sphere), {
+            let (position, normal) = torus(count);
+            ("torus", position, normal)
+        }];
+        for (name, position, normal) in shapes {
+            for (scale, offset) in
+                [(1.0, DVec3::ZERO), (1e-3, DVec3::new(5.0, -3.0, 1.0)), (1e6, DVec3::splat(1e7))]
+            {
+                let placed: Vec<DVec3> = position.iter().map(|p| *p * scale + offset).collect();
+                let mut cloud =
+                    Cloud { position: placed, normal: Vec::new(), source: NormalSource::Estimated };
+                let warnings = estimate(&mut cloud);
+                assert_eq!(warnings.len(), 1, "{name}: {warnings:?}");
+                let angles = cloud
+                    .normal
+                    .iter()
+                    .zip(&normal)
+                    .map(|(n, m)| n.dot(*m).clamp(-1.0, 1.0).acos().to_degrees());
+                let (mut worst, mut sum) = (0.0_f64, 0.0);
+                for angle in angles {
+                    worst = worst.max(angle);
+                    sum += angle;
+                }
+                let mean = sum / position.len() as f64;
+                println!("{name}, {count} points at {scale:e}: worst {worst:.2}°, mean {mean:.2}°");
+                assert!(worst < worst_deg && mean < mean_deg, "{name}, {count}: {worst}°, {mean}°");
+            }
+        }
+    }
+}
+
+#[test]
+fn pieces_apart_are_each_turned_outward_and_said_to_be() {
+    let ball = sphere(300);
+    let mut position: Vec<DVec3> = ball.clone();
+    position.extend(ball.iter().map(|p| *p + DVec3::new(5.0, 0.0, 0.0)));
+    let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
+    let warnings = estimate(&mut cloud);
+    assert!(warnings.iter().any(|w| w.contains("2 pieces")), "{warnings:?}");
+    assert!(cloud.normal.iter().zip(ball.iter().chain(&ball)).all(|(n, p)| n.dot(*p) > 0.9));
+}
+
+#[test]
+fn points_that_are_flat_or_one_are_refused() {
+    let (a, b) = (DVec3::new(1.0, 2.0, -1.0), DVec3::new(0.3, -1.0, 0.5));
+    let at = DVec3::new(10.0, -4.0, 3.0);
+    let one = vec![at; 10];
+    let line: Vec<DVec3> = (0..50).map(|i| at + a * f64::from(i)).collect();
+    let plane: Vec<DVec3> = (0..400).map(|i| at + a * f64::from(i / 20) + b * f64::from(i % 20)).collect();
+    for scale in [1e-9, 1.0, 1e9] {
+        let checked = |points: &[DVec3]| check_spread(&points.iter().map(|p| *p * scale).collect::<Vec<_>>());
+        assert_eq!(checked(&one), Err(CloudError::OnePlace { count: 10 }));
+        assert_eq!(checked(&line), Err(CloudError::Line));
+        assert_eq!(checked(&plane), Err(CloudError::Plane));
+        assert_eq!(checked(&sphere(50)), Ok(()));
+    }
+    assert_eq!(check_spread(&[DVec3::ZERO; 3]), Err(CloudError::OnePlace { count: 3 }));
+    assert_eq!(check_spread(&[]), Err(CloudError::OnePlace { count: 0 }));
+}
+
+#[test]
+fn equal_points_become_one_with_the_mean_of_their_normals() {
+    let position = vec![DVec3::ZERO, DVec3::X, DVec3::NEG_X * 0.0, DVec3::Y, DVec3::Y];
+    let normal = vec![DVec3::X, DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X];
+    let (cloud, joined) = merged(Cloud { position, normal, source: NormalSource::Given });
+    assert_eq!(joined, 2);
+    // The two at Y contradict each other.
+    assert_eq!(cloud.position, [DVec3::ZERO, DVec3::X]);
+    assert!((cloud.normal[0] - DVec3::new(0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0)).length() < 1e-15);
+}
+
+#[test]
+fn a_million_points_are_thinned_evenly_whatever_lies_far_away() {
+    let mut position = sphere(1_000_000);
+    // A stray point, a thousand diameters off.
+    position.push(DVec3::new(2000.0, 0.0, 0.0));
+    let normal = position.clone();
+    let cloud = thinned(Cloud { position, normal, source: NormalSource::Given });
+    println!("{} kept", cloud.len());
+    assert!((KEPT * 3 / 10..=KEPT).contains(&cloud.len()), "{} kept", cloud.len());
+    assert_eq!(cloud.normal.len(), cloud.len());
+    // Nowhere is a hole: of the whole sphere every point is within some steps of one that is kept.
+    let spacing = (4.0 * std::f64::consts::PI / cloud.len() as f64).sqrt();
+    for p in sphere(500) {
+        let nearest = cloud.position.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 2.0 * spacing, "{nearest} from {p}, {spacing} apart");
+    }
+    let few = Cloud { position: sphere(500), normal: Vec::new(), source: NormalSource::Estimated };
+    assert_eq!(thinned(few.clone()), few);
+}
+
+#[test]
+fn centres_are_spread_as_far_as_can_be_and_chosen_alike_each_time() {
+    let points = sphere(20_000);
+    let spread = |wanted: usize| {
+        let mut spreader = Spreader::new(&points, wanted);
+        while !spreader.step(&points) {}
+        spreader.chosen().to_vec()
+    };
+    for wanted in [100, 200, 800] {
+        let chosen = spread(wanted);
+        assert_eq!(chosen.len(), wanted);
+        assert_eq!(chosen, spread(wanted));
+        // The first centres of more are those of fewer.
+        assert_eq!(chosen[..100], spread(100));
+        let distance = |i: u32, j: u32| points[i as usize].distance(points[j as usize]);
+        let nearest_pair = (0..wanted)
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .map(|(i, j)| distance(chosen[i], chosen[j]))
+            .fold(f64::INFINITY, f64::min);
+        let hole = (0..points.len() as u32)
+            .map(|i| chosen.iter().map(|&j| distance(i, j)).fold(f64::INFINITY, f64::min))
+            .fold(0.0, f64::max);
+        // Hexagons of as many points on the sphere are this far apart.
+        let hexagonal = (8.0 * std::f64::consts::PI / (3.0_f64.sqrt() * wanted as f64)).sqrt();
+        println!(
+            "{wanted}: pairs {:.3}, holes {:.3} of the hexagonal distance",
+            nearest_pair / hexagonal,
+            hole / hexagonal
+        );
+        assert!(nearest_pair >= hole, "what the method promises");
+        assert!(nearest_pair > 0.7 * hexagonal, "{nearest_pair} for {hexagonal}");
+    }
+    // Fewer points than are wanted, some of them twice.
+    let mut few = sphere(30);
+    few.extend(sphere(30).iter().map(|p| *p * (1.0 + 1e-6)));
+    let mut spreader = Spreader::new(&few, 200);
+    while !spreader.step(&few) {}
+    assert_eq!(spreader.chosen().len(), 30);
+}
