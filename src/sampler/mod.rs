@@ -4,18 +4,15 @@
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
-mod adaptive;
-mod adaptive_grid;
-mod arcs;
-mod front;
 mod gaps;
+#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod laws;
 mod pairs;
-mod placement;
 mod project;
 mod relax;
 mod search;
 mod settings;
+#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod sizing;
 mod survey;
 mod uniform;
@@ -29,22 +26,18 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use adaptive::Surface;
-use front::Front;
+use gaps::{Gaps, Ground};
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
 use relax::Relaxation;
 use serde::Serialize;
-use sizing::Sizing;
 use survey::{Absence, Survey, survey};
+use uniform::Front;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
 /// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
 const PACKING: f64 = 1.08;
-
-/// The same for the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces.
-const ADAPTIVE_PACKING: f64 = 1.02;
 
 /// A wanted count above this is approached through a pilot run with [`PILOT_SHARE`] of it, which shows the packing.
 const PILOT_FROM: f64 = 8_000.0;
@@ -66,6 +59,10 @@ const COUNT_ROOM: f64 = 1.1;
 /// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
 /// but no more than the peak that tests/memory.rs holds it to.
 const BYTES_PER_PARTICLE: usize = 120;
+
+/// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
+/// cover has no hole larger than 1.85 (1.6 of the ideal).
+const UNCOVERED: f32 = 2.0;
 
 /// What the sampler is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -186,8 +183,9 @@ pub struct Sampler {
     pilot: bool,
     projector: Projector,
     front: Front,
-    /// The radius field of an adaptive run.
-    sizing: Option<Sizing>,
+    gaps: Gaps,
+    /// Whether the generation has come to the gaps.
+    filling: bool,
     relaxation: Relaxation,
     pairs: Pairs,
     particles: Particles,
@@ -223,7 +221,8 @@ impl Sampler {
             pilot: false,
             projector: Projector::new(),
             front: Front::new(),
-            sizing: None,
+            gaps: Gaps::default(),
+            filling: false,
             relaxation: Relaxation::new(),
             pairs: Pairs::default(),
             particles: Particles::default(),
@@ -242,7 +241,7 @@ impl Sampler {
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        Counts { fates: self.front.fates(), gaps_filled: self.front.filled(), ..self.counts.clone() }
+        Counts { fates: self.front.fates, gaps_filled: self.gaps.filled, ..self.counts.clone() }
     }
 
     /// Energy per particle before the first relaxation step and after each: Σ exp(−d²/2σ²) over pairs, cut off at 3σ.
@@ -306,18 +305,10 @@ impl Sampler {
         self.survey = survey(&mut Scaled::new(field, self.factor), bounds, &mut self.projector);
         self.counts.seeding_evaluations = self.projector.evaluations;
 
-        self.sizing = None;
-        self.packing = PACKING;
-        if settings.sampling == Sampling::Adaptive {
-            let mut field = Scaled::new(field, self.factor);
-            let evaluations = &mut self.counts.seeding_evaluations;
-            self.sizing = Some(Sizing::new(&mut field, bounds, settings, &self.survey, evaluations));
-            self.packing = ADAPTIVE_PACKING;
-        }
-
         let area = self.survey.area;
         // Hexagonal packing: each particle takes 2√3 r².
-        let per_radius_sq = area * self.packing / (2.0 * SQRT_3);
+        self.packing = PACKING;
+        let per_radius_sq = area * PACKING / (2.0 * SQRT_3);
         self.radius = match settings.size_mode {
             SizeMode::Radius => settings.radius_share * bounds.diagonal(),
             SizeMode::Count => {
@@ -328,12 +319,6 @@ impl Sampler {
                 if radius > 0.0 { radius } else { settings.radius_share * bounds.diagonal() }
             }
         };
-        if let Some(sizing) = &mut self.sizing {
-            if settings.size_mode == SizeMode::Count {
-                sizing.scale_to(per_radius_sq / (self.radius * self.radius) / self.packing);
-            }
-            self.radius = typical_radius(&self.survey, sizing, self.radius);
-        }
         let predicted = match settings.size_mode {
             SizeMode::Radius => (per_radius_sq / (self.radius * self.radius)).round(),
             SizeMode::Count => f64::from(settings.count),
@@ -387,12 +372,17 @@ impl Sampler {
         let expected = (self.expected_count() * RESERVE).min(f64::from(self.settings.max_particles)) as usize;
         self.particles.reserve(expected);
         self.pairs.reserve(expected);
+        self.front.grid.reserve(expected);
         self.tolerance = tolerance(self.radius as f32, self.survey.resolution, self.survey.gradient_scale);
-        let radii = match &self.sizing {
-            Some(sizing) => [sizing.smallest(), sizing.largest()],
-            None => [self.radius as f32; 2],
-        };
-        self.front.reset(&self.settings, (self.radius as f32, radii), &self.survey, &self.bounds, expected);
+        self.front.reset(
+            self.radius as f32,
+            self.settings.match_tolerance as f32,
+            self.tolerance,
+            &self.bounds,
+            self.settings.max_particles as usize,
+        );
+        self.filling = false;
+        self.gaps.clear();
         self.counts.seeds = 0;
         self.counts.front_evaluations = 0;
         self.next_seed = 0;
@@ -426,7 +416,7 @@ impl Sampler {
             if self.phase == Phase::Relaxation {
                 self.moved |= self.relaxation.abandon(&mut self.particles);
             }
-            if self.phase != Phase::Relaxation {
+            if self.phase != Phase::Relaxation && !self.filling {
                 self.front.stop(&mut self.particles);
             }
             self.finish(StopReason::Cancelled);
@@ -446,24 +436,35 @@ impl Sampler {
                 Phase::Seeding => left = self.seed(field, left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
-                    let mut surface = Surface {
-                        field,
-                        projector: &mut self.projector,
-                        sizing: self.sizing.as_ref(),
-                        pairs: &mut self.pairs,
-                        particles: &mut self.particles,
+                    left = if self.filling {
+                        let mut ground = Ground {
+                            radius: self.radius as f32,
+                            tolerance: self.tolerance,
+                            bounds: self.bounds,
+                            max_particles: self.settings.max_particles as usize,
+                            grid: &mut self.front.grid,
+                            pairs: &mut self.pairs,
+                            particles: &mut self.particles,
+                        };
+                        self.gaps.step(field, &mut self.projector, &mut ground, left)
+                    } else {
+                        self.front.step(
+                            field,
+                            &mut self.projector,
+                            &mut self.pairs,
+                            &mut self.particles,
+                            left,
+                        )
                     };
-                    left = self.front.step(&mut surface, left);
                     self.counts.generation_evaluations += self.projector.evaluations - start;
                     self.counts.front_evaluations += self.projector.evaluations - start;
-                    if !self.front.is_done() {
-                    } else if self.front.is_filling() {
-                        if !self.front.fill() {
+                    if self.filling {
+                        if self.gaps.is_done() {
                             self.end_generation();
                         }
-                    } else {
+                    } else if self.front.is_done() {
                         self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
-                        if self.front.capped() {
+                        if self.front.capped {
                             self.end_generation();
                         } else {
                             self.phase = Phase::Seeding;
@@ -475,7 +476,7 @@ impl Sampler {
                     let (rest, moved) = self.relaxation.step(
                         field,
                         &mut self.projector,
-                        self.front.grid(),
+                        &mut self.front.grid,
                         &mut self.pairs,
                         &mut self.particles,
                         left,
@@ -484,7 +485,7 @@ impl Sampler {
                     left = rest;
                     self.counts.relaxation_evaluations += self.projector.evaluations - start;
                     if self.relaxation.is_done() {
-                        let reason = if self.front.capped() { StopReason::Cap } else { StopReason::Complete };
+                        let reason = if self.front.capped { StopReason::Cap } else { StopReason::Complete };
                         self.finish(reason);
                     }
                 }
@@ -497,7 +498,7 @@ impl Sampler {
     /// The state as of now; the `moved` flag is cleared by reading it.
     pub fn progress(&mut self) -> Progress {
         let particles = match self.phase {
-            Phase::Generation => self.front.settled(self.particles.len()),
+            Phase::Generation if !self.filling => self.front.settled(),
             _ => self.particles.len(),
         };
         let expected = self.expected_count();
@@ -565,7 +566,9 @@ impl Sampler {
         let count = self.survey.position.len();
         while budget > 0 {
             if self.next_seed >= count {
-                if self.settings.gaps == GapPolicy::Fill && self.front.fill() {
+                if self.settings.gaps == GapPolicy::Fill && !self.front.seams.is_empty() {
+                    self.gaps.begin(&mut self.front.seams);
+                    self.filling = true;
                     self.phase = Phase::Generation;
                 } else {
                     self.end_generation();
@@ -580,7 +583,8 @@ impl Sampler {
             };
             self.next_seed += 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
-            if !self.front.is_covered(&self.particles, position, normal) {
+            let clear = UNCOVERED * self.radius as f32;
+            if !self.front.is_covered(&self.particles, position, normal, clear) {
                 let start = self.projector.evaluations;
                 let is_zero = self.survey.is_zero(field, &mut self.projector, i);
                 self.counts.seeding_evaluations += self.projector.evaluations - start;
@@ -588,22 +592,14 @@ impl Sampler {
                     continue;
                 }
                 if self.particles.len() >= self.settings.max_particles as usize {
-                    self.front.cap();
+                    self.front.capped = true;
                     self.end_generation();
                     return budget;
                 }
-                let mut surface = Surface {
-                    field,
-                    projector: &mut self.projector,
-                    sizing: self.sizing.as_ref(),
-                    pairs: &mut self.pairs,
-                    particles: &mut self.particles,
-                };
-                if self.front.add_seed(&mut surface, position, normal) {
-                    self.counts.seeds += 1;
-                    self.phase = Phase::Generation;
-                    return budget;
-                }
+                self.front.add_seed(&mut self.particles, position, normal);
+                self.counts.seeds += 1;
+                self.phase = Phase::Generation;
+                return budget;
             }
         }
         budget
@@ -627,21 +623,17 @@ impl Sampler {
             && (self.pilot || (miss - 1.0).abs() > COUNT_TOLERANCE)
             && self.attempt < MAX_ATTEMPTS
             && count > 1
-            && !self.front.capped()
+            && !self.front.capped
         {
             self.packing *= count as f64 / self.expected_count();
             self.radius *= miss.sqrt();
-            if let Some(sizing) = &mut self.sizing {
-                sizing.scale(miss.sqrt());
-                self.radius = typical_radius(&self.survey, sizing, self.radius);
-            }
             self.pilot = false;
             return self.begin_attempt();
         }
-        if self.front.fates().added == 0 && !self.front.capped() {
+        if self.front.fates.added == 0 && !self.front.capped {
             self.finish(StopReason::OneParticle);
         } else if self.settings.relax_steps == 0 {
-            self.finish(if self.front.capped() { StopReason::Cap } else { StopReason::Complete });
+            self.finish(if self.front.capped { StopReason::Cap } else { StopReason::Complete });
         } else {
             self.phase = Phase::Relaxation;
             self.begin_relaxation();
@@ -649,7 +641,7 @@ impl Sampler {
     }
 
     fn begin_relaxation(&mut self) {
-        self.front.release();
+        self.front.grid.release();
         self.relaxation.begin(
             self.radius as f32,
             self.tolerance,
@@ -664,13 +656,6 @@ impl Sampler {
         self.stop_reason = Some(reason);
         self.phase = Phase::Done;
     }
-}
-
-/// The radius of which as many uniform particles would cover the surface as the `sizing` asks for; `other` where there is no
-/// surface.
-fn typical_radius(survey: &Survey, sizing: &Sizing, other: f64) -> f64 {
-    let radius = (survey.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
-    if radius > 0.0 && radius.is_finite() { radius } else { other }
 }
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;

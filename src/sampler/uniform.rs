@@ -70,15 +70,9 @@ pub struct FateCounts {
 }
 
 impl FateCounts {
-    pub(super) fn count(&mut self, fate: SlotFate) {
+    fn count(&mut self, fate: SlotFate) {
         if let Some(count) = self.of(fate) {
             *count += 1;
-        }
-    }
-
-    pub(super) fn uncount(&mut self, fate: SlotFate) {
-        if let Some(count) = self.of(fate) {
-            *count -= 1;
         }
     }
 
@@ -118,7 +112,7 @@ enum Stage {
 
 /// The advancing front.
 #[derive(Clone)]
-pub(super) struct UniformFront {
+pub(super) struct Front {
     radius: f32,
     match_radius: f32,
     tolerance: Tolerance,
@@ -161,7 +155,7 @@ struct Shape {
     c: f32,
 }
 
-impl UniformFront {
+impl Front {
     pub(super) fn new() -> Self {
         Self {
             radius: 1.0,
@@ -257,7 +251,9 @@ impl UniformFront {
             if self.found.len() > 1 {
                 self.grid.remove(self.seed_place);
                 for k in 0..6 {
-                    self.fates.uncount(particles.slots[last].get(k));
+                    if let Some(count) = self.fates.of(particles.slots[last].get(k)) {
+                        *count -= 1;
+                    }
                 }
                 particles.truncate(last);
                 self.seams.retain(|&i| (i as usize) < last);

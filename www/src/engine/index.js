@@ -282,6 +282,8 @@ export function createEngine({ canvasHost }) {
   }
   dark.addEventListener('change', showLook);
 
+  /** The camera shows the whole box, for want of a surface. */
+  let box_shown = false;
   const effects = [
     effect(() => {
       // The whole state is worth an address.
@@ -294,6 +296,16 @@ export function createEngine({ canvasHost }) {
     }),
     effect(() => {
       viewer.growing = store.busy.value;
+    }),
+    effect(() => {
+      // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
+      const [none, rests] = [store.empty.value, !store.busy.value && !store.progress.value.live];
+      if (!rests || none === box_shown) return;
+      box_shown = none;
+      queueMicrotask(() => {
+        showLook();
+        if (viewer.camera.state.fit) viewer.fit();
+      });
     }),
   ];
   function showLookLater() {
@@ -353,6 +365,12 @@ export function createEngine({ canvasHost }) {
       const { [name]: _, ...settings } = store.state.value.settings;
       change({ settings });
       resample(false);
+    },
+    restore(shape) {
+      const another = shape.surface !== store.state.value.surface;
+      change(shape);
+      showLook();
+      choose({ grow: another, fit: another });
     },
     run() {
       resample(false, { grow: true });

@@ -206,11 +206,11 @@ export class Viewer {
     this.invalidate();
   }
 
-  /** What a fit shows: the particles, else the clip box. */
+  /** What a fit shows: the particles, else the clip box, all of it where it is drawn. */
   ball() {
     const { columns } = this;
     const bounds = columns.bounds();
-    if (!bounds) return this.box_ball;
+    if (!bounds) return this.box ? this.scene : this.box_ball;
     const { centre } = ballOf(bounds);
     let far_sq = 0;
     for (let i = 0; i < columns.count; i += 1) {
