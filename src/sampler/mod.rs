@@ -7,11 +7,14 @@
 mod gaps;
 #[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod laws;
+mod octree;
 mod pairs;
 mod project;
 mod relax;
 mod search;
+mod seeds;
 mod settings;
+mod sheets;
 #[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod sizing;
 mod survey;
@@ -27,10 +30,12 @@ use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use gaps::{Gaps, Ground};
+use glam::Vec3;
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
 use relax::Relaxation;
+use seeds::{Place, Seeds};
 use serde::Serialize;
 use survey::{Absence, Survey, survey};
 use uniform::Front;
@@ -172,6 +177,8 @@ pub struct Sampler {
     phase: Phase,
     stop_reason: Option<StopReason>,
     survey: Survey,
+    /// First points that the survey may have missed.
+    seeds: Seeds,
     /// Next survey point to check for cover.
     next_seed: usize,
     /// Survey points in the order in which they are tried: this one first, the others in grid order.
@@ -214,6 +221,7 @@ impl Sampler {
             phase: Phase::Idle,
             stop_reason: None,
             survey: Survey::default(),
+            seeds: Seeds::default(),
             next_seed: 0,
             first_seed: 0,
             attempt: 0,
@@ -259,14 +267,14 @@ impl Sampler {
     /// Whether every connected piece is proven to have been found.
     #[must_use]
     pub fn search(&self) -> Search {
-        Search::Searched
+        self.seeds.verdict()
     }
 
     /// Cells of the box in which the proof could not decide whether a piece of its own begins there; `None` where no proof
     /// was attempted.
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
-        None
+        self.seeds.open_cells()
     }
 
     /// The settings of the run.
@@ -303,6 +311,10 @@ impl Sampler {
         self.pilot = false;
         self.factor = comfortable_factor(field, spread(bounds));
         self.survey = survey(&mut Scaled::new(field, self.factor), bounds, &mut self.projector);
+        self.seeds.begin(field, bounds);
+        if self.survey.position.is_empty() {
+            self.search_all(field);
+        }
         self.counts.seeding_evaluations = self.projector.evaluations;
 
         let area = self.survey.area;
@@ -354,6 +366,16 @@ impl Sampler {
         self.memory_limit = bytes;
     }
 
+    /// Finishes the search for first points at once, where the survey has found none: the area is that of spheres with the
+    /// curvature at those points.
+    fn search_all(&mut self, field: &mut dyn Field) {
+        let field = &mut Scaled::new(field, self.factor);
+        let tolerance = self.survey.tolerance();
+        while self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, u32::MAX) == 0 {}
+        let found = self.seeds.points().iter().copied();
+        self.survey.adopt(field, found, &self.bounds, self.seeds.verdict());
+    }
+
     /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
     /// of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
@@ -386,6 +408,7 @@ impl Sampler {
         self.counts.seeds = 0;
         self.counts.front_evaluations = 0;
         self.next_seed = 0;
+        self.seeds.restart();
         let candidates = self.survey.position.len() as u64;
         self.phase = Phase::Seeding;
         self.first_seed = if candidates == 0 {
@@ -566,14 +589,7 @@ impl Sampler {
         let count = self.survey.position.len();
         while budget > 0 {
             if self.next_seed >= count {
-                if self.settings.gaps == GapPolicy::Fill && !self.front.seams.is_empty() {
-                    self.gaps.begin(&mut self.front.seams);
-                    self.filling = true;
-                    self.phase = Phase::Generation;
-                } else {
-                    self.end_generation();
-                }
-                return budget;
+                return self.seed_witness(field, budget);
             }
             budget -= 1;
             let i = match self.next_seed {
@@ -591,18 +607,54 @@ impl Sampler {
                 if !is_zero {
                     continue;
                 }
-                if self.particles.len() >= self.settings.max_particles as usize {
-                    self.front.capped = true;
-                    self.end_generation();
-                    return budget;
-                }
-                self.front.add_seed(&mut self.particles, position, normal);
-                self.counts.seeds += 1;
-                self.phase = Phase::Generation;
+                self.begin_front(position, normal);
                 return budget;
             }
         }
         budget
+    }
+
+    /// Looks for the next witness that no particle covers and starts a front there; after the last the surface is covered.
+    fn seed_witness(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
+        budget = self.seeds.search(field, &mut self.projector, &self.bounds, self.tolerance, budget);
+        while budget > 0 {
+            let (witness, left) = self.seeds.next(budget);
+            budget = left;
+            let Some((position, normal)) = witness else {
+                if self.settings.gaps == GapPolicy::Fill && !self.front.seams.is_empty() {
+                    self.gaps.begin(&mut self.front.seams);
+                    self.filling = true;
+                    self.phase = Phase::Generation;
+                } else {
+                    self.end_generation();
+                }
+                return budget;
+            };
+            let mut near = self.seeds.take_near();
+            let clear = UNCOVERED * self.radius as f32;
+            self.front.near(&self.particles, position, normal, clear, &mut near);
+            let start = self.projector.evaluations;
+            let witness = (position, normal);
+            let place =
+                self.seeds.place(field, &mut self.projector, &self.particles, witness, near, self.tolerance);
+            self.counts.seeding_evaluations += self.projector.evaluations - start;
+            if place == Place::Bare {
+                self.begin_front(position, normal);
+                return budget;
+            }
+        }
+        budget
+    }
+
+    /// Starts a front, unless the limit on particles is reached.
+    fn begin_front(&mut self, position: Vec3, normal: Vec3) {
+        if self.particles.len() >= self.settings.max_particles as usize {
+            self.front.capped = true;
+            return self.end_generation();
+        }
+        self.front.add_seed(&mut self.particles, position, normal);
+        self.counts.seeds += 1;
+        self.phase = Phase::Generation;
     }
 
     /// Decides, once the surface is covered, whether the count is met, and goes on to the relaxation.

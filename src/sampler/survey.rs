@@ -1,6 +1,7 @@
 //! A first look at the field over the box: where the surface is (a first point on every component that a regular grid
 //! can see), how large it is, and how finely single precision resolves it.
 
+use super::Search;
 use super::project::{BATCH, Projector, Tolerance, tolerance};
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
@@ -17,8 +18,6 @@ const RESOLUTION_SAMPLES: usize = 48;
 const TOUCH_PROBE: f32 = 0.02;
 /// Distance, in tolerances of the survey, at which a zero is told from a pole.
 const POLE_PROBE: f32 = 4.0;
-/// Boxes looked at, at most, to prove that there is no surface.
-const MAX_PROOF_BOXES: usize = 20_000;
 
 /// Area that a place stands for where f does not change its sign.
 const NO_CROSSING: f32 = -1.0;
@@ -167,8 +166,6 @@ pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Pro
             Absence::Undefined
         } else if least == greatest {
             Absence::Constant
-        } else if proven_empty(field, bounds) {
-            Absence::Proven
         } else if areas.iter().any(|&area| area != NO_CROSSING) {
             Absence::NoZero
         } else {
@@ -233,6 +230,42 @@ fn project(
 }
 
 impl Survey {
+    /// What counts as being on the surface before there is a radius.
+    pub(super) fn tolerance(&self) -> Tolerance {
+        tolerance(0.0, self.residual.max(self.resolution), self.gradient_scale)
+    }
+
+    /// Takes over what another search has `found` where this one has found nothing, or its proof that there is nothing.
+    pub(super) fn adopt(
+        &mut self,
+        field: &mut dyn Field,
+        found: impl Iterator<Item = (Vec3, Vec3)>,
+        bounds: &Bounds,
+        search: Search,
+    ) {
+        let mut slopes = Vec::new();
+        for (position, normal) in found {
+            let jet = field.jet(position.as_dvec3());
+            slopes.push(jet.gradient.length() as f32);
+            // A sphere that bends as the surface does here has the area 4π/κ².
+            let size = jet.gradient.length_squared()
+                / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
+            let sphere = 4.0 * core::f64::consts::PI * size;
+            let most = bounds.diagonal() * bounds.diagonal();
+            self.area = self.area.max(if sphere < most { sphere } else { 0.0 });
+            self.position.push(position);
+            self.normal.push(normal);
+            self.weight.push(0.0);
+        }
+        sort_numbers(&mut slopes);
+        self.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(self.gradient_scale);
+        if !self.position.is_empty() {
+            self.absence = Absence::None;
+        } else if search == Search::Proven && matches!(self.absence, Absence::NoZero | Absence::NotSeen) {
+            self.absence = Absence::Proven;
+        }
+    }
+
     /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
     /// zero and falls away from a pole.
     pub(super) fn is_zero(&self, field: &mut dyn Field, projector: &mut Projector, i: usize) -> bool {
@@ -271,38 +304,4 @@ fn rounding(field: &mut dyn Field, projector: &mut Projector, points: &[Vec3]) -
         .collect();
     sort_numbers(&mut distance);
     2.0 * distance.get(distance.len() * 3 / 4).copied().unwrap_or(0.0)
-}
-
-/// Whether interval arithmetic shows that f has no zero in the box, by bisection down to a bounded number of boxes.
-fn proven_empty(field: &mut dyn Field, bounds: &Bounds) -> bool {
-    let mut boxes = vec![(bounds.lo(), bounds.hi())];
-    let mut seen = 0;
-    while let Some((lo, hi)) = boxes.pop() {
-        seen += 1;
-        if seen > MAX_PROOF_BOXES {
-            return false;
-        }
-        let range = field.interval(lo, hi);
-        if range.lo > 0.0 || range.hi < 0.0 {
-            continue;
-        }
-        let size = hi - lo;
-        let axis = if size.x >= size.y && size.x >= size.z {
-            0
-        } else if size.y >= size.z {
-            1
-        } else {
-            2
-        };
-        let middle = 0.5 * (lo[axis] + hi[axis]);
-        if size[axis] < 1e-3 * bounds.diagonal() {
-            return false;
-        }
-        let (mut lower_hi, mut upper_lo) = (hi, lo);
-        lower_hi[axis] = middle;
-        upper_lo[axis] = middle;
-        boxes.push((lo, lower_hi));
-        boxes.push((upper_lo, hi));
-    }
-    true
 }

@@ -16,7 +16,7 @@ use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
 use crate::field::Field;
-use crate::math::{Bounds, LANES, Lanes, tangent_frame};
+use crate::math::{Bounds, LANES, Lanes, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::spatial::{CellGrid, Neighbour, Place};
 use glam::Vec3;
@@ -240,6 +240,22 @@ impl Front {
     ) -> bool {
         self.grid.gather(position, distance, &mut self.found);
         self.found.iter().any(|near| particles.normal[near.index as usize].dot(normal) > 0.0)
+    }
+
+    /// Particles within `distance` of `position` whose normals are within 90° of `normal`, nearest first, in `near`.
+    pub(super) fn near(
+        &mut self,
+        particles: &Particles,
+        position: Vec3,
+        normal: Vec3,
+        distance: f32,
+        near: &mut Vec<u32>,
+    ) {
+        self.grid.gather(position, distance, &mut self.found);
+        self.found.retain(|found| particles.normal[found.index as usize].dot(normal) > 0.0);
+        sort_few(&mut self.found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
+        near.clear();
+        near.extend(self.found.iter().map(|found| found.index));
     }
 
     /// Takes the last seed back if it stayed alone and any other particle, of whatever sheet, is within 2r: a lone

@@ -1,0 +1,183 @@
+//! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
+
+use super::octree::Octree;
+use super::project::{BATCH, Projector, Tolerance};
+use super::search::Search;
+use super::sheets::{are_connected, is_one_sheet, lift, middle};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::particles::Particles;
+use glam::Vec3;
+
+/// Units of work that a witness is charged for.
+const UNITS: u32 = 16;
+/// Particles that a witness is tried to be connected with.
+const MOST_TRIED: usize = 6;
+/// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
+const MAX_STEPS: u32 = 12;
+/// Witnesses outside the box are moved this much farther in than they are out, in margins of the search.
+const INWARD: f64 = 2.0;
+
+/// What is left to be tried as the beginning of a front when the points of the survey are covered.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seeds {
+    octree: Octree,
+    /// Witnesses on the surface as single precision sees it, with their normals.
+    points: Vec<(Vec3, Vec3)>,
+    is_projected: bool,
+    next: usize,
+    /// Witnesses of which it is not proven that they lie on the piece of the particles around them.
+    unproven: u64,
+    /// Witnesses that single precision does not find. Those in the margin outside the box are not missed.
+    lost: u64,
+    near: Vec<u32>,
+}
+
+/// Where a witness lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// On a piece that has particles near it.
+    Covered,
+    /// Where a front has to start.
+    Bare,
+}
+
+impl Seeds {
+    /// Forgets an earlier field.
+    pub(super) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+        self.octree.begin(field, bounds);
+        self.points.clear();
+        self.lost = 0;
+        self.is_projected = false;
+        self.restart();
+    }
+
+    /// Begins again with the first witness.
+    pub(super) fn restart(&mut self) {
+        self.next = 0;
+        self.unproven = 0;
+    }
+
+    /// Does up to `budget` units of the search; returns what is left, nothing unless the search has come to its end.
+    pub(super) fn search(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        bounds: &Bounds,
+        tolerance: Tolerance,
+        budget: u32,
+    ) -> u32 {
+        let left = self.octree.step(field, budget);
+        if self.octree.is_done() && !self.is_projected {
+            self.is_projected = true;
+            self.project(field, projector, bounds, tolerance);
+        }
+        if self.octree.is_done() { left } else { 0 }
+    }
+
+    /// Brings the witnesses onto the surface as single precision sees it, and into the box.
+    fn project(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        bounds: &Bounds,
+        tolerance: Tolerance,
+    ) {
+        let margin = self.octree.margin();
+        let inner = |p: glam::DVec3| {
+            let inward = glam::DVec3::splat(INWARD * margin);
+            let clamped = p.clamp(bounds.lo(), bounds.hi());
+            if clamped == p { p } else { p.clamp(bounds.lo() + inward, bounds.hi() - inward) }
+        };
+        let mut normal = [Vec3::ZERO; BATCH];
+        let mut ok = [false; BATCH];
+        for chunk in self.octree.witnesses.chunks(BATCH) {
+            let mut points: Vec<Vec3> = chunk.iter().map(|&p| inner(p).as_vec3()).collect();
+            let reach = (16.0 * margin) as f32 + 16.0 * tolerance.residual;
+            projector.land_along_gradient(
+                field,
+                &mut points,
+                &mut normal,
+                &mut ok,
+                tolerance,
+                reach,
+                0.0,
+                MAX_STEPS,
+            );
+            for (k, &p) in points.iter().enumerate() {
+                if ok[k] && bounds.contains(p) {
+                    self.points.push((p, normal[k]));
+                } else if !ok[k] || chunk[k] == inner(chunk[k]) {
+                    self.lost += 1;
+                }
+            }
+        }
+    }
+
+    /// The next witness, if there is one, and what is left of the budget.
+    pub(super) fn next(&mut self, budget: u32) -> (Option<(Vec3, Vec3)>, u32) {
+        let witness = self.points.get(self.next).copied();
+        self.next += 1;
+        (witness, budget.saturating_sub(UNITS))
+    }
+
+    /// All witnesses.
+    pub(super) fn points(&self) -> &[(Vec3, Vec3)] {
+        &self.points
+    }
+
+    /// Room for the particles near a witness.
+    pub(super) fn take_near(&mut self) -> Vec<u32> {
+        core::mem::take(&mut self.near)
+    }
+
+    /// Whether the witness at `position` lies on the piece of one of the particles `near` it, the nearest first. By proof; or,
+    /// where the bounds are too wide for one, by the field at a point between the two, which is counted.
+    pub(super) fn place(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        (position, normal): (Vec3, Vec3),
+        near: Vec<u32>,
+        tolerance: Tolerance,
+    ) -> Place {
+        let slack = f64::from(2.0 * tolerance.residual);
+        let (from, along) = (position.as_dvec3(), normal.as_dvec3());
+        let mut place = Place::Bare;
+        if near
+            .iter()
+            .take(MOST_TRIED)
+            .any(|&j| are_connected(field, from, particles.position[j as usize].as_dvec3(), along, slack))
+        {
+            place = Place::Covered;
+        } else if near.iter().take(MOST_TRIED).any(|&j| {
+            let j = j as usize;
+            let (offset, other) = (particles.position[j] - position, particles.normal[j]);
+            let between = middle(position, offset, normal, other);
+            let (value, gradient) = projector.evaluate(field, between);
+            is_one_sheet(value, gradient, normal + other, offset.length(), lift(offset, normal, other))
+        }) {
+            self.unproven += 1;
+            place = Place::Covered;
+        }
+        self.near = near;
+        place
+    }
+
+    /// Whether every piece is proven to have been found.
+    pub(super) fn verdict(&self) -> Search {
+        if self.octree.is_available() && self.octree.is_done() && self.open_cells() == Some(0) {
+            Search::Proven
+        } else {
+            Search::Searched
+        }
+    }
+
+    /// Cells left undecided, and those whose witness was lost or not proven to be on the piece it was taken for; none without
+    /// a search.
+    pub(super) fn open_cells(&self) -> Option<u64> {
+        (self.octree.is_available() && self.octree.is_done())
+            .then_some(self.octree.undecided.len() as u64 + self.unproven + self.lost)
+    }
+}

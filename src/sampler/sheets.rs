@@ -1,0 +1,122 @@
+//! Whether two points of the surface lie on one sheet of it, or on two that only come near each other.
+//!
+//! Between two sheets with like normals there is always one with the opposite normal. On one sheet the chord rises from
+//! one end's tangent plane as much as it sinks below the other's, up to the change of the curvature: the *lift*, half the sum
+//! of the two, is of third order in the distance. Between sheets at a distance g it is about g.
+
+use crate::field::{Enclosure, Field};
+use glam::{DVec3, Vec3};
+
+/// Half the sum of what the chord rises from the tangent plane at its beginning and at its end.
+#[inline(always)]
+pub(super) fn lift(offset: Vec3, normal: Vec3, other: Vec3) -> f32 {
+    (0.5 * offset.dot(normal + other)).abs()
+}
+
+/// The middle of the cubic curve that leaves `position` and arrives at `offset` from it in the tangent planes there: on one
+/// sheet it misses the surface by the fourth order of the distance.
+pub(super) fn middle(position: Vec3, offset: Vec3, normal: Vec3, other: Vec3) -> Vec3 {
+    let length = offset.length();
+    let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
+    position + offset * 0.5 + (along(normal) - along(other)) * 0.125
+}
+
+/// Whether the field at the [`middle`] is that of one sheet with both ends: the surface is far nearer than half the lift, and
+/// faces the same way. Between two sheets the middle is half the lift away from both, and beyond the third sheet.
+pub(super) fn is_one_sheet(value: f32, gradient: Vec3, normals: Vec3, length: f32, lift: f32) -> bool {
+    /// Least share of the length that the lift is taken for.
+    const ROUNDING: f32 = 0.02;
+    let slope = gradient.length();
+    gradient.dot(normals) > 0.0 && value.abs() <= 0.25 * lift.max(ROUNDING * length) * slope
+}
+
+/// Whether the bounds of the gradient prove that the surface connects `a` and `b`, points of it with about the unit normal
+/// `normal`; `slack` is how far they may be from it.
+///
+/// The proof is that of the [octree](super::octree) on a box around both: f is monotone along the axis of the normal, and the
+/// surface through `a` cannot leave the box over the rectangle between the two, so that it is the graph of a function there,
+/// which meets the line through `b` in one point. Where one box is too large for that, the way is cut into pieces.
+pub(super) fn are_connected(field: &mut dyn Field, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
+    /// Pieces tried.
+    const PIECES: [u32; 3] = [1, 4, 16];
+    PIECES.into_iter().any(|pieces| {
+        let mut from = a;
+        let mut along = normal;
+        (1..=pieces).all(|k| {
+            let (to, normal) = if k == pieces {
+                (b, along)
+            } else {
+                let share = f64::from(k) / f64::from(pieces);
+                match land(field, a + (b - a) * share) {
+                    Some(landing) => landing,
+                    None => return false,
+                }
+            };
+            let connected = is_graph(field, from, to, along, slack);
+            (from, along) = (to, normal);
+            connected
+        })
+    })
+}
+
+/// The surface near `p` by Newton's method along the gradient, and the unit normal there.
+fn land(field: &mut dyn Field, mut p: DVec3) -> Option<(DVec3, DVec3)> {
+    const STEPS: u32 = 8;
+    for _ in 0..STEPS {
+        let jet = field.jet(p);
+        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        if !step.is_finite() {
+            return None;
+        }
+        p -= step;
+        if step.length_squared() <= 1e-24 * p.length_squared() {
+            return jet.gradient.try_normalize().map(|normal| (p, normal));
+        }
+    }
+    None
+}
+
+/// The box of one piece, its upward axis and how far it reaches beyond the ends along that.
+fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
+    let size = normal.abs();
+    let up = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    let (mut lo, mut hi) = (a.min(b), a.max(b));
+    let reach = (b - a).abs();
+    let slope: f64 = (0..3).filter(|&axis| axis != up).map(|axis| size[axis] / size[up] * reach[axis]).sum();
+    let room = 1.5 * slope + 0.25 * reach.max_element() + 8.0 * slack;
+    lo[up] -= room;
+    hi[up] += room;
+    ([lo, hi], up, room)
+}
+
+fn is_graph(field: &mut dyn Field, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
+    let (around, up, room) = graph_box(a, b, normal, slack);
+    let mut known = [Enclosure::UNKNOWN];
+    field.enclose(&[around], &mut known);
+    // Ends that are not quite on the surface have it within 2 slacks above or below.
+    proves_graph(&known[0], around, up, room - 4.0 * slack)
+        && [a, b].iter().all(|&p| {
+            let least = known[0].gradient[up][0].abs().min(known[0].gradient[up][1].abs());
+            field.jet(p).value.abs() <= 2.0 * slack * least
+        })
+}
+
+/// Whether the surface through any point of a box, `room` away from its lower and upper face, is a graph over all of it.
+fn proves_graph(known: &Enclosure, [lo, hi]: [DVec3; 2], up: usize, room: f64) -> bool {
+    let [least, most] = known.gradient[up];
+    if !(known.defined && known.continuous) || least <= 0.0 && most >= 0.0 {
+        return false;
+    }
+    let least = least.abs().min(most.abs());
+    let t: f64 = (0..3)
+        .filter(|&axis| axis != up)
+        .map(|axis| known.gradient[axis][1].max(-known.gradient[axis][0]) / least * (hi[axis] - lo[axis]))
+        .sum();
+    t <= room
+}
