@@ -203,11 +203,30 @@ fn unwritable_file_is_named() {
 }
 
 #[test]
+fn models_from_points_are_sampled_by_name() {
+    let text = stdout(&run(&["sample", "--surface", "bunny", "--radius", "2%", "--relax", "0"]));
+    assert!(text.starts_with("bunny: Stanford bunny, Stanford Computer Graphics Laboratory\n"), "{text}");
+    let json = run(&["sample", "--surface", "bunny-joined", "--radius", "0.6%", "--json"]);
+    let json: Value = serde_json::from_str(&stdout(&json)).expect("a line of JSON");
+    assert_eq!(
+        (json["surface"].as_str(), json["model"]["centres"].as_u64()),
+        (Some("bunny-joined"), Some(200))
+    );
+    assert_eq!(json["quality"]["euler"], 0);
+    for more in [["--formula", "x = 0"], ["--param", "a=1"]] {
+        let message = fails(2, &["sample", "--surface", "bunny", more[0], more[1]]);
+        assert!(message.contains("made of points"), "{message}");
+    }
+}
+
+#[test]
 fn surfaces_lists_the_gallery() {
     let text = stdout(&run(&["surfaces"]));
     let json: Value = serde_json::from_str(&stdout(&run(&["surfaces", "--json"]))).expect("a line of JSON");
     let surfaces = json.as_array().expect("a list");
-    assert_eq!(surfaces.len(), marching_particles::field::gallery::SURFACES.len());
+    let named =
+        marching_particles::field::gallery::SURFACES.len() + marching_particles::field::model::MODELS.len();
+    assert_eq!(surfaces.len(), named);
     for surface in surfaces {
         let id = surface["id"].as_str().expect("an identifier");
         assert!(text.lines().any(|line| line.starts_with(&format!("{id}  "))), "no {id}");

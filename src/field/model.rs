@@ -54,6 +54,7 @@ pub struct Model {
     pub points: u32,
 }
 
+/// To be named wherever the bunny is shown, by the terms of its scan.
 const STANFORD: &str = "Stanford Computer Graphics Laboratory";
 
 /// The built-in models.
@@ -61,18 +62,34 @@ pub static MODELS: &[Model] = &[
     Model {
         id: "bunny",
         name: "Stanford bunny",
-        story: "A clay rabbit scanned at Stanford in 1994, here from 200 points with normals. The paper's model of the \
-                same name has 200 points, too.",
+        story: "A clay rabbit that Greg Turk and Marc Levoy scanned at Stanford in 1994, rebuilt here from 200 points with \
+                normals. The model of the same name in the paper has as many.",
         credit: STANFORD,
         points: 200,
     },
     Model {
         id: "bunny-joined",
         name: "Bunny with joined ears",
-        story: "The bunny without its points between the ears: nothing keeps them apart there, and they grow together \
-                to a handle, as in figure 9 of the paper. It takes no change of the method to sample it.",
+        story: "The bunny from 200 points of which none lies between the ears: nothing keeps them apart there, they grow \
+                together, and the surface gets a handle. The paper's figure 9 shows the same.",
         credit: STANFORD,
-        points: 190,
+        points: 200,
+    },
+    Model {
+        id: "rabbit",
+        name: "Sitting rabbit",
+        story: "200 points of a rabbit made of twelve ellipsoids that blend into each other. It stands in for the paper's \
+                rabbit, whose points are not public.",
+        credit: "",
+        points: 200,
+    },
+    Model {
+        id: "sack-and-hat",
+        name: "Figure with sack and hat",
+        story: "200 points of a figure made of fifteen ellipsoids that blend into each other: folds, a bobble and a sack on \
+                the back. It stands in for the paper's Santa, whose points are not public.",
+        credit: "",
+        points: 200,
     },
 ];
 

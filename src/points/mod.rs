@@ -5,8 +5,11 @@
 //! the page solves in a module and a worker of its own.
 
 mod eigen;
+pub mod fit;
+pub mod models;
 pub mod normals;
 pub mod read;
+mod solve;
 mod table;
 pub mod thin;
 

@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
+use marching_particles::field::model::{self, Model, ModelInfo};
 use marching_particles::math::Bounds;
+use marching_particles::points::models;
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason,
 };
@@ -41,7 +43,9 @@ pub(crate) struct Seconds {
 #[derive(Debug, Serialize)]
 pub(crate) struct Outcome {
     pub(crate) version: &'static str,
-    pub(crate) surface: Option<&'static str>,
+    pub(crate) surface: Option<String>,
+    /// For a model from points.
+    pub(crate) model: Option<ModelInfo>,
     pub(crate) formula: String,
     pub(crate) parameters: BTreeMap<String, f64>,
     pub(crate) bounds: Bounds,
@@ -98,7 +102,12 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let capped = report.stop_reason == Some(StopReason::Cap);
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
-        surface: answer.surface,
+        surface: arguments
+            .surface
+            .clone()
+            .filter(|_| answer.model.is_some())
+            .or(answer.surface.map(str::to_owned)),
+        model: answer.model,
         formula: answer.formula,
         parameters: answer.parameters.into_iter().map(|p| (p.name, p.value)).collect(),
         bounds: answer.bounds,
@@ -145,6 +154,9 @@ fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
 }
 
 fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, Failure> {
+    if let Some(model) = arguments.surface.as_deref().and_then(model::find) {
+        return set_model(session, model, arguments);
+    }
     let of_surface = arguments.surface.as_deref().and_then(gallery::find);
     // A formula of one's own is not the default surface's: neither are its parameters and its box.
     let declare = match of_surface {
@@ -178,8 +190,23 @@ fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, F
     Ok(answer)
 }
 
+/// A built-in model, which has neither formula nor parameters.
+fn set_model(session: &mut Session, model: &Model, arguments: &Sample) -> Result<FieldAnswer, Failure> {
+    if arguments.formula.is_some() || !arguments.parameters.is_empty() {
+        let id = model.id;
+        return Err(Failure::Usage(format!(
+            "the model `{id}` is made of points: it has no formula and no parameters"
+        )));
+    }
+    let fit = models::begin(model).finish().map_err(|error| Failure::Usage(error.to_string()))?;
+    session
+        .set_points(fit.data, fit.info, arguments.bounds.unwrap_or(fit.bounds))
+        .map_err(|error| Failure::Usage(error.to_string()))
+}
+
 fn unknown_surface(id: &str) -> String {
-    let known: Vec<&str> = gallery::SURFACES.iter().map(|surface| surface.id).collect();
+    let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
+    let known: Vec<&str> = surfaces.chain(model::MODELS.iter().map(|model| model.id)).collect();
     format!("there is no surface `{id}`; known are {}", known.join(", "))
 }
 

@@ -12,8 +12,19 @@ const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
-    let title = outcome.surface.unwrap_or("formula");
-    writeln!(out, "{title}: {}", outcome.formula)?;
+    let title = outcome.surface.as_deref().unwrap_or("formula");
+    match &outcome.model {
+        None => writeln!(out, "{title}: {}", outcome.formula)?,
+        Some(model) => {
+            let credit = if model.credit.is_empty() { "" } else { ", " };
+            writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
+            writeln!(
+                out,
+                "{} points through {} centres, condition {:.0e}, residual mean {:.1e} and max {:.1e} of the diagonal",
+                model.points, model.centres, model.condition, model.residual_mean, model.residual_max
+            )?;
+        }
+    }
     if !outcome.parameters.is_empty() {
         let values: Vec<String> =
             outcome.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();

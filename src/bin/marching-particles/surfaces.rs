@@ -1,4 +1,4 @@
-//! `surfaces`: the gallery.
+//! `surfaces`: the gallery and the models from points.
 
 use crate::arguments::Surfaces;
 use crate::failure::Failure;
@@ -7,14 +7,25 @@ use std::io::Write;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
-    let surfaces = describe().surfaces;
+    let description = describe();
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        writeln!(out, "{}", serde_json::to_string(&surfaces).map_err(std::io::Error::other)?)?;
+        let mut all = Vec::new();
+        for surface in &description.surfaces {
+            all.push(serde_json::to_value(surface).map_err(std::io::Error::other)?);
+        }
+        for model in &description.models {
+            all.push(serde_json::to_value(model).map_err(std::io::Error::other)?);
+        }
+        writeln!(out, "{}", serde_json::Value::from(all))?;
         return Ok(ExitCode::SUCCESS);
     }
-    for surface in &surfaces {
+    for surface in &description.surfaces {
         write_entry(&mut out, surface)?;
+    }
+    for model in &description.models {
+        let credit = if model.credit.is_empty() { "" } else { ", " };
+        writeln!(out, "{}  {}{credit}{} ({} points)", model.id, model.name, model.credit, model.points)?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,8 +1,8 @@
 //! The field in single precision: SIMD lanes over points, one centre at a time broadcast to all of them.
 
-use super::RbfData;
+use super::{Frame, RbfData};
 use crate::math::{LANES, Lanes, Sym3};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Centres per tile: 16 kB, half of a small first-level cache.
 const TILE: usize = 512;
@@ -10,7 +10,7 @@ const TILE: usize = 512;
 /// the reciprocal overflows.
 const LEAST_DISTANCE: f32 = 1e-12;
 
-/// A centre with its coefficients, ready for the sums.
+/// A centre with its coefficients in local coordinates, ready for the sums.
 #[derive(Clone, Copy, Debug)]
 struct Centre {
     place: [f32; 3],
@@ -26,19 +26,27 @@ struct Centre {
 #[derive(Clone, Debug)]
 pub(super) struct Single {
     centres: Vec<Centre>,
+    origin: [f32; 3],
+    scale: f32,
 }
 
 impl Single {
     pub(super) fn new(data: &RbfData) -> Self {
+        let frame = Frame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
+        let scale = frame.scale();
         let centres = (0..data.centres.len())
-            .map(|j| Centre {
-                place: data.centres[j].map(|x| x as f32),
-                alpha: data.alpha[j] as f32,
-                beta: data.beta[j].map(|b| (3.0 * b) as f32),
-                alpha3: (3.0 * data.alpha[j]) as f32,
+            .map(|j| {
+                // f(x) = g(s (x − o))/s, as in `points::fit`.
+                let alpha = data.alpha[j] / (scale * scale);
+                Centre {
+                    place: frame.local(DVec3::from_array(data.centres[j])).as_vec3().to_array(),
+                    alpha: alpha as f32,
+                    beta: data.beta[j].map(|b| (3.0 * b / scale) as f32),
+                    alpha3: (3.0 * alpha) as f32,
+                }
             })
             .collect();
-        Self { centres }
+        Self { centres, origin: frame.origin().as_vec3().to_array(), scale: scale as f32 }
     }
 
     pub(super) fn values(&self, points: &[Vec3], value: &mut [f32]) {
@@ -79,18 +87,34 @@ impl Single {
     }
 
     /// The sums over all centres at up to [`LANES`] points: 1 (f), 4 (and ∇f) or 10 (and ∇∇f: xx, xy, xz, yy, yz, zz).
-    #[inline(always)]
     fn sums<const N: usize>(&self, points: &[Vec3]) -> [Lanes; N] {
-        let last = points.len() - 1;
-        let [x, y, z] = [0, 1, 2].map(|axis| Lanes(core::array::from_fn(|k| points[k.min(last)][axis])));
+        let (scale, last) = (Lanes::splat(self.scale), points.len() - 1);
+        let place = [0, 1, 2].map(|axis| {
+            let lanes = Lanes(core::array::from_fn(|k| points[k.min(last)][axis]));
+            (lanes - Lanes::splat(self.origin[axis])) * scale
+        });
         let mut sums = [Lanes::splat(0.0); N];
         for tile in self.centres.chunks(TILE) {
-            for centre in tile {
-                add(&mut sums, centre, [x, y, z]);
-            }
+            add_all(&mut sums, tile, &place);
+        }
+        // Gradients are those of the model; values and second derivatives have units.
+        sums[0] = sums[0] * Lanes::splat(1.0 / self.scale);
+        for second in sums.iter_mut().skip(4) {
+            *second = *second * scale;
         }
         sums
     }
+}
+
+/// Adds all the centres' terms. Not inlined: only where lanes go in and out by memory does the compiler keep each of
+/// them in registers of its own.
+#[inline(never)]
+fn add_all<const N: usize>(sums: &mut [Lanes; N], centres: &[Centre], place: &[Lanes; 3]) {
+    let mut local = *sums;
+    for centre in centres {
+        add(&mut local, centre, *place);
+    }
+    *sums = local;
 }
 
 /// Adds one centre's terms.

@@ -5,9 +5,11 @@
 //! models (§6) are fields of this kind.
 
 mod data;
+mod frame;
 mod kernel;
 
 pub use data::{DataError, RbfData};
+pub use frame::Frame;
 
 use super::{Field, Interval, Jet};
 use crate::math::Sym3;

@@ -11,10 +11,9 @@ const STAY_MS = 6000;
 /**
  * @param {HTMLElement} host
  * @param {import('../engine/types.js').Engine} engine
- * @param {(notice: Notice) => boolean} isTold whether another place of the page already says it
  * @returns {Toast}
  */
-export function mountToasts(host, engine, isTold) {
+export function mountToasts(host, engine) {
   host.setAttribute('role', 'status');
   host.setAttribute('aria-live', 'polite');
   /** @type {Map<string, { element: HTMLElement, timer: number }>} */
@@ -57,9 +56,7 @@ export function mountToasts(host, engine, isTold) {
 
   effect(() => {
     const notice = engine.notice.value;
-    if (!notice) return;
-    if (isTold(notice)) queueMicrotask(() => engine.dismissNotice());
-    else toast(notice);
+    if (notice) toast(notice);
   });
   return toast;
 }

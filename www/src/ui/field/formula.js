@@ -120,8 +120,7 @@ export function createFormula(engine, description) {
   }).observe(preview);
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
-    if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
-    else editor.focus();
+    editor.focus();
   });
 
   const help = h('button', { type: 'button', class: 'button plain small', on: { click: () => openFunctions(description, (name) => insert(name)) } }, 'Functions');
@@ -131,7 +130,7 @@ export function createFormula(engine, description) {
     editor.replace(Math.min(anchor, head), Math.max(anchor, head), `${name}(`);
     editor.focus();
   }
-  const section = h(
+  return h(
     'div',
     { class: 'section formula' },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
@@ -139,6 +138,5 @@ export function createFormula(engine, description) {
     error,
     preview,
   );
-  effect(() => { section.hidden = engine.field.value?.kind === 'points'; });
-  return section;
 }
+

@@ -1,0 +1,96 @@
+//! The built-in models: 200 points each, as many as the paper's have (§6), in a few kilobytes.
+//!
+//! A file of `data` holds the smallest corner and the side of a cube as four little-endian floats, then five whole numbers
+//! of 16 bits per point: the position in the cube and the normal, folded onto an octahedron (Meyer et al. 2010).
+//! `tests/models.rs` makes the files and says where the points come from.
+
+use super::fit::Fitter;
+use super::{Cloud, ModelInfo, NormalSource};
+use crate::field::model::Model;
+use glam::{DVec2, DVec3};
+
+/// Largest of the whole numbers.
+const STEPS: f64 = 65_535.0;
+/// Floats before the points.
+const HEAD: usize = 4;
+/// Whole numbers per point.
+const NUMBERS: usize = 5;
+
+/// The points of the built-in model with this identifier.
+#[must_use]
+pub fn cloud(id: &str) -> Option<Cloud> {
+    let (bytes, source): (&[u8], _) = match id {
+        "bunny" => (include_bytes!("data/bunny.bin"), NormalSource::FromMesh),
+        "bunny-joined" => (include_bytes!("data/bunny-joined.bin"), NormalSource::FromMesh),
+        "rabbit" => (include_bytes!("data/rabbit.bin"), NormalSource::Given),
+        "sack-and-hat" => (include_bytes!("data/sack-and-hat.bin"), NormalSource::Given),
+        _ => return None,
+    };
+    Some(Cloud { source, ..decode(bytes) })
+}
+
+/// Begins the field of a built-in model.
+///
+/// # Panics
+///
+/// Never: a test begins every model.
+#[must_use]
+pub fn begin(model: &Model) -> Fitter {
+    let points = cloud(model.id).unwrap_or_default();
+    let given = points.position.clone();
+    let info = ModelInfo { name: model.name.into(), credit: model.credit.into(), ..ModelInfo::default() };
+    Fitter::new(&points, given, info).unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
+}
+
+/// Reads a data file.
+fn decode(bytes: &[u8]) -> Cloud {
+    let (head, points) = bytes.split_at(HEAD * size_of::<f32>());
+    let head = head.as_chunks().0;
+    let [x, y, z, side] = core::array::from_fn(|k| f64::from(f32::from_le_bytes(head[k])));
+    let mut cloud = Cloud::default();
+    for numbers in points.as_chunks().0.as_chunks::<NUMBERS>().0 {
+        let [i, j, k, u, v] = numbers.map(|bytes| f64::from(u16::from_le_bytes(bytes)) / STEPS);
+        cloud.position.push(DVec3::new(x, y, z) + DVec3::new(i, j, k) * side);
+        cloud.normal.push(unfold(2.0 * DVec2::new(u, v) - 1.0));
+    }
+    cloud
+}
+
+/// Writes a data file: what [`cloud`] reads, up to rounding.
+///
+/// # Panics
+///
+/// If there is no point.
+#[must_use]
+pub fn encode(cloud: &Cloud) -> Vec<u8> {
+    assert!(!cloud.is_empty(), "a model has points");
+    let lo = cloud.position.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let hi = cloud.position.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let side = f64::from((hi - lo).max_element() as f32);
+    let mut bytes: Vec<u8> =
+        [lo.x, lo.y, lo.z, side].iter().flat_map(|&x| (x as f32).to_le_bytes()).collect();
+    let lo = lo.as_vec3().as_dvec3();
+    for (&p, &n) in cloud.position.iter().zip(&cloud.normal) {
+        let (p, n) = ((p - lo) / side, 0.5 * fold(n) + 0.5);
+        let numbers = [p.x, p.y, p.z, n.x, n.y].map(|x| (x * STEPS).round() as u16);
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    }
+    bytes
+}
+
+/// A direction on the square −1 … 1: the upper half of the octahedron |x| + |y| + |z| = 1 seen from above, the lower half
+/// folded out over its edges.
+fn fold(n: DVec3) -> DVec2 {
+    let flat = n.truncate() / (n.x.abs() + n.y.abs() + n.z.abs());
+    if n.z < 0.0 { over_the_edge(flat) } else { flat }
+}
+
+fn unfold(flat: DVec2) -> DVec3 {
+    let z = 1.0 - flat.x.abs() - flat.y.abs();
+    let flat = if z < 0.0 { over_the_edge(flat) } else { flat };
+    flat.extend(z).normalize_or(DVec3::Z)
+}
+
+fn over_the_edge(flat: DVec2) -> DVec2 {
+    (1.0 - DVec2::new(flat.y, flat.x).abs()) * DVec2::new(1.0_f64.copysign(flat.x), 1.0_f64.copysign(flat.y))
+}
