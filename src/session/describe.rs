@@ -545,6 +545,24 @@ const COLOURS: &[Colour] = &[
         help: "Distance to the nearest particle over 2r.",
         unit: "× 2r",
     },
+    Colour {
+        id: "radius",
+        label: "Radius",
+        help: "Repulsion radius, from the smallest particle to the largest.",
+        unit: "",
+    },
+    Colour {
+        id: "curvature",
+        label: "Mean curvature",
+        help: "(κ₁ + κ₂)/2: orange where the surface bulges outward as a sphere does, blue where it is hollow, grey where it is flat or bends both ways alike.",
+        unit: "1/length",
+    },
+    Colour {
+        id: "component",
+        label: "Connected piece",
+        help: "Pieces of the mesh of natural neighbours, the largest first; the colours repeat every twelve.",
+        unit: "",
+    },
     Colour { id: "normal", label: "Normal", help: "Direction of the outward normal.", unit: "" },
     Colour { id: "plain", label: "Plain", help: "One colour.", unit: "" },
 ];

@@ -7,6 +7,7 @@ pub use describe::{
     Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
 };
 
+use crate::differential::{self, Curvature};
 use crate::field::Field;
 use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, Parameter};
 use crate::field::gallery::{self, Surface};
@@ -53,6 +54,15 @@ pub enum FieldKind {
     Formula,
     /// Points with normals.
     Points,
+}
+
+/// What is asked of a model from points beside its function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PointsRequest {
+    /// What is known of the model.
+    pub info: ModelInfo,
+    /// Clip box.
+    pub bounds: Bounds,
 }
 
 /// The field as it now is.
@@ -388,6 +398,15 @@ impl Session {
     fn remember(&mut self, progress: Progress) -> Progress {
         self.last = Some(progress.clone());
         progress
+    }
+
+    /// Principal curvatures (κ₁, κ₂) at the particles from `from` on, worked out now; NaN where the surface has none.
+    pub fn curvatures(&mut self, from: usize) -> Vec<[f32; 2]> {
+        let count = self.count();
+        let positions = &self.sampler.particles().position[from.min(count)..count];
+        let mut curvatures = vec![Curvature::default(); positions.len()];
+        differential::curvatures(self.source.field(), positions, &mut curvatures);
+        curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
     /// Measures the particles: a few microseconds each. Call it when the run has ended.

@@ -1,9 +1,10 @@
 //! The core bundle: a [`Session`] behind JSON strings and copies of the particle columns.
 
 use crate::field::formula::{FormulaError, FormulaErrorKind};
+use crate::field::rbf::RbfData;
 use crate::json;
 use crate::sampler::Settings;
-use crate::session::{FieldError, FieldRequest, Session, describe};
+use crate::session::{FieldError, FieldRequest, PointsRequest, Session, describe};
 use glam::Vec3;
 use serde::Serialize;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -93,6 +94,23 @@ impl Core {
         self.session.limit_memory(megabytes << 20);
     }
 
+    /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says of
+    /// it with the clip box, `{info, bounds}`; to `FieldAnswer`. After an error the last good field stays.
+    pub fn set_points(&mut self, system: &[u8], about: &str) -> String {
+        let about: PointsRequest = match json::from_str(about) {
+            Ok(about) => about,
+            Err(error) => return refusal("request", &error.to_string()),
+        };
+        let answer = RbfData::from_bytes(system)
+            .map_err(FieldError::from)
+            .and_then(|data| self.session.set_points(data, about.info, about.bounds));
+        match answer {
+            Ok(answer) => accepted(&answer),
+            Err(error @ FieldError::Box) => refusal("box", &error.to_string()),
+            Err(error) => refusal("points", &error.to_string()),
+        }
+    }
+
     /// Starts a run: `Settings`, of which what is missing has its default.
     pub fn start(&mut self, settings: &str) -> String {
         let settings: Settings = match json::from_str(settings) {
@@ -174,6 +192,16 @@ impl Core {
     /// |f|/|∇f| per particle, as of the last report.
     pub fn residual(&self) -> Vec<f32> {
         self.session.measured().residual.clone()
+    }
+
+    /// Connected piece per particle, 0 the largest, as of the last report; 0xffffffff for none.
+    pub fn component(&self) -> Vec<u32> {
+        self.session.measured().component.clone()
+    }
+
+    /// Principal curvatures of particles from `from` on, two each, worked out now.
+    pub fn curvature(&mut self, from: usize) -> Vec<f32> {
+        self.session.curvatures(from).into_flattened()
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

@@ -9,6 +9,7 @@ declare module '*/wasm/core/core.js' {
   export class Core {
     describe(): string;
     set_field(json: string): string;
+    set_points(system: Uint8Array, about: string): string;
     start(json: string): string;
     step(budget: number): string;
     relax(steps: number): string;
@@ -25,6 +26,8 @@ declare module '*/wasm/core/core.js' {
     valence(): Uint8Array<ArrayBuffer>;
     nearest(): Float32Array<ArrayBuffer>;
     residual(): Float32Array<ArrayBuffer>;
+    component(): Uint32Array<ArrayBuffer>;
+    curvature(from: number): Float32Array<ArrayBuffer>;
     digest(): string;
     free(): void;
   }

@@ -24,6 +24,8 @@ export const NO_PARENT = 0xffffffff;
 export class Columns {
   constructor() {
     this.count = 0;
+    /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
+    this.adaptive = false;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
@@ -36,6 +38,27 @@ export class Columns {
     this.nearest = null;
     /** @type {Float32Array | null} */
     this.residual = null;
+    /** Connected piece, 0 the largest. @type {Uint32Array | null} */
+    this.component = null;
+    /** Principal curvatures, two per particle, of the first `curved` particles; asked of the core only when they are shown. */
+    this.curvature = new Float32Array(0);
+    this.curved = 0;
+  }
+
+  /** Another run begins. @param {boolean} [adaptive] */
+  clear(adaptive = false) {
+    this.count = 0;
+    this.curved = 0;
+    this.adaptive = adaptive;
+    this.forget();
+  }
+
+  /** The figures of the report no longer hold. */
+  forget() {
+    this.valence = null;
+    this.nearest = null;
+    this.residual = null;
+    this.component = null;
   }
 
   /** Room for `n` particles; what is there stays. @param {number} n */
@@ -73,10 +96,20 @@ export class Columns {
     this.parents.set(piece.parents, first);
     this.slots.fill(0, Math.max(first, this.count), first + n);
     this.count = total;
-    this.valence = null;
-    this.nearest = null;
-    this.residual = null;
+    if (n > 0) this.forget();
     return true;
+  }
+
+  /** Principal curvatures of particles from `from` on, which follow those that are known. @param {number} from @param {Float32Array} values */
+  writeCurvature(from, values) {
+    if (from > this.curved || 2 * from + values.length > 2 * this.count) return;
+    if (this.curvature.length < 2 * this.count) {
+      const grown = new Float32Array(2 * this.radii.length);
+      grown.set(this.curvature.subarray(0, 2 * this.curved));
+      this.curvature = grown;
+    }
+    this.curvature.set(values, 2 * from);
+    this.curved = Math.max(this.curved, from + values.length / 2);
   }
 
   /** Newer fates of the slots of particles from `from` on. @param {number} from @param {Uint32Array} slots */

@@ -21,6 +21,7 @@ export const CAMERA_MS = 120;
  * @property {(patch: object) => Promise<Report | null>} set  changes the state, samples, and resolves with the report
  * @property {() => Promise<Report | null>} run
  * @property {() => Promise<Report | null>} stop
+ * @property {(file: File) => Promise<Report | null>} open  samples the points of a file
  * @property {(steps?: number) => Promise<Report | null>} relax
  * @property {() => Report | null} report
  * @property {() => Particles} particles
@@ -42,6 +43,8 @@ export const CAMERA_MS = 120;
  * @property {Uint8Array | null} valence
  * @property {Float32Array | null} nearest
  * @property {Float32Array | null} residual
+ * @property {Uint32Array | null} component
+ * @property {Float32Array | null} curvature  two per particle, only while they are shown
  */
 /**
  * Faults on purpose, for the tests.
@@ -69,7 +72,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
     /** @type {() => void} */
     let stop = () => {};
     stop = effect(() => {
-      const idle = engine.description.value !== null && !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value === null && engine.backend.value !== 'starting';
+      const idle = engine.description.value !== null && engine.loading.value === null && !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value === null && engine.backend.value !== 'starting';
       const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
       if ((!idle && !failed) || over) return;
       over = true;
@@ -105,6 +108,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
     }),
     run: () => after(() => engine.run()),
     stop: () => after(() => engine.stop()),
+    open: (file) => after(() => void engine.openFile(file)),
     relax: (steps = 1) => after(() => engine.relax(steps)),
     report: () => structuredClone(engine.report.value),
     particles: () => {
@@ -120,6 +124,8 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
         valence: columns.valence?.slice() ?? null,
         nearest: columns.nearest?.slice() ?? null,
         residual: columns.residual?.slice() ?? null,
+        component: columns.component?.slice() ?? null,
+        curvature: count > 0 && columns.curved === count ? columns.curvature.slice(0, 2 * count) : null,
       };
     },
     status: () => ({
@@ -130,6 +136,9 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
       partial: engine.partial.value,
       empty: engine.empty.value,
       fieldError: engine.fieldError.value,
+      loading: engine.loading.value,
+      loadingError: engine.loadingError.value,
+      model: engine.model.value,
       timing: engine.timing.value,
       lastDrag: engine.lastDrag.value,
       notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },

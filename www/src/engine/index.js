@@ -7,11 +7,13 @@
 import { batch, effect } from '@preact/signals-core';
 import { Columns } from './columns.js';
 import { CAMERA_MS, installConsole } from './console.js';
+import { ModelLoader, shapeOf } from './points/loader.js';
 import { SamplingClient } from './sampling/client.js';
 import { decode, encode } from './share/codec.js';
 import { csv, LARGEST_PICTURE_PX, ply, png } from './share/exports.js';
-import { completeSettings, defaultState, fieldRequest, sanitize, surfaceOf, validBounds, validSetting, validView } from './share/state.js';
+import { completeSettings, defaultState, fieldRequest, fromPoints, modelOf, sanitize, surfaceOf, validBounds, validSetting, validView } from './share/state.js';
 import { createStore } from './store.js';
+import { FILE_SURFACE } from './types.js';
 import { BACKENDS } from './view/backends.js';
 import { attachControls } from './view/controls.js';
 import { Viewer } from './view/viewer.js';
@@ -141,6 +143,7 @@ export function createEngine({ canvasHost }) {
     picture: viewer,
     spawn: () => /** @type {any} */ (new Worker(new URL('./sampling/worker.js', import.meta.url), { type: 'module', name: 'sampler' })),
     whole: () => request({}),
+    solved: (key) => loader.client.get(key),
     onReady() {
       void loadUrl(location.hash, true);
     },
@@ -163,6 +166,12 @@ export function createEngine({ canvasHost }) {
     },
   });
 
+  const loader = new ModelLoader({
+    store,
+    spawn: () => /** @type {any} */ (new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' })),
+    sample: (options) => resample(false, options),
+  });
+
   const description = () => {
     const d = store.description.value;
     if (!d) throw new Error('The core is not there yet.');
@@ -172,8 +181,8 @@ export function createEngine({ canvasHost }) {
   /** @param {Partial<SampleRequest>} options @returns {SampleRequest} */
   function request(options) {
     const d = description();
-    const state = store.state.value;
-    return { kind: 'sample', field: fieldRequest(state, d), settings: completeSettings(d, state.settings), grow: false, live: false, fit: false, ...options };
+    const state = loader.present();
+    return { kind: 'sample', field: fieldRequest(state, d, loader.key()), settings: completeSettings(d, state.settings), grow: false, live: false, fit: false, ...options };
   }
 
   /** @param {Partial<State>} patch */
@@ -185,6 +194,11 @@ export function createEngine({ canvasHost }) {
   function resample(live, options = {}) {
     clearTimeout(rest_timer);
     if (!store.description.value) return;
+    if (!loader.ready()) {
+      void loader.load(options);
+      return;
+    }
+    loader.settled();
     if (!live) {
       sampling.sample(request(options));
       return;
@@ -204,7 +218,7 @@ export function createEngine({ canvasHost }) {
   /** @param {string} hash @param {boolean} [initial] */
   async function loadUrl(hash, initial = false) {
     const d = description();
-    const { state, reset, problem } = await decode(hash, d);
+    const { state, reset, problem } = await decode(hash, d, loader.has_file);
     if (problem) {
       store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${initial ? 'This is the standard surface instead.' : 'Nothing was changed.'}` };
       if (!initial) return;
@@ -221,13 +235,19 @@ export function createEngine({ canvasHost }) {
     const bounds = state.bounds ?? surface?.bounds;
     if (bounds) viewer.setBounds(bounds);
     viewer.camera.set(state.view.camera);
-    if (state.view.camera.fit) {
-      columns.count = 0;
+    if (state.view.camera.fit && loader.ready()) {
+      columns.clear();
       viewer.fit(true);
     }
     showLook();
-    clearTimeout(rest_timer);
-    sampling.sample(request({ grow: true, fit: state.view.camera.fit }));
+    choose({ grow: true, fit: state.view.camera.fit });
+  }
+
+  /** Samples another surface: what was on its way is no longer wanted. @param {{grow?: boolean, fit?: boolean}} [options] */
+  function choose(options) {
+    store.loadingError.value = null;
+    if (store.loading.value && store.loading.value.id !== store.state.value.surface) loader.cancel();
+    resample(false, options);
   }
 
   function writeAddress() {
@@ -256,10 +276,14 @@ export function createEngine({ canvasHost }) {
     const theme = view.theme === 'auto' ? (dark.matches ? 'dark' : 'light') : view.theme;
     store.theme.value = theme;
     const box = bounds ?? store.field.value?.bounds ?? null;
-    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null });
+    const solved = view.points && store.field.value?.kind === 'points' ? loader.client.get(sampling.accepted?.field.points) : undefined;
+    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null, points: solved?.centres ?? null });
+    sampling.showCurvature(view.colour === 'curvature');
   }
   dark.addEventListener('change', showLook);
 
+  /** The camera shows the whole box, for want of a surface. */
+  let box_shown = false;
   const effects = [
     effect(() => {
       // The whole state is worth an address.
@@ -273,6 +297,16 @@ export function createEngine({ canvasHost }) {
     effect(() => {
       viewer.growing = store.busy.value;
     }),
+    effect(() => {
+      // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
+      const [none, rests] = [store.empty.value, !store.busy.value && !store.progress.value.live];
+      if (!rests || none === box_shown) return;
+      box_shown = none;
+      queueMicrotask(() => {
+        showLook();
+        if (viewer.camera.state.fit) viewer.fit();
+      });
+    }),
   ];
   function showLookLater() {
     queueMicrotask(showLook);
@@ -284,16 +318,19 @@ export function createEngine({ canvasHost }) {
   const commands = {
     setSurface(id) {
       const surface = surfaceOf(store.description.value, id);
-      if (!surface) return;
-      change({ surface: id, formula: surface.formula, parameters: {}, declared: [], bounds: null });
-      resample(false, { grow: true, fit: true });
+      if (!surface && !modelOf(store.description.value, id) && !(id === FILE_SURFACE && loader.has_file)) return;
+      change(shapeOf(id, surface?.formula));
+      choose({ grow: true, fit: true });
     },
-    async openFile() {},
-    cancelLoading() {},
+    openFile: (file) => loader.openFile(file),
+    cancelLoading: () => loader.cancel(),
     setFormula(text) {
-      if (text === store.state.value.formula) return;
-      change({ formula: text });
-      resample(false);
+      const { surface, formula } = store.state.value;
+      if (text === formula) return;
+      // A model has no formula to change: the one typed starts from the default surface.
+      if (fromPoints(store.description.value, surface)) change(shapeOf(description().default_surface, text));
+      else change({ formula: text });
+      choose();
     },
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;
@@ -329,11 +366,18 @@ export function createEngine({ canvasHost }) {
       change({ settings });
       resample(false);
     },
+    restore(shape) {
+      const another = shape.surface !== store.state.value.surface;
+      change(shape);
+      showLook();
+      choose({ grow: another, fit: another });
+    },
     run() {
       resample(false, { grow: true });
     },
     stop() {
       clearTimeout(rest_timer);
+      loader.cancel();
       sampling.stop();
     },
     generateOnly() {
@@ -361,6 +405,11 @@ export function createEngine({ canvasHost }) {
     },
     setInsets: (insets) => viewer.set({ insets }),
     async shareUrl() {
+      if (store.state.value.surface === FILE_SURFACE) {
+        store.notice.value = {
+          id: 'share-file', kind: 'info', text: `A link cannot hold the points of ${store.model.value?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`,
+        };
+      }
       return location.origin + location.pathname + (await encode(store.state.value, description()));
     },
     loadUrl: (hash) => loadUrl(hash),
@@ -371,8 +420,9 @@ export function createEngine({ canvasHost }) {
       return png(picture.width, picture.height, picture.pixels);
     },
     async exportFile(format) {
-      const state = store.state.value;
-      return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, f = ${state.formula}` });
+      const { field, model } = store;
+      const what = model.value ? `${model.value.name}, interpolated from ${model.value.centres} points` : `f = ${field.value?.formula ?? ''}`;
+      return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
     },
     dismissNotice() {
       store.notice.value = null;
@@ -385,6 +435,7 @@ export function createEngine({ canvasHost }) {
       dark.removeEventListener('change', showLook);
       detach();
       viewer.destroy();
+      loader.cancel();
       sampling.supervisor.stop();
     },
   };
@@ -398,8 +449,9 @@ export function createEngine({ canvasHost }) {
     applyState(patch) {
       const d = description();
       const now = store.state.value;
-      const base = typeof patch.surface === 'string' && patch.surface !== now.surface ? { ...defaultState(d), view: now.view, settings: now.settings } : now;
-      const { state, reset } = sanitize({ ...base, formula: undefined, ...(patch.surface ? {} : { formula: now.formula }), ...patch, view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) } }, d);
+      const another = typeof patch.surface === 'string' ? patch.surface !== now.surface : typeof patch.formula === 'string' && fromPoints(d, now.surface);
+      const base = another ? { ...defaultState(d), view: now.view, settings: now.settings } : now;
+      const { state, reset } = sanitize({ ...base, formula: undefined, ...(patch.surface ? {} : { formula: now.formula }), ...patch, view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) } }, d, loader.has_file);
       applyState(state);
       return reset;
     },

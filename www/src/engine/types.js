@@ -254,6 +254,8 @@
  * @property {ViewState} view
  */
 
+/** The part of the state that says what is sampled and how; the rest is how it looks. @typedef {Omit<State, 'v' | 'view'>} Shape */
+
 // ---- what the engine tells --------------------------------------------------------------------------------------------
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
@@ -366,6 +368,7 @@
  * @property {(bounds: Bounds | null, options?: {live?: boolean}) => void} setBounds
  * @property {(name: string, value: number | string, options?: {live?: boolean}) => void} setSetting
  * @property {(name: string) => void} resetSetting
+ * @property {(shape: Shape) => void} restore  takes an earlier state back; the view stays
  * @property {() => void} run  samples from the start; while a run of the same input is under way it does nothing
  * @property {() => void} stop  keeps the partial result, labelled
  * @property {() => void} generateOnly  a run without relaxation

@@ -1,11 +1,15 @@
 /** Puts the interface together over an engine. */
-import { effect } from '@preact/signals-core';
+import { computed, effect } from '@preact/signals-core';
 import { byId, h, once } from './dom.js';
+import { explain } from './explain.js';
 import { mountField } from './field/panel.js';
+import { mountDrop } from './field/drop.js';
+import { createHistory } from './history.js';
+import { icon } from './icons.js';
 import { mountLayout } from './layout.js';
 import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
-import { mountShortcuts } from './shortcuts.js';
+import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
 import { mountToasts } from './toasts.js';
 import { createLegend } from './view/legend.js';
 import { mountHover } from './view/hover.js';
@@ -18,7 +22,7 @@ import { createToolbar } from './view/toolbar.js';
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, sampling, report] = [byId('panel-field'), byId('panel-sampling'), byId('panel-report')];
-  const toast = mountToasts(byId('toasts'), engine);
+  const toast = mountToasts(byId('toasts'), engine, ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility());
   const samplingTools = h('div', { class: 'sampling-tools' });
   const head = (/** @type {HTMLElement} */ panel) => /** @type {HTMLElement} */ (panel.querySelector('.panel-head'));
   const layout = mountLayout({
@@ -32,9 +36,12 @@ export function mountInterface(engine) {
     ],
     inset: (insets) => engine.setInsets(insets),
   });
+  const history = createHistory(engine);
   const shortcuts = mountShortcuts([
     { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
-    { keys: ['Escape'], shown: 'Esc', label: 'Stop', act: () => { if (engine.busy.peek()) engine.stop(); } },
+    { keys: ['Escape'], shown: 'Esc', label: 'Stop', act: () => { if (engine.busy.peek() || engine.loading.peek()) engine.stop(); } },
+    { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
+    { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
     { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
     { keys: ['e', 'E'], shown: 'E', label: 'Relax one step', act: () => { if (!engine.busy.peek()) engine.relax(1); } },
     { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
@@ -63,6 +70,8 @@ export function mountInterface(engine) {
     document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
   });
 
+  head(field).querySelector('.fold')?.before(historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo), historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo));
+  mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start') });
   mountHover(stage, engine);
   byId('tabs').append(goButton(engine));
@@ -82,12 +91,27 @@ export function mountInterface(engine) {
 
 /** Run or stop, always in reach on a phone. @param {Engine} engine */
 function goButton(engine) {
+  const active = computed(() => engine.busy.value || engine.loading.value !== null);
   const press = once(() => {
-    if (engine.busy.peek()) engine.stop();
+    if (active.peek()) engine.stop();
     else engine.run();
   });
   const button = h('button', { type: 'button', class: 'button primary go', on: { click: press } });
-  effect(() => { button.textContent = engine.busy.value ? 'Stop' : 'Run'; });
+  effect(() => { button.textContent = active.value ? 'Stop' : 'Run'; });
+  return button;
+}
+
+/**
+ * @param {'undo' | 'redo'} name
+ * @param {string} label
+ * @param {string} keys
+ * @param {import('@preact/signals-core').ReadonlySignal<boolean>} can
+ * @param {() => void} act
+ */
+function historyButton(name, label, keys, can, act) {
+  const button = h('button', { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: () => { if (can.peek()) act(); } } }, icon(name));
+  effect(() => button.setAttribute('aria-disabled', String(!can.value)));
+  explain(button, () => ({ title: label, text: `Surface, formula, clip box and settings. Keys ${keys}.` }));
   return button;
 }
 

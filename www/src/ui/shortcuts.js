@@ -2,7 +2,10 @@
 import { h } from './dom.js';
 import { createDialog } from './dialog.js';
 
-/** @typedef {{ keys: string[], shown: string, label: string, act: () => void }} Shortcut */
+/** `ctrl` asks for Control or Command, `shift` then for Shift as well or for none. @typedef {{ keys: string[], shown: string, label: string, act: () => void, ctrl?: boolean, shift?: boolean }} Shortcut */
+
+/** The key that commands go with. */
+export const COMMAND_KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? '⌘' : 'Ctrl';
 
 const STORED = 'marching-particles.shortcuts';
 
@@ -31,10 +34,11 @@ export function mountShortcuts(shortcuts) {
     h('label', { class: 'check' }, toggle, 'Single-key shortcuts'),
   );
   addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || types(event.composedPath()[0] ?? null) || types(event.target)) return;
+    const ctrl = event.ctrlKey || event.metaKey;
+    if (event.defaultPrevented || event.altKey || types(event.composedPath()[0] ?? null) || types(event.target)) return;
     if (document.querySelector('dialog[open], [popover]:popover-open:not(.explain)')) return;
-    const found = shortcuts.find(({ keys }) => keys.includes(event.key));
-    if (!found || (!enabled && event.key !== 'Escape')) return;
+    const found = shortcuts.find((shortcut) => shortcut.keys.includes(event.key) && (shortcut.ctrl ?? false) === ctrl && (!ctrl || (shortcut.shift ?? false) === event.shiftKey));
+    if (!found || (!enabled && !ctrl && event.key !== 'Escape')) return;
     event.preventDefault();
     found.act();
   });

@@ -11,9 +11,10 @@ const STAY_MS = 6000;
 /**
  * @param {HTMLElement} host
  * @param {import('../engine/types.js').Engine} engine
+ * @param {(notice: Notice) => boolean} isTold whether another place of the page already says it
  * @returns {Toast}
  */
-export function mountToasts(host, engine) {
+export function mountToasts(host, engine, isTold) {
   host.setAttribute('role', 'status');
   host.setAttribute('aria-live', 'polite');
   /** @type {Map<string, { element: HTMLElement, timer: number }>} */
@@ -56,7 +57,9 @@ export function mountToasts(host, engine) {
 
   effect(() => {
     const notice = engine.notice.value;
-    if (notice) toast(notice);
+    if (!notice) return;
+    if (isTold(notice)) queueMicrotask(() => engine.dismissNotice());
+    else toast(notice);
   });
   return toast;
 }

@@ -20,7 +20,7 @@ const progress = (/** @type {number} */ particles, /** @type {any} */ more = {})
 const answer = (/** @type {string} */ formula) => ({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
 const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
   type: 'columns', id, first: 0, total: n, positions: new Float32Array(3 * n), normals: new Float32Array(3 * n), radii: new Float32Array(n),
-  levels: new Uint32Array(n), parents: new Uint32Array(n), slots_from: 0, slots: new Uint32Array(n), progress: progress(n),
+  levels: new Uint32Array(n), parents: new Uint32Array(n), slots_from: 0, slots: new Uint32Array(n), curvature_from: 0, curvature: new Float32Array(0), progress: progress(n),
 });
 const done = (/** @type {number} */ id, /** @type {string} */ outcome, /** @type {number} */ n = 0, more = {}) => ({
   type: 'done', id, outcome, progress: progress(n, { phase: 'done', stop_reason: outcome === 'stopped' ? 'cancelled' : 'complete' }), seconds, predicted: n, message: '', report_follows: false, ...more,
@@ -71,6 +71,42 @@ beforeEach(() => {
 });
 afterEach(() => vi.useRealTimers());
 
+describe('a model from points', () => {
+  const solved = /** @type {any} */ ({ field: Uint8Array.of(1), info: { info: { name: 'Bunny' }, bounds: description.surfaces[0].bounds }, centres: new Float32Array(3) });
+  const answer = { ok: true, kind: 'points', model: { name: 'Bunny' }, surface: null, formula: '', parameters: [], auto: [], bounds: description.surfaces[0].bounds, mathml: '' };
+
+  test('goes to the worker with every job, so that a new worker has it too', () => {
+    const { client, store, say, jobs } = page();
+    client.solved = (key) => (key === 'bunny' ? solved : undefined);
+    client.sample({ ...request(''), field: { points: 'bunny', surface: 'bunny' } });
+    expect(jobs()[0].points).toBe(solved);
+    say({ type: 'field', id: 1, answer });
+    expect(store.field.value).toMatchObject({ kind: 'points', surface: 'bunny' });
+    expect(store.model.value).toMatchObject({ name: 'Bunny' });
+    say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
+    say({ type: 'ready', description });
+    expect(jobs()[0].points).toBe(solved);
+    client.sample(request('x'));
+    say({ type: 'field', id: 3, answer: { ...answer, kind: 'formula', model: null } });
+    expect(store.model.value).toBe(null);
+  });
+});
+
+test('the curvature is asked for while it is shown, of a new worker again', () => {
+  const { client, say } = page();
+  const asked_for = () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'curvature').map((/** @type {any} */ m) => m.on);
+  client.showCurvature(false);
+  client.showCurvature(true);
+  client.showCurvature(true);
+  expect(asked_for()).toEqual([true]);
+  client.sample(request('x'));
+  say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
+  say({ type: 'ready', description });
+  expect(asked_for()).toEqual([true]);
+  client.showCurvature(false);
+  expect(asked_for()).toEqual([true, false]);
+});
+
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
     const { client, store, columns, say, jobs } = page();
@@ -85,7 +121,7 @@ describe('a run', () => {
     expect(store.busy.value).toBe(false);
     expect(store.progress.value.phase).toBe('quality');
     expect(store.report.value).toBe(null);
-    say({ type: 'report', id: 1, report: { count: 5, seconds }, valence: new Uint8Array(5), nearest: new Float32Array(5), residual: new Float32Array(5) });
+    say({ type: 'report', id: 1, report: { count: 5, seconds }, valence: new Uint8Array(5), nearest: new Float32Array(5), residual: new Float32Array(5), component: new Uint32Array(5) });
     expect(store.report.value?.count).toBe(5);
     expect(store.progress.value.phase).toBe('done');
     expect(columns.valence).toHaveLength(5);

@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { decode, encode, LONGEST_FRAGMENT } from '../../src/engine/share/codec.js';
-import { defaultState, fieldRequest, sanitize } from '../../src/engine/share/state.js';
+import { clampSettings, defaultState, fieldRequest, sanitize } from '../../src/engine/share/state.js';
+import { FILE_SURFACE } from '../../src/engine/types.js';
 import { description } from './description.js';
 
 /** @typedef {import('../../src/engine/types.js').State} State */
@@ -85,6 +86,42 @@ describe('a link', () => {
     expect(back.state.formula).toBe(formula);
     expect(back.reset).toEqual([]);
   });
+});
+
+describe('a surface made of points', () => {
+  const bunny = { ...defaultState(description), surface: 'bunny', formula: '', settings: { radius_share: 0.02 } };
+
+  test('goes through a link by its name', async () => {
+    const link = await encode(bunny, description);
+    expect(await decode(link, description)).toEqual({ state: bunny, reset: [], problem: null });
+    const clipped = { ...bunny, bounds: elaborate().bounds, view: { ...bunny.view, points: false } };
+    expect((await decode(await encode(clipped, description), description)).state).toEqual(clipped);
+  });
+
+  test('takes no formula', () => {
+    expect(sanitize({ surface: 'bunny', formula: 'x' }, description)).toMatchObject({ state: { surface: 'bunny', formula: '' }, reset: ['formula'] });
+  });
+
+  test('from a file is not in the link: the standard surface comes in its place, with settings and colour', async () => {
+    const file = { ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds, view: { ...elaborate().view, colour: /** @type {const} */ ('radius') } };
+    const link = await encode(file, description);
+    const { state, reset, problem } = await decode(link, description);
+    expect(problem).toBe(null);
+    expect(reset).toEqual(['the surface, whose points are in a file']);
+    const home = defaultState(description);
+    expect(state).toEqual({ ...home, settings: file.settings, view: { ...file.view, camera: home.view.camera } });
+    // In the page that still has the file, it is found again.
+    expect((await decode(link, description, true)).state).toEqual(file);
+  });
+
+  test('is asked of the core by the name of its solved model', () => {
+    expect(fieldRequest(bunny, description, 'bunny')).toEqual({ points: 'bunny', surface: 'bunny' });
+    expect(fieldRequest({ ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds }, description, 'file 3')).toEqual({ points: 'file 3', surface: 'file', bounds: elaborate().bounds });
+  });
+});
+
+test('settings of a coarser run stay within their ranges', () => {
+  expect(clampSettings(description, { radius_share: 3, relax_steps: 2, size_mode: 'count', unknown: 7 })).toEqual({ radius_share: 0.1, relax_steps: 2, size_mode: 'count', unknown: 7 });
 });
 
 describe('a state from anywhere', () => {

@@ -35,6 +35,12 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
       if (formula === 'x^2+') return JSON.stringify({ ok: false, error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] } });
       return JSON.stringify({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
     },
+    /** @param {Uint8Array} bytes @param {string} about */
+    set_points(bytes, about) {
+      calls.push(`set_points ${bytes.length}`);
+      const { info, bounds } = JSON.parse(about);
+      return JSON.stringify({ ok: true, kind: 'points', model: info, surface: null, formula: '', parameters: [], auto: [], bounds, mathml: '' });
+    },
     /** @param {string} json */
     start(json) {
       calls.push('start');
@@ -80,6 +86,11 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
     levels: (/** @type {number} */ from) => column(from, 1, Uint32Array),
     parents: (/** @type {number} */ from) => column(from, 1, Uint32Array),
     slots: (/** @type {number} */ from) => column(from, 1, Uint32Array),
+    curvature(/** @type {number} */ from) {
+      calls.push(`curvature ${from}`);
+      return column(from, 2, Float32Array);
+    },
+    component: () => new Uint32Array(count),
     report() {
       calls.push('report');
       clock.ms += 50;

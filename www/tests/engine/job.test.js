@@ -7,16 +7,16 @@ import { fakeCore } from './fake-core.js';
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
 const sampleJob = (part = {}) => ({
-  kind: 'sample', id: 7, field: { formula: 'x' }, settings: {}, grow: true, live: false, ask_above: Infinity, ...part,
+  kind: 'sample', id: 7, field: { formula: 'x' }, points: null, settings: {}, grow: true, live: false, ask_above: Infinity, ...part,
 });
 
 /**
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
  * @param {import('../../src/engine/sampling/protocol.js').Job} job
- * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
  */
-async function run(core, job, { interrupt = () => null, room = () => true, memory = { held: 0 } } = {}) {
+async function run(core, job, { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 } } = {}) {
   /** @type {FromWorker[]} */
   const posted = [];
   await runJob(core, job, {
@@ -27,6 +27,7 @@ async function run(core, job, { interrupt = () => null, room = () => true, memor
     post: (message) => posted.push(structuredClone(message)),
     interrupt: () => interrupt(posted),
     room: () => room(posted),
+    curvature: () => curvature(posted),
   }, memory);
   return { posted, memory };
 }
@@ -149,12 +150,49 @@ describe('a job', () => {
     expect(core.calls).not.toContain('step');
   });
 
+  test('on a model hands the core the solved system, with the clip box in force', async () => {
+    const info = /** @type {any} */ ({ name: 'Bunny' });
+    const bounds = { min: /** @type {[number, number, number]} */ ([-1, -1, -1]), max: /** @type {[number, number, number]} */ ([1, 1, 1]) };
+    const points = { field: new Uint8Array(44), info: { info, bounds } };
+    const core = fakeCore();
+    const own = await run(core, sampleJob({ field: { points: 'bunny' }, points }));
+    expect(core.calls).toContain('set_points 44');
+    expect(core.calls).not.toContain('set_field');
+    expect(of(own.posted, 'field')[0].answer).toMatchObject({ ok: true, kind: 'points', model: info, bounds });
+    const clip = { min: bounds.min, max: /** @type {[number, number, number]} */ ([1, 1, 0]) };
+    const clipped = await run(core, sampleJob({ field: { points: 'bunny', bounds: clip }, points }));
+    expect(of(clipped.posted, 'field')[0].answer).toMatchObject({ bounds: clip });
+  });
+
+  test('brings the curvature only while it is shown: once per particle as they come, and of all when they rest', async () => {
+    const core = fakeCore({ particles: 20_000, relax_steps: 3, us_per_unit: 5 });
+    expect((await run(core, sampleJob())).posted.some((m) => m.type === 'columns' && m.curvature.length > 0)).toBe(false);
+    core.calls.length = 0;
+    const { posted } = await run(core, sampleJob(), { curvature: () => true });
+    let have = 0;
+    for (const piece of of(posted, 'columns')) {
+      expect(piece.curvature_from).toBeLessThanOrEqual(have);
+      have = Math.max(have, piece.curvature_from + piece.curvature.length / 2);
+    }
+    expect(have).toBe(20_000);
+    const last = of(posted, 'columns').filter((piece) => piece.curvature.length > 0).at(-1);
+    expect(last?.curvature_from).toBe(0);
+    expect(last?.curvature).toEqual(core.curvature(0));
+    expect(core.calls.filter((call) => call === 'curvature 0').length).toBeLessThanOrEqual(3);
+  });
+
+  test('brings the curvature also when it is asked for during the report', async () => {
+    const core = fakeCore({ particles: 500 });
+    const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'done') });
+    expect(posted.at(-1)).toMatchObject({ type: 'columns', first: 500, total: 500, curvature_from: 0, progress: null });
+  });
+
   test('relaxing goes on from the particles at hand, and only from those', async () => {
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
     const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true }, { memory });
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
-    expect(of(again.posted, 'columns').at(-1)?.progress.relax_step).toBe(5);
+    expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
     for (const piece of of(again.posted, 'columns')) expect(piece.first).toBe(0);
     const lost = await run(core, { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true }, { memory: { held: 0 } });
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');

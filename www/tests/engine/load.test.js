@@ -16,12 +16,12 @@ const type = (/** @type {string} */ value) => ({ headers: { 'content-type': valu
 describe('the sampler’s file', () => {
   test('is compiled from the stream', async () => {
     const compile = () => Promise.reject(new Error('not streamed'));
-    const module = await loadModule(url, env(() => new Response(EMPTY, type('application/wasm')), { compile }));
+    const module = await loadModule(url, 'sampler', env(() => new Response(EMPTY, type('application/wasm')), { compile }));
     expect(module).toBeInstanceOf(WebAssembly.Module);
   });
 
   test('is compiled all the same when the host names the wrong type', async () => {
-    const module = await loadModule(url, env(() => new Response(EMPTY, type('application/octet-stream'))));
+    const module = await loadModule(url, 'sampler', env(() => new Response(EMPTY, type('application/octet-stream'))));
     expect(module).toBeInstanceOf(WebAssembly.Module);
   });
 
@@ -32,14 +32,14 @@ describe('the sampler’s file', () => {
     ['that is cut off', 'corrupt', () => new Response(EMPTY.slice(0, 5), type('application/wasm')), /damaged/],
     ['in whose place a page comes', 'corrupt', () => new Response('<!doctype html>', type('text/html')), /page in its place/],
   ]))('%s is named as such', async (_what, fault, answer, words) => {
-    await expect(loadModule(url, env(answer))).rejects.toMatchObject({ fault, message: expect.stringMatching(words) });
+    await expect(loadModule(url, 'sampler', env(answer))).rejects.toMatchObject({ fault, message: expect.stringMatching(words) });
   });
 
   test('without SIMD or without WebAssembly is not even fetched', async () => {
     const never = () => {
       throw new Error('fetched');
     };
-    await expect(loadModule(url, env(never, { validate: () => false }))).rejects.toMatchObject({ fault: 'no_simd' });
-    await expect(loadModule(url, { fetch: never, wasm: undefined })).rejects.toMatchObject({ fault: 'no_wasm' });
+    await expect(loadModule(url, 'sampler', env(never, { validate: () => false }))).rejects.toMatchObject({ fault: 'no_simd' });
+    await expect(loadModule(url, 'sampler', { fetch: never, wasm: undefined })).rejects.toMatchObject({ fault: 'no_wasm' });
   });
 });

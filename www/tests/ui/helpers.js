@@ -37,6 +37,23 @@ export async function settled(page) {
   });
 }
 
+/**
+ * Waits until nothing fades or glides any more and the camera has told where it is.
+ * @param {import('@playwright/test').Page} page
+ */
+export async function atRest(page) {
+  await settled(page);
+  await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
+  // The state follows the camera with a delay: two looks further apart than that see the same.
+  await page.waitForFunction(() => {
+    const store = /** @type {any} */ (window);
+    const now = JSON.stringify(store.marchingParticles.state.view.camera);
+    const same = store.lastCamera === now;
+    store.lastCamera = now;
+    return same;
+  }, undefined, { polling: 300 });
+}
+
 /** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
 export const report = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.report());
 

@@ -1,7 +1,7 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, trim } from '../../src/ui/report/bins.js';
-import { compare, figuresOf, groupRows, valueAt, writeFigure } from '../../src/ui/report/rows.js';
+import { compare, figuresOf, groupRows, isTold, valueAt, writeFigure } from '../../src/ui/report/rows.js';
 import { captionOf } from '../../src/ui/view/caption.js';
 import { wantsSlider } from '../../src/ui/scale.js';
 
@@ -29,6 +29,7 @@ describe('the report', () => {
     expect(writeFigure(row({ unit: '', digits: 6 }), 0)).toBe('0');
     expect(writeFigure(row(), null)).toBe('–');
     expect(writeFigure(row(), 'complete')).toBe('complete');
+    expect(writeFigure(row(), 'searched')).toBe('dense search');
   });
 
   it('calls a figure better only when the change can be read', () => {
@@ -37,6 +38,15 @@ describe('the report', () => {
     expect(compare(row({ better: 'lower' }), 0.93, 0.97)).toBe('worse');
     expect(compare(row({ better: null }), 0, 1)).toBe('same');
     expect(compare(row(), undefined, 1)).toBe('same');
+  });
+
+  it('leaves out what a run says nothing of', () => {
+    const report = /** @type {any} */ ({ undecided_cells: null, count: 0, quality: { six: null }, quality_before: { six: 0.9 } });
+    expect(isTold(report, 'count')).toBe(true);
+    expect(isTold(report, 'undecided_cells')).toBe(false);
+    expect(isTold(report, 'not_there')).toBe(false);
+    expect(isTold(report, 'quality.six')).toBe(true);
+    expect(isTold(null, 'undecided_cells')).toBe(true);
   });
 
   it('groups rows in the order of their first member', () => {

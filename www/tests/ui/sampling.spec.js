@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, report, settled, state, typeFormula } from './helpers.js';
+import { atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('the settings are those that the core describes, each with its help', async ({ page }) => {
   await open(page);
@@ -154,8 +154,12 @@ test('no surface in the box is said in words, with a way out', async ({ page }) 
   await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
   await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
   await expect(page.locator('.figures')).toBeHidden();
+  // The box is shown whole, between the panels.
+  await atRest(page);
+  const { distance } = (await state(page)).view.camera;
   await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
-  await settled(page);
+  await atRest(page);
+  expect((await state(page)).view.camera.distance).toBeLessThan(distance);
   await expect(page.locator('.empty')).toBeHidden();
   expect((await report(page)).count).toBeGreaterThan(100);
 });
@@ -168,11 +172,13 @@ test('a stopped run is labelled and keeps what it has', async ({ page }) => {
     engine.setSetting('max_particles', 3_000_000);
     engine.setSetting('radius_share', 0.0004);
   });
+  // Pressed in the page itself, as soon as there is something to stop: from here a press could come late.
   await page.waitForFunction(() => {
     const { busy, progress } = /** @type {any} */ (window).marchingParticles.status();
-    return busy && progress.radius > 0 && progress.radius < 0.002 && progress.particles > 100;
+    if (!(busy && progress.radius > 0 && progress.radius < 0.002 && progress.particles > 100)) return false;
+    for (const button of document.querySelectorAll('.actions .button')) if (button.textContent === 'Stop') /** @type {HTMLElement} */ (button).click();
+    return true;
   });
-  await page.getByRole('button', { name: 'Stop', exact: true }).first().click();
   await expect(page.locator('.caption')).toContainText('Stopped');
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
 });

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, settled, state } from './helpers.js';
+import { atRest, open, settled, state } from './helpers.js';
 
 test('a particle under the pointer tells what it is', async ({ page }) => {
   const { clean } = await open(page);
@@ -53,6 +53,7 @@ for (const width of [1280, 320]) {
 
 test('buttons zoom, turn and fit for those who cannot drag', async ({ page }) => {
   await open(page);
+  await atRest(page);
   const camera = async () => (await state(page)).view.camera;
   const first = await camera();
   await page.getByRole('button', { name: 'Zoom in' }).click();

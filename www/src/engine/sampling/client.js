@@ -4,8 +4,9 @@
  * @module
  */
 import { batch } from '@preact/signals-core';
+import { clampSettings } from '../share/state.js';
 import { idleProgress } from '../store.js';
-import { CostModel, planLive, Scheduler } from './scheduler.js';
+import { CostModel, costKey, planLive, Scheduler, sizeOf } from './scheduler.js';
 import { Supervisor } from './supervisor.js';
 
 /**
@@ -32,6 +33,7 @@ import { Supervisor } from './supervisor.js';
  * @property {boolean} [restoring]
  * @property {boolean} [coarse]
  */
+/** @typedef {import('../points/protocol.js').Solved} Solved */
 /** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
 /**
@@ -57,16 +59,21 @@ export class SamplingClient {
    * @param {() => void} options.onReady  the description is there for the first time
    * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
    * @param {() => SampleRequest} options.whole  a full run of the state as it is
+   * @param {(key: string) => Solved | undefined} [options.solved]  the model that a field names
    * @param {import('./supervisor.js').Clock} [options.clock]
    */
-  constructor({ store, columns, picture, spawn, onReady, onAsk, whole, clock }) {
+  constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
     this.store = store;
     this.columns = columns;
     this.picture = picture;
     this.onReady = onReady;
     this.onAsk = onAsk;
     this.whole = whole;
-    this.cost = new CostModel();
+    this.solved = solved;
+    /** What runs cost, by {@link costKey}. @type {Map<string, CostModel>} */
+    this.costs = new Map();
+    /** Whether the curvature is shown. */
+    this.curvature = false;
     this.now_ms = clock ? clock.now : () => performance.now();
     /** @type {Scheduler<RunRequest>} */
     this.scheduler = new Scheduler((id, request) => this.dispatch(id, request), this.now_ms);
@@ -97,6 +104,21 @@ export class SamplingClient {
     this.supervisor.start();
   }
 
+  /** The curvature costs second derivatives, so it comes only while it is shown. @param {boolean} on */
+  showCurvature(on) {
+    if (on === this.curvature) return;
+    this.curvature = on;
+    this.supervisor.post({ type: 'curvature', on });
+  }
+
+  /** @param {SampleRequest} request */
+  costOf({ field, settings }) {
+    const key = costKey(field, settings);
+    let cost = this.costs.get(key);
+    if (!cost) this.costs.set(key, (cost = new CostModel()));
+    return cost;
+  }
+
   // ---- requests -------------------------------------------------------------------------------------------------------
 
   /** @param {SampleRequest} request */
@@ -116,9 +138,10 @@ export class SamplingClient {
     if (!this.drag || now - this.drag.quiet_ms > 1000) this.drag = { requested: 0, latencies: [], coarse: false, particles: 0, quiet_ms: now };
     this.drag.requested += 1;
     this.drag.quiet_ms = now;
-    const plan = planLive(request.settings, diagonal, this.cost);
+    const plan = planLive(request.settings, diagonal, this.costOf(request));
     this.drag.coarse ||= plan.coarse;
-    this.scheduler.submit({ ...request, settings: plan.settings, coarse: plan.coarse, live: true, grow: false });
+    const settings = this.store.description.value ? clampSettings(this.store.description.value, plan.settings) : plan.settings;
+    this.scheduler.submit({ ...request, settings, coarse: plan.coarse, live: true, grow: false });
   }
 
   /** Relaxes the particles the worker holds; where they are gone, the whole run is made with so many steps more. @param {number} steps */
@@ -157,6 +180,7 @@ export class SamplingClient {
       ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
       : {
         kind: 'sample', id, field: request.field, settings: request.settings, grow: request.grow, live: request.live,
+        points: (request.field.points !== undefined && this.solved(request.field.points)) || null,
         // A drag is never asked about: it stops at the limit.
         ask_above: request.confirmed || request.live || request.restoring ? Number.MAX_SAFE_INTEGER : Number(request.settings.max_particles),
       };
@@ -179,6 +203,7 @@ export class SamplingClient {
       const first = store.description.value === null;
       store.description.value = { ...message.description, models: message.description.models ?? [] };
       this.supervisor.setBusy(this.current !== null && !this.current.ended);
+      if (this.curvature) this.supervisor.post({ type: 'curvature', on: true });
       if (first) this.onReady();
       return;
     }
@@ -226,7 +251,8 @@ export class SamplingClient {
       this.accepted = request.kind === 'sample' ? request : this.accepted;
       if (restoring) return;
       batch(() => {
-        store.field.value = answer;
+        store.field.value = request.kind === 'sample' && request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
+        store.model.value = answer.model ?? null;
         store.fieldError.value = null;
         store.fieldPreview.value = answer.mathml;
       });
@@ -248,7 +274,7 @@ export class SamplingClient {
       current.begun = true;
       this.interrupted = null;
       if (current.request.kind === 'sample') {
-        columns.count = 0;
+        columns.clear(current.request.settings.sampling === 'adaptive');
         picture.begin({ grow: current.request.grow });
         this.store.hover.value = null;
       }
@@ -260,10 +286,14 @@ export class SamplingClient {
       return;
     }
     columns.writeSlots(message.slots_from, message.slots);
+    if (message.curvature.length > 0) {
+      columns.writeCurvature(message.curvature_from, message.curvature);
+      picture.recolour(message.curvature_from, columns.count);
+    }
     if (n > 0) picture.changed(message.first, message.first + n, drawn);
     else drawn();
     picture.recolour(message.slots_from, columns.count);
-    this.showProgress(message.progress);
+    if (message.progress) this.showProgress(message.progress);
   }
 
   /** @param {import('./protocol.js').DoneMessage} message @param {NonNullable<SamplingClient['current']>} current */
@@ -277,7 +307,7 @@ export class SamplingClient {
       if (outcome === 'complete' || outcome === 'stopped') {
         const particles = progress?.particles ?? 0;
         if (request.kind === 'sample' && particles === 0 && outcome === 'complete') {
-          columns.count = 0;
+          columns.clear();
           picture.begin({ grow: false });
           picture.changed(0, 0, () => {});
         }
@@ -312,20 +342,28 @@ export class SamplingClient {
    */
   note(seconds, particles, relax_steps, radius, { request, since_ms }) {
     const total = seconds.seeding + seconds.generation + seconds.relaxation;
-    if (request.kind === 'sample') this.cost.record({ seconds, particles, relax_steps, radius });
+    const cost = this.costOf(request.kind === 'sample' ? request : (this.accepted ?? this.whole()));
+    if (request.kind === 'sample') cost.record({ seconds, particles, relax_steps, size: this.sizeOf(request.settings, radius) });
     this.store.timing.value = { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live: request.live };
     const { drag } = this;
     if (request.live && drag) {
       const latency = this.now_ms() - since_ms;
       drag.latencies.push(latency);
       // What the sampler did not spend, drawing did: a slow graphics device holds up every message.
-      this.cost.recordPicture(particles, latency - total * 1e3);
+      cost.recordPicture(particles, latency - total * 1e3);
       drag.particles = particles;
       const sorted = [...drag.latencies].sort((a, b) => a - b);
       this.store.lastDrag.value = {
         requested: drag.requested, shown: drag.latencies.length, latency_ms: sorted[sorted.length >> 1], particles, coarse: drag.coarse,
       };
     }
+  }
+
+  /** A uniform run tells its radius also where the count decides. @param {Settings} settings @param {number} radius */
+  sizeOf(settings, radius) {
+    if (settings.sampling !== 'adaptive') return radius;
+    const bounds = this.store.field.value?.bounds;
+    return bounds ? sizeOf(settings, Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k]))) : NaN;
   }
 
   /** @param {import('./protocol.js').ReportMessage} message @param {NonNullable<SamplingClient['current']>} current */
@@ -335,6 +373,7 @@ export class SamplingClient {
       columns.valence = message.valence;
       columns.nearest = message.nearest;
       columns.residual = message.residual;
+      columns.component = message.component.length === columns.count ? message.component : null;
     }
     const { seconds, count } = message.report;
     const total = seconds.seeding + seconds.generation + seconds.relaxation + seconds.quality;

@@ -17,6 +17,7 @@ import { PROGRESS_MS } from './protocol.js';
  * The core's class as the loop uses it.
  * @typedef {object} CoreLike
  * @property {(json: string) => string} set_field
+ * @property {(bytes: Uint8Array, info: string) => string} set_points
  * @property {(json: string) => string} start
  * @property {(budget: number) => string} step
  * @property {(steps: number) => string} relax
@@ -28,10 +29,12 @@ import { PROGRESS_MS } from './protocol.js';
  * @property {(from: number) => Uint32Array} levels
  * @property {(from: number) => Uint32Array} parents
  * @property {(from: number) => Uint32Array} slots
+ * @property {(from: number) => Float32Array} curvature  two per particle
  * @property {() => string} report
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
+ * @property {() => Uint32Array} component
  */
 /**
  * @typedef {object} Surroundings
@@ -39,6 +42,7 @@ import { PROGRESS_MS } from './protocol.js';
  * @property {() => Promise<void>} pause  lets messages in
  * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
  * @property {() => 'stop' | 'replace' | null} interrupt
+ * @property {() => boolean} curvature  whether the page shows it
  * @property {() => boolean} room  whether the page has drawn what it was sent
  */
 
@@ -67,6 +71,36 @@ export function nextBudget(/** @type {number} */ budget, /** @type {number} */ t
 }
 
 /**
+ * A model is set anew for every job: its few kilobytes cost less than to know which one the core of this worker has.
+ * @param {CoreLike} core @param {import('./protocol.js').SampleJob} job
+ * @returns {import('../types.js').FieldAnswer}
+ */
+function setField(core, { field, points }) {
+  if (!points) return JSON.parse(core.set_field(JSON.stringify(field)));
+  const { info, bounds } = points.info;
+  return JSON.parse(core.set_points(points.field, JSON.stringify({ info, bounds: field.bounds ?? bounds })));
+}
+
+/** Columns of no particle. */
+const none = () => ({
+  positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0),
+});
+
+/**
+ * The curvature of particles that the page has.
+ * @param {CoreLike} core @param {number} id
+ * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
+ */
+export function curvatureColumn(core, id) {
+  const curvature = core.curvature(0);
+  const total = core.count();
+  return [
+    { type: 'columns', id, first: total, total, ...none(), slots_from: total, slots: new Uint32Array(0), curvature_from: 0, curvature, progress: null },
+    [curvature.buffer],
+  ];
+}
+
+/**
  * Runs a job to its end, or until it is interrupted.
  * @param {CoreLike} core
  * @param {Job} job
@@ -87,7 +121,7 @@ export async function runJob(core, job, env, memory) {
     env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, report_follows });
 
   if (job.kind === 'sample') {
-    const answer = JSON.parse(core.set_field(JSON.stringify(job.field)));
+    const answer = setField(core, job);
     env.post({ type: 'field', id, answer });
     if (!answer.ok) return done('field_error');
     memory.held = 0;
@@ -106,7 +140,7 @@ export async function runJob(core, job, env, memory) {
   memory.held = id;
 
   // What the page has: columns of `count` particles, and whether the fates of all their slots are the latest.
-  const sent = { count: job.kind === 'sample' ? 0 : core.count(), stale: false, slots_from: 0, settled: false, picture_ms: -Infinity };
+  const sent = { count: job.kind === 'sample' ? 0 : core.count(), stale: false, slots_from: 0, settled: false, curved: 0, picture_ms: -Infinity };
   let beat_ms = env.now_ms();
   /** @type {Record<string, number>} */
   const budgets = {};
@@ -126,11 +160,15 @@ export async function runJob(core, job, env, memory) {
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
     const slots_from = sent.stale ? 0 : Math.min(sent.slots_from, first);
+    // A relaxed particle has not gone far: until the end its curvature stays what it was when it was placed.
+    const curvature_from = sent.curved;
+    const curvature = env.curvature() ? core.curvature(curvature_from) : new Float32Array(0);
+    sent.curved += curvature.length / 2;
     const columns = {
       positions: core.positions(first), normals: core.normals(first), radii: core.radii(first),
-      levels: core.levels(first), parents: core.parents(first), slots: core.slots(slots_from),
+      levels: core.levels(first), parents: core.parents(first), slots: core.slots(slots_from), curvature,
     };
-    env.post({ type: 'columns', id, first, total, slots_from, ...columns, progress: last }, Object.values(columns).map((c) => c.buffer));
+    env.post({ type: 'columns', id, first, total, slots_from, curvature_from, ...columns, progress: last }, Object.values(columns).map((c) => c.buffer));
     // The fates of a particle's slots are decided after it was sent: they go along with the next piece.
     sent.slots_from = first;
     sent.settled = slots_from === 0;
@@ -171,13 +209,21 @@ export async function runJob(core, job, env, memory) {
   }
 
   // At the end the page has every particle, and the final fate of every slot.
+  if (last.relax_step > 0) sent.curved = 0;
   if (core.count() > sent.count || sent.stale) sendColumns();
   if (!sent.settled) {
     const slots = core.slots(0);
     const total = core.count();
-    const none = { positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0) };
-    env.post({ type: 'columns', id, first: total, total, ...none, slots_from: 0, slots, progress: last }, [slots.buffer]);
+    env.post({
+      type: 'columns', id, first: total, total, ...none(), slots_from: 0, slots, curvature_from: 0, curvature: new Float32Array(0), progress: last,
+    }, [slots.buffer]);
   }
+  const tellCurvature = () => {
+    if (!env.curvature() || sent.curved === core.count()) return;
+    env.post(...curvatureColumn(core, id));
+    sent.curved = core.count();
+  };
+  tellCurvature();
   const stopped = last.stop_reason === 'cancelled';
   const reported = !job.live && core.count() > 0;
   done(stopped ? 'stopped' : 'complete', '', reported);
@@ -192,6 +238,7 @@ export async function runJob(core, job, env, memory) {
   const before = env.now_ms();
   const report = JSON.parse(core.report());
   seconds.quality = (env.now_ms() - before) / 1000;
-  const figures = { valence: core.valence(), nearest: core.nearest(), residual: core.residual() };
+  const figures = { valence: core.valence(), nearest: core.nearest(), residual: core.residual(), component: core.component() };
   env.post({ type: 'report', id, report: { ...report, seconds: { ...seconds } }, ...figures }, Object.values(figures).map((c) => c.buffer));
+  tellCurvature();
 }

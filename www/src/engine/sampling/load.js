@@ -1,5 +1,5 @@
 /**
- * Brings in the sampler's WebAssembly and names what went wrong when it does not come.
+ * Brings in the WebAssembly of a worker and names what went wrong when it does not come.
  *
  * @module
  */
@@ -22,22 +22,23 @@ export class LoadError extends Error {
 /**
  * Fetches and compiles. A host that serves the file under a wrong media type costs only the streaming.
  * @param {string | URL} url
+ * @param {string} [what]  the module is, for the messages
  * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
  * @returns {Promise<WebAssembly.Module>}
  */
-export async function loadModule(url, env = { fetch: (...request) => globalThis.fetch(...request), wasm: globalThis.WebAssembly }) {
+export async function loadModule(url, what = 'sampler', env = { fetch: (...request) => globalThis.fetch(...request), wasm: globalThis.WebAssembly }) {
   const { wasm } = env;
-  if (!wasm) throw new LoadError('no_wasm', 'This browser has WebAssembly switched off. The sampler needs it.');
+  if (!wasm) throw new LoadError('no_wasm', `This browser has WebAssembly switched off. The ${what} needs it.`);
   if (!wasm.validate(SIMD_PROBE)) throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
   const name = new URL(url, 'http://localhost').pathname.split('/').pop();
   let response;
   try {
     response = await env.fetch(url);
   } catch (error) {
-    throw new LoadError('blocked', `The sampler (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`);
+    throw new LoadError('blocked', `The ${what} (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`);
   }
   if (!response.ok) {
-    throw new LoadError('missing', `The sampler (${name}) is not on the server: it answers ${response.status}. The site is incomplete; build it again.`);
+    throw new LoadError('missing', `The ${what} (${name}) is not on the server: it answers ${response.status}. The site is incomplete; build it again.`);
   }
   const type = response.headers.get('content-type') ?? '';
   try {
@@ -45,7 +46,7 @@ export async function loadModule(url, env = { fetch: (...request) => globalThis.
     return await wasm.compile(await response.arrayBuffer());
   } catch (error) {
     const hint = type.startsWith('text/html') ? 'The server sends a page in its place' : 'The file is damaged';
-    throw new LoadError('corrupt', `The sampler (${name}) is no WebAssembly: ${words(error)}. ${hint}; reload, or build the site again.`);
+    throw new LoadError('corrupt', `The ${what} (${name}) is no WebAssembly: ${words(error)}. ${hint}; reload, or build the site again.`);
   }
 }
 

@@ -22,11 +22,12 @@
  * Sample the field from the start. `grow` shows the surface while it grows; otherwise columns come once the front is
  * complete, so that a picture already there stays until its successor is whole. A `live` job comes from a control that is
  * being dragged: columns once, at the end, and no report. `ask_above` is the number of particles beyond which the job is
- * handed back unstarted.
+ * handed back unstarted. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
  * @property {number} id
  * @property {FieldRequest} field
+ * @property {Pick<import('../points/protocol.js').Solved, 'field' | 'info'> | null} points
  * @property {Settings} settings
  * @property {boolean} grow
  * @property {boolean} live
@@ -39,7 +40,10 @@
 /** @typedef {SampleJob | RelaxJob} Job */
 
 /**
+ * `curvature` says whether the page shows the curvature: it then comes with the other columns, and at once for the particles
+ * that are held.
  * @typedef {{type: 'job', job: Job}
+ *   | {type: 'curvature', on: boolean}
  *   | {type: 'stop', id: number}
  *   | {type: 'drawn', id: number}
  *   | {type: 'provoke', fault: Fault}} ToWorker
@@ -64,7 +68,9 @@
  * @property {Uint32Array} parents
  * @property {number} slots_from
  * @property {Uint32Array} slots
- * @property {CoreProgress} progress
+ * @property {number} curvature_from
+ * @property {Float32Array} curvature  empty unless the page shows it
+ * @property {CoreProgress | null} progress  null for columns sent after the run
  */
 /**
  * @typedef {object} DoneMessage
@@ -85,6 +91,7 @@
  * @property {Uint8Array} valence
  * @property {Float32Array} nearest
  * @property {Float32Array} residual
+ * @property {Uint32Array} component
  */
 /** Why the sampler could not be loaded. @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault */
 /**

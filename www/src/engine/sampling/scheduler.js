@@ -74,8 +74,28 @@ export class Scheduler {
 }
 
 /**
+ * Runs whose costs are alike: points and formulas differ by an order of magnitude, and so do adaptive and uniform runs; the
+ * number of particles follows from another length for every law.
+ * @param {import('../types.js').FieldRequest} field @param {Settings} settings
+ */
+export const costKey = (field, settings) =>
+  [field.points === undefined ? 'formula' : 'points', settings.sampling, settings.sampling === 'adaptive' ? settings.radius_law : ''].join(' ');
+
+/**
+ * The quantity to whose square the number of particles is inversely proportional: the radius, or what every radius of an
+ * adaptive run is proportional to. NaN where the count decides.
+ * @param {Settings} settings @param {number} diagonal  of the clip box
+ */
+export function sizeOf(settings, diagonal) {
+  if (settings.size_mode === 'count') return NaN;
+  if (settings.sampling !== 'adaptive') return Number(settings.radius_share) * diagonal;
+  // h = √(6εR − 3ε²) ≈ √(6εR): the chord error ε is a share of the diagonal.
+  return settings.radius_law === 'chord_error' ? Math.sqrt(Number(settings.chord_error) * diagonal) : Number(settings.curvature_scale);
+}
+
+/**
  * What a run costs on this machine, from the runs before: milliseconds to find the surface, microseconds per particle for the
- * front, for a relaxation step and for drawing, and the particles that a radius gives on the present surface.
+ * front, for a relaxation step and for drawing, and the particles that a size gives on the present surface.
  */
 export class CostModel {
   constructor() {
@@ -85,15 +105,15 @@ export class CostModel {
     this.relax_us = 0.25;
     /** Zero wherever the graphics card keeps up with the screen. */
     this.draw_us = 0;
-    /** count · radius², nearly constant for one surface; 0 until known. */
+    /** count · size², nearly constant for one surface; 0 until known. */
     this.area = 0;
     this.known = false;
   }
 
-  /** @param {{seconds: Seconds, particles: number, relax_steps: number, radius: number}} run */
-  record({ seconds, particles, relax_steps, radius }) {
+  /** @param {{seconds: Seconds, particles: number, relax_steps: number, size: number}} run  `size` as of {@link sizeOf}, NaN where unknown */
+  record({ seconds, particles, relax_steps, size }) {
     if (particles < 1) return;
-    this.area = particles * radius * radius;
+    if (size > 0) this.area = particles * size * size;
     const share = this.known ? 0.5 : 1;
     const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
     this.fixed_ms = blend(this.fixed_ms, seconds.seeding * 1e3);
@@ -121,14 +141,14 @@ export class CostModel {
   /** Particles to expect. @param {Settings} settings @param {number} diagonal */
   expected(settings, diagonal) {
     const cap = Number(settings.max_particles);
-    const radius = Number(settings.radius_share) * diagonal;
-    const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / (radius * radius);
+    const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / sizeOf(settings, diagonal) ** 2;
     return Math.min(n, cap);
   }
 }
 
 /**
- * Settings for a run while a control is dragged: the full ones if they fit {@link LIVE_MS}, else as many particles as do.
+ * Settings for a run while a control is dragged: the full ones if they fit {@link LIVE_MS}, else as many particles as do. The
+ * caller brings them into their ranges.
  * @param {Settings} settings  complete, with the defaults filled in
  * @param {number} diagonal  of the clip box, of which the radius is a share
  * @param {CostModel} cost
@@ -138,12 +158,32 @@ export class CostModel {
 export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
   const relax_steps = Number(settings.relax_steps);
   const expected = cost.expected(settings, diagonal);
-  if (!(cost.area > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
+  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
   const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
   const per_particle_ms = cost.perParticle(coarse_relax) / 1e3;
   // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
   const affordable = Math.max(FEWEST, Math.max(budget_ms - cost.fixed_ms, budget_ms / 2) / per_particle_ms);
   const particles = Math.min(expected, affordable);
-  const radius = Math.sqrt(cost.area / particles);
-  return { settings: { ...settings, size_mode: 'radius', radius_share: radius / diagonal, relax_steps: coarse_relax }, coarse: true };
+  return { settings: { ...settings, relax_steps: coarse_relax, ...coarser(settings, diagonal, cost, particles, expected / particles) }, coarse: true };
+}
+
+/**
+ * The settings of size for so many particles, `fewer` times fewer than now.
+ * @param {Settings} settings @param {number} diagonal @param {CostModel} cost @param {number} particles @param {number} fewer
+ * @returns {Settings}
+ */
+function coarser(settings, diagonal, cost, particles, fewer) {
+  if (settings.sampling !== 'adaptive') {
+    // A radius needs no trial run, as a count does.
+    if (cost.area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(cost.area / particles) / diagonal };
+    return { count: Math.round(particles) };
+  }
+  if (settings.size_mode === 'count') return { count: Math.round(particles) };
+  const factor = Math.sqrt(fewer);
+  return {
+    chord_error: Number(settings.chord_error) * fewer,
+    curvature_scale: Number(settings.curvature_scale) * factor,
+    radius_min_share: Number(settings.radius_min_share) * factor,
+    radius_max_share: Number(settings.radius_max_share) * factor,
+  };
 }

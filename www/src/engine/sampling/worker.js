@@ -6,7 +6,7 @@
  */
 import init, { Core } from '../../wasm/core/core.js';
 import wasmUrl from '../../wasm/core/core_bg.wasm?url';
-import { runJob } from './job.js';
+import { curvatureColumn, runJob } from './job.js';
 import { loadModule, LoadError, words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
@@ -19,7 +19,7 @@ import { BEAT_MS } from './protocol.js';
 /** Most that a run may take with its report: a browser ends a page that takes much more, on a phone much sooner. */
 const MEMORY_MB = { desk: 512, phone: 256 };
 
-/** @param {WorkerNavigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
+/** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
 const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) => (userAgentData?.mobile ?? /Mobi/.test(userAgent)) || deviceMemory < 4;
 
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
@@ -35,6 +35,8 @@ let asked = null;
 let undrawn = 0;
 /** @type {import('./protocol.js').Fault | null} */
 let provoked = null;
+/** Whether the page shows the curvature. */
+let curvature = false;
 let dead = false;
 /** The last words of the core's panic hook, which writes to the console. */
 let last_words = '';
@@ -99,6 +101,7 @@ async function pump() {
           if (provoked) provoke();
           return next ? 'replace' : asked;
         },
+        curvature: () => curvature,
         room: () => undrawn < 2,
       }, memory);
     } catch (error) {
@@ -121,6 +124,16 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
     case 'job':
       next = data.job;
       if (!running) void pump();
+      break;
+    case 'curvature':
+      curvature = data.on;
+      if (curvature && core && !running && memory.held > 0) {
+        try {
+          post(...curvatureColumn(core, memory.held));
+        } catch (error) {
+          crashed(memory.held, error);
+        }
+      }
       break;
     case 'stop':
       if (running && data.id === running.id) asked = 'stop';

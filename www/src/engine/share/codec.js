@@ -35,7 +35,7 @@ export function difference(state, description) {
   /** @type {Record<string, unknown>} */
   const out = {};
   if (state.surface !== home.surface) out.surface = state.surface;
-  if (state.formula !== surfaceOf(description, state.surface)?.formula) out.formula = state.formula;
+  if (state.formula !== (surfaceOf(description, state.surface)?.formula ?? '')) out.formula = state.formula;
   if (Object.keys(state.parameters).length) out.parameters = state.parameters;
   if (state.declared.length) out.declared = state.declared;
   if (state.bounds) out.bounds = state.bounds;
@@ -114,10 +114,11 @@ export async function encode(state, description) {
  * Reads a fragment.
  * @param {string} fragment  with or without `#`
  * @param {Description} description
+ * @param {boolean} [has_file]  whether there is a file for a state that needs one
  * @returns {Promise<{state: State, reset: string[], problem: string | null}>} `problem`: why nothing of it could be used;
  *   `reset`: what of it could not
  */
-export async function decode(fragment, description) {
+export async function decode(fragment, description, has_file = false) {
   const text = fragment.startsWith('#') ? fragment.slice(1) : fragment;
   const home = { state: defaultState(description), reset: [] };
   if (text === '') return { ...home, problem: null };
@@ -129,7 +130,7 @@ export async function decode(fragment, description) {
     const bytes = fromBase64url(parts[3]);
     const plain = parts[2] === 'z' ? await through(bytes, new DecompressionStream('deflate-raw'), LONGEST_JSON) : bytes;
     const raw = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(plain));
-    return { ...sanitize(raw, description), problem: null };
+    return { ...sanitize(raw, description, has_file), problem: null };
   } catch (error) {
     return { ...home, problem: error instanceof RangeError ? 'The link holds too much to be one of this page.' : 'The link is damaged.' };
   }

@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { FILE_SURFACE } from '../types.js';
 import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 
 /**
@@ -53,8 +54,25 @@ export function completeSettings(description, settings) {
   return all;
 }
 
-/** What the core is told of the field. @param {State} state @param {Description} description @returns {FieldRequest} */
-export function fieldRequest(state, description) {
+/** Every number within the range of its setting. @param {Description} description @param {Settings} settings @returns {Settings} */
+export function clampSettings(description, settings) {
+  return Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, validSetting(description, name, value) ?? value]));
+}
+
+/** @param {Description | null} description @param {string} id */
+export const modelOf = (description, id) => description?.models.find((model) => model.id === id);
+
+/** Whether a surface is made of points: a built-in model or a file. @param {Description | null} description @param {string} id */
+export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(description, id) !== undefined;
+
+/**
+ * What the core is told of the field.
+ * @param {State} state @param {Description} description
+ * @param {string} [points]  under which the model of the state is kept
+ * @returns {FieldRequest}
+ */
+export function fieldRequest(state, description, points) {
+  if (points !== undefined) return { points, surface: state.surface, ...(state.bounds ? { bounds: state.bounds } : {}) };
   const surface = surfaceOf(description, state.surface);
   /** @type {FieldRequest} */
   const request = { surface: state.surface, parameters: { ...state.parameters } };
@@ -106,23 +124,32 @@ function validParameter(v) {
  * A valid state out of anything: what cannot be used takes its default and is named in `reset`, in words for a person.
  * @param {unknown} raw
  * @param {Description} description
+ * @param {boolean} [has_file]  whether there is a file for a state that needs one
  * @returns {{state: State, reset: string[]}}
  */
-export function sanitize(raw, description) {
+export function sanitize(raw, description, has_file = false) {
   /** @type {string[]} */
   const reset = [];
   const state = defaultState(description);
   if (!isRecord(raw)) return { state, reset: ['everything'] };
+  if (raw.surface === FILE_SURFACE && !has_file) {
+    // What belongs to the surface goes with it; the settings and the look do for another.
+    const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
+    const rest = sanitize({ settings: raw.settings, view }, description);
+    return { state: rest.state, reset: ['the surface, whose points are in a file', ...rest.reset] };
+  }
 
+  const id = typeof raw.surface === 'string' ? raw.surface : '';
+  const points = fromPoints(description, id);
   if (raw.surface !== undefined) {
-    const surface = typeof raw.surface === 'string' ? surfaceOf(description, raw.surface) : undefined;
-    if (surface) {
-      state.surface = surface.id;
-      state.formula = surface.formula;
+    const surface = surfaceOf(description, id);
+    if (surface || points) {
+      state.surface = id;
+      state.formula = surface?.formula ?? '';
     } else reset.push('surface');
   }
-  if (raw.formula !== undefined) {
-    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA) state.formula = raw.formula;
+  if (raw.formula !== undefined && !(points && raw.formula === '')) {
+    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA && !points) state.formula = raw.formula;
     else reset.push('formula');
   }
   if (raw.parameters !== undefined) {

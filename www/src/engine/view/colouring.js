@@ -4,7 +4,7 @@
  * @module
  */
 import { hexFromPacked } from './oklab.js';
-import { CYCLE, PALETTES, RAMP } from './palettes.js';
+import { CYCLE, PALETTES, PIECES } from './palettes.js';
 
 /**
  * @typedef {import('../columns.js').Columns} Columns
@@ -16,16 +16,22 @@ import { CYCLE, PALETTES, RAMP } from './palettes.js';
 /** Slot fates as the core numbers them. */
 export const FATE = { open: 0, parent: 1, added: 2, matched: 3, notConverged: 4, outside: 5, undefined: 6, capped: 7 };
 
+/** Slots of a particle: six around one of a uniform run, as many as there is room for around one of an adaptive run. */
+const SLOTS = 6;
+const MOST_SLOTS = 10;
+
 /**
- * What the six slots of a particle say together, the worst first: a slot that failed, one that met the limit on particles,
- * one outside the clip box, one not decided yet, or six that are filled.
+ * What the slots of a particle say together, the worst first: a slot that failed, one that met the limit on particles,
+ * one outside the clip box, one not decided yet, or all of them filled.
  * @typedef {'trouble' | 'capped' | 'border' | 'front' | 'interior'} SlotsClass
  */
 
-/** @param {number} slots @returns {SlotsClass} */
-export function classOfSlots(slots) {
+/** @param {number} slots @param {boolean} adaptive @returns {SlotsClass} */
+export function classOfSlots(slots, adaptive) {
   let seen = 0;
-  for (let k = 0; k < 6; k += 1) seen |= 1 << ((slots >> (3 * k)) & 7);
+  for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << ((slots >>> (3 * k)) & 7);
+  // How many children an adaptive particle has room for shows only when the front has come to it: what it leaves is unused.
+  if (adaptive && (slots >>> 3) !== 0) seen &= ~(1 << FATE.open);
   if (seen & ((1 << FATE.notConverged) | (1 << FATE.undefined))) return 'trouble';
   if (seen & (1 << FATE.capped)) return 'capped';
   if (seen & (1 << FATE.outside)) return 'border';
@@ -43,29 +49,76 @@ export function classOfValence(valence) {
 /** Range of the nearest distance that the ramp covers, as shares of the ideal distance 2r. */
 const NEAREST_SHARE = /** @type {const} */ ([0.6, 1.2]);
 
-/** The ramp's ends: the ideal distance 2r lies at two thirds. @param {number} radius @returns {[number, number]} */
-const nearestRange = (radius) => [2 * radius * NEAREST_SHARE[0], 2 * radius * NEAREST_SHARE[1]];
+/** The piece of a particle that the report leaves out. */
+const NO_PIECE = 0xffffffff;
+
+/** The share of the curvatures that the diverging ramp covers: a few sharp places must not make all the others look flat. */
+const CURVATURE_QUANTILE = 0.95;
+/** Curvatures looked at for that share. */
+const CURVATURE_SAMPLES = 4096;
+
+/**
+ * The values at the two ends of a ramp that follows the particles: the smallest and the largest radius, or the curvature, the
+ * same on both sides of 0, that 95 % of the particles do not exceed. Null for other modes and before there is a value.
+ * @param {ColourMode} mode @param {Columns} columns
+ * @returns {[number, number] | null}
+ */
+export function rangeOf(mode, columns) {
+  if (mode === 'radius' && columns.count > 0) {
+    let low = Infinity;
+    let high = 0;
+    for (let i = 0; i < columns.count; i += 1) {
+      const r = columns.radii[i];
+      if (r < low) low = r;
+      if (r > high) high = r;
+    }
+    return [low, high];
+  }
+  if (mode === 'curvature' && columns.curved > 0) {
+    const step = Math.ceil(columns.curved / CURVATURE_SAMPLES);
+    const sizes = [];
+    for (let i = 0; i < columns.curved; i += step) {
+      const size = Math.abs(meanCurvature(columns, i));
+      if (size < Infinity) sizes.push(size);
+    }
+    if (sizes.length === 0) return null;
+    sizes.sort((a, b) => a - b);
+    const most = sizes[Math.floor(CURVATURE_QUANTILE * (sizes.length - 1))];
+    return [-most, most];
+  }
+  return null;
+}
+
+/** @param {Columns} columns @param {number} i */
+const meanCurvature = ({ curvature }, i) => 0.5 * (curvature[2 * i] + curvature[2 * i + 1]);
+
+/** The colour of `v` on a ramp from `low` to `high`; the first one for NaN. @param {Uint32Array} ramp @param {number} v @param {number} low @param {number} high */
+function onRamp(ramp, v, low, high) {
+  const t = high > low ? Math.min(1, Math.max(0, (v - low) / (high - low))) : 0.5;
+  return ramp[Math.round(t * (ramp.length - 1)) || 0];
+}
 
 /**
  * Colours of particles `first … last`, as `0xAABBGGRR`.
  *
- * A mode that needs the report's figures (valence, nearest distance) gives the plain colour until they are there.
+ * A mode that needs figures that are not there yet (of the report, or the curvature) gives the plain colour.
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
  * @param {number} first
  * @param {number} last
+ * @param {[number, number] | null} [range]  as of {@link rangeOf}
  */
-export function coloursOf(mode, theme, columns, first, last) {
+export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
   const out = new Uint32Array(last - first);
-  const { levels, slots, normals, valence, nearest, radii } = columns;
+  const { levels, slots, normals, valence, nearest, radii, component, curved, adaptive } = columns;
   switch (mode) {
     case 'level':
       for (let i = first; i < last; i += 1) out[i - first] = palette.levels[levels[i] % CYCLE];
       return out;
     case 'fate':
-      for (let i = first; i < last; i += 1) out[i - first] = palette.fate[classOfSlots(slots[i])];
+      for (let i = first; i < last; i += 1) out[i - first] = palette.fate[classOfSlots(slots[i], adaptive)];
       return out;
     case 'valence':
       if (!valence) break;
@@ -73,11 +126,22 @@ export function coloursOf(mode, theme, columns, first, last) {
       return out;
     case 'nearest':
       if (!nearest) break;
+      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, nearest[i] / (2 * radii[i]), ...NEAREST_SHARE);
+      return out;
+    case 'radius':
+      if (!range) break;
+      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, radii[i], ...range);
+      return out;
+    case 'curvature':
+      if (!range) break;
       for (let i = first; i < last; i += 1) {
-        const share = nearest[i] / (2 * radii[i]);
-        const t = Math.min(1, Math.max(0, (share - NEAREST_SHARE[0]) / (NEAREST_SHARE[1] - NEAREST_SHARE[0])));
-        out[i - first] = palette.sequential[Math.round(t * (RAMP - 1)) || 0];
+        const mean = i < curved ? meanCurvature(columns, i) : NaN;
+        out[i - first] = Number.isNaN(mean) ? palette.plain : onRamp(palette.diverging, mean, ...range);
       }
+      return out;
+    case 'component':
+      if (!component) break;
+      for (let i = first; i < last; i += 1) out[i - first] = component[i] === NO_PIECE ? palette.plain : palette.components[component[i] % PIECES];
       return out;
     case 'normal':
       for (let i = first; i < last; i += 1) {
@@ -93,7 +157,7 @@ export function coloursOf(mode, theme, columns, first, last) {
 
 /** What a level, a class of slots or of valence is called, in the legend's order. */
 const FATE_LABELS = /** @type {const} */ ([
-  ['interior', 'all six slots filled'],
+  ['interior', 'all slots filled'],
   ['border', 'at the clip box'],
   ['trouble', 'a slot without a point'],
   ['capped', 'limit reached'],
@@ -133,15 +197,16 @@ function categories(labels, colours, count, classOf) {
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
+ * @param {[number, number] | null} [range]  as of {@link rangeOf}
  * @returns {Legend}
  */
-export function legendOf(mode, theme, columns) {
+export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
   switch (mode) {
     case 'level':
       return { title: 'Generation level', unit: '', kind: 'cyclic', range: [0, lastLevel(columns)], colours: [...palette.levels].map(hexFromPacked) };
     case 'fate': {
-      const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) => classOfSlots(columns.slots[i]));
+      const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) => classOfSlots(columns.slots[i], columns.adaptive));
       return { title: 'Slots', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
     case 'valence': {
@@ -150,18 +215,46 @@ export function legendOf(mode, theme, columns) {
       const entries = categories(VALENCE_LABELS, palette.valence, columns.count, (i) => classOfValence(valence[i]));
       return { title: 'Neighbours', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
-    case 'nearest': {
-      const radius = columns.count ? columns.radii[0] : 0;
+    case 'nearest':
       return {
-        title: 'Nearest distance', unit: '', kind: 'sequential', range: nearestRange(radius), mark: 2 * radius,
+        title: 'Nearest distance', unit: '× 2r', kind: 'sequential', range: [...NEAREST_SHARE], mark: 1,
         colours: [...palette.sequential].map(hexFromPacked), pending: columns.nearest === null,
       };
+    case 'radius':
+      return { title: 'Radius', unit: '', kind: 'sequential', range: range ?? undefined, colours: [...palette.sequential].map(hexFromPacked), pending: range === null };
+    case 'curvature':
+      return {
+        title: 'Mean curvature', unit: '1/length', kind: 'diverging', range: range ?? undefined, mark: 0,
+        colours: [...palette.diverging].map(hexFromPacked), pending: range === null || columns.curved < columns.count,
+      };
+    case 'component': {
+      if (!columns.component) return { title: 'Connected pieces', unit: '', kind: 'categories', entries: [], colours: [hexFromPacked(palette.plain)], pending: true };
+      const entries = pieces(columns.component, palette);
+      return { title: 'Connected pieces', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
     case 'normal':
       return { title: 'Normal', unit: '', kind: 'normal', entries: normalAxes(), colours: normalAxes().map((e) => e.colour) };
     default:
       return { title: 'Plain', unit: '', kind: 'plain', colours: [hexFromPacked(palette.plain)] };
   }
+}
+
+/**
+ * One entry for each of the first pieces, and one for all the others.
+ * @param {Uint32Array} component @param {import('./palettes.js').Palette} palette
+ * @returns {import('../types.js').LegendEntry[]}
+ */
+function pieces(component, palette) {
+  /** @type {number[]} */
+  const counts = [];
+  for (const k of component) if (k !== NO_PIECE) counts[k] = (counts[k] ?? 0) + 1;
+  const named = Math.min(PIECES, counts.length);
+  const entries = counts.slice(0, named).map((count, k) => ({ label: `piece ${k + 1}`, colour: hexFromPacked(palette.components[k]), count: count ?? 0 }));
+  if (counts.length > named) {
+    const rest = counts.slice(named);
+    entries.push({ label: `${rest.length} more, in the same colours`, colour: hexFromPacked(palette.plain), count: rest.reduce((sum, n) => sum + (n ?? 0), 0) });
+  }
+  return entries;
 }
 
 /** @param {Columns} columns */

@@ -48,6 +48,44 @@ function ramp(stops, n) {
 
 /** Samples of the sequential ramp. */
 export const RAMP = 64;
+/** Samples of the diverging ramp: odd, so that one of them is 0. */
+export const DIVERGING = 65;
+
+/**
+ * Two straight lines in OKLab from the neutral middle to blue and to orange: equal steps of the value are equal steps for the eye,
+ * and of the pairs of hues this is the one that every colour deficiency keeps apart. The middle is the lightest on either
+ * ground, so that the two signs differ in hue alone and the amount shows in a grey print too.
+ * @param {Theme} theme
+ */
+function diverging(theme) {
+  const light = theme === 'light';
+  const middle = oklch(light ? 0.83 : 0.9, 0, 0);
+  const [low, high] = light ? [oklch(0.47, 0.13, 255), oklch(0.52, 0.15, 45)] : [oklch(0.56, 0.14, 255), oklch(0.6, 0.16, 45)];
+  return Uint32Array.from({ length: DIVERGING }, (_, i) => {
+    const t = (2 * i) / (DIVERGING - 1) - 1;
+    const end = t < 0 ? low : high;
+    return packedFromOklab(/** @type {[number, number, number]} */ (middle.map((v, k) => v + (end[k] - v) * Math.abs(t))));
+  });
+}
+
+/** Connected pieces with a colour of their own; then the colours begin again. */
+export const PIECES = 12;
+
+/**
+ * Lightness, chroma and hue of the pieces, found by a search for the twelve colours that are farthest apart for the ordinary
+ * eye and for all three colour deficiencies at once, then put in the order in which each is farthest from those before it.
+ * @type {Record<Theme, [number, number, number][]>}
+ */
+const PIECE_COLOURS = {
+  light: [
+    [0.56, 0.15, 250], [0.74, 0.15, 60], [0.44, 0.15, 30], [0.79, 0.15, 220], [0.44, 0.15, 300], [0.62, 0.04, 90],
+    [0.79, 0.04, 130], [0.44, 0.08, 190], [0.68, 0.15, 280], [0.56, 0.15, 50], [0.68, 0.115, 340], [0.56, 0.115, 330],
+  ],
+  dark: [
+    [0.64, 0.15, 250], [0.76, 0.15, 60], [0.52, 0.115, 20], [0.86, 0.15, 200], [0.52, 0.15, 300], [0.86, 0.115, 130],
+    [0.76, 0.115, 270], [0.76, 0.04, 10], [0.58, 0.115, 90], [0.64, 0.04, 290], [0.52, 0.08, 210], [0.64, 0.115, 30],
+  ],
+};
 
 /** @param {Theme} theme */
 function palette(theme) {
@@ -57,6 +95,8 @@ function palette(theme) {
     // Too close is dark violet, the ideal distance green-blue, too far bright yellow: lightness rises all the way, so that
     // the order survives any colour deficiency and a grey print.
     sequential: ramp([[0.36, 0.14, 300], [0.5, 0.12, 255], [0.64, 0.11, 195], [0.78, 0.15, 140], [0.9, 0.16, 100]], RAMP),
+    diverging: diverging(theme),
+    components: Uint32Array.from(PIECE_COLOURS[theme], ([L, C, h]) => packedFromOklab(oklch(L, C, h))),
     valence: {
       four: packedFromOklab(oklch(light ? 0.47 : 0.55, 0.17, 262)),
       five: packedFromOklab(oklch(light ? 0.66 : 0.72, 0.12, 245)),
@@ -75,6 +115,9 @@ function palette(theme) {
     plain: packedFromOklab(oklch(light ? 0.78 : 0.74, 0.025, 235)),
     // Near-neutral ground, the same as the page's own.
     ground: packedFromOklab(oklch(light ? 0.975 : 0.185, light ? 0.002 : 0.006, 260)),
+    // The points of a model: ink on a casing of the ground's kind, seen on any colour.
+    ink: packedFromOklab(oklch(light ? 0.2 : 0.98, 0, 0)),
+    casing: packedFromOklab(oklch(light ? 0.99 : 0.15, 0, 0)),
     box: packedFromOklab(oklch(light ? 0.62 : 0.55, 0.01, 260)),
   };
 }

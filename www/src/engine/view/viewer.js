@@ -5,8 +5,9 @@
  * @module
  */
 import { Camera, ballOf, rayThrough, viewOf } from './camera.js';
-import { coloursOf, legendOf } from './colouring.js';
+import { coloursOf, legendOf, rangeOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
+import { dotsOf } from './dots.js';
 import { Glide, MOST_GLIDING } from './glide.js';
 import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
@@ -35,6 +36,8 @@ const DIM = 0.62;
 /** A picture that the screen did not take is drawn again this much later, and so many times. */
 const RETRY_MS = 60;
 const MOST_SKIPS = 20;
+/** Change of a ramp's end, as a share of the ramp, that nobody sees: half a step of 64. */
+const RANGE_SLACK = 1 / 128;
 /** Discs smaller than this are picked by their neighbourhood, in page pixels. */
 const PICK_PX = 6;
 
@@ -69,6 +72,10 @@ export class Viewer {
     /** @type {Bounds | null} */
     this.box = null;
     this.highlight = -1;
+    /** The points of a model, three numbers each, drawn as dots. @type {Float32Array | null} */
+    this.points = null;
+    /** Values at the ends of the present colouring's ramp. @type {[number, number] | null} */
+    this.range = null;
     /** @type {Insets} */
     this.insets = { left: 0, right: 0, top: 0, bottom: 0 };
     this.dimmed = { from: 0, to: 0, at_s: 0 };
@@ -91,6 +98,7 @@ export class Viewer {
     this.height = 0;
     this.css_width = 0;
     this.css_height = 0;
+    this.ratio = 1;
     /** @type {View | null} */
     this.view = null;
     this.calm = matchMedia('(prefers-reduced-motion: reduce)');
@@ -181,7 +189,7 @@ export class Viewer {
   }
 
   /**
-   * @param {{colour?: ViewState['colour'], size?: number, theme?: 'light' | 'dark', box?: Bounds | null, highlight?: number, insets?: Insets}} look
+   * @param {{colour?: ViewState['colour'], size?: number, theme?: 'light' | 'dark', box?: Bounds | null, points?: Float32Array | null, highlight?: number, insets?: Insets}} look
    */
   set(look) {
     if ((look.colour !== undefined && look.colour !== this.colour) || (look.theme !== undefined && look.theme !== this.theme)) {
@@ -191,24 +199,26 @@ export class Viewer {
     this.theme = look.theme ?? this.theme;
     this.size = look.size ?? this.size;
     if (look.box !== undefined) this.box = look.box;
+    if (look.points !== undefined) this.points = look.points;
     if (look.highlight !== undefined) this.highlight = look.highlight;
     this.insets = look.insets ?? this.insets;
     this.style_due = true;
     this.invalidate();
   }
 
-  /** What a fit shows: the particles, else the clip box. */
+  /** What a fit shows: the particles, else the clip box, all of it where it is drawn. */
   ball() {
     const { columns } = this;
     const bounds = columns.bounds();
-    if (!bounds) return this.box_ball;
+    if (!bounds) return this.box ? this.scene : this.box_ball;
     const { centre } = ballOf(bounds);
     let far_sq = 0;
     for (let i = 0; i < columns.count; i += 1) {
       const [x, y, z] = [0, 1, 2].map((k) => columns.positions[3 * i + k] - centre[k]);
-      far_sq = Math.max(far_sq, x * x + y * y + z * z);
+      const reach = Math.hypot(x, y, z) + columns.radii[i];
+      far_sq = Math.max(far_sq, reach * reach);
     }
-    return { centre, radius: Math.max(Math.sqrt(far_sq) + (columns.radii[0] ?? 0), 1e-6) };
+    return { centre, radius: Math.max(Math.sqrt(far_sq), 1e-6) };
   }
 
   /** The clip box, for the near and far planes and for a fit before there are particles. @param {Bounds} bounds */
@@ -334,11 +344,12 @@ export class Viewer {
     const most = renderer.max_particles();
     const count = Math.min(columns.count, most);
     const { dirty, recoloured, glide } = this;
+    if (dirty.first < dirty.last || recoloured.first < recoloured.last) this.follow();
     if (dirty.first < Math.min(glide.count, count) && count <= MOST_GLIDING && !this.reveal.active && !this.calm.matches) glide.begin(now_s);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.positions, count, now_s) : columns.positions;
-      const colours = coloursOf(this.colour, this.theme, columns, first, last);
+      const colours = coloursOf(this.colour, this.theme, columns, first, last, this.range);
       for (const [from, end, birth] of this.pieces(first, last, now_s)) {
         renderer.write(
           from, positions.subarray(3 * from, 3 * end), columns.normals.subarray(3 * from, 3 * end),
@@ -349,17 +360,46 @@ export class Viewer {
     }
     const recolour_last = Math.min(recoloured.last, count);
     if (recoloured.first < recolour_last) {
-      renderer.write_colours(recoloured.first, coloursOf(this.colour, this.theme, columns, recoloured.first, recolour_last));
+      renderer.write_colours(recoloured.first, coloursOf(this.colour, this.theme, columns, recoloured.first, recolour_last, this.range));
     }
     this.dirty = { first: Infinity, last: 0 };
     this.recoloured = { first: Infinity, last: 0 };
-    renderer.set_count(count);
     this.view = viewOf(this.camera.state, this.css_width, this.css_height, this.scene, this.insets);
     renderer.set_view(this.view.packed);
+    renderer.set_count(count + this.tellPoints(renderer, this.view, count));
     if (this.style_due) {
       renderer.set_style(JSON.stringify(this.style(now_s)));
       this.style_due = false;
     }
+  }
+
+  /** The ramp's ends follow the particles; when they move by more than can be seen, every colour is another. */
+  follow() {
+    const range = rangeOf(this.colour, this.columns);
+    const old = this.range;
+    const slack = RANGE_SLACK * (range ? range[1] - range[0] : 0);
+    if (range && old && Math.abs(range[0] - old[0]) <= slack && Math.abs(range[1] - old[1]) <= slack) return;
+    this.range = range;
+    if (range || old) this.recoloured = { first: 0, last: this.columns.count };
+  }
+
+  /**
+   * Writes the model's points behind the particles, as discs that face the eye, and so anew for every picture.
+   * @param {Device['renderer']} renderer @param {View} view @param {number} count  of particles
+   * @returns {number} discs written
+   */
+  tellPoints(renderer, view, count) {
+    if (!this.points) return 0;
+    const dots = dotsOf(this.points, view, { px: this.ratio, size: this.size, lift: this.lift(), palette: PALETTES[this.theme] });
+    if (count + dots.radii.length > renderer.max_particles()) return 0;
+    renderer.write(count, dots.positions, dots.normals, dots.radii, dots.colours, -Infinity);
+    return dots.radii.length;
+  }
+
+  /** By how much a dot has to come forward so that the discs around it do not cut it. */
+  lift() {
+    const { columns } = this;
+    return columns.count > 0 ? columns.radii[columns.count >> 1] : 0;
   }
 
   /**
@@ -405,7 +445,7 @@ export class Viewer {
 
   tellLegend() {
     this.legend_due = false;
-    this.onLegend(legendOf(this.colour, this.theme, this.columns));
+    this.onLegend(legendOf(this.colour, this.theme, this.columns, this.range));
   }
 
   /** The colour behind the particles: the page's own ground where it names one, so that the two agree. */
@@ -460,7 +500,10 @@ export class Viewer {
     }
     this.tell(device, now);
     const [width, height] = renderer.picture_size(width_px, height_px);
-    renderer.set_view(viewOf(this.camera.state, this.css_width || width, this.css_height || height, this.scene).packed);
+    const view = viewOf(this.camera.state, this.css_width || width, this.css_height || height, this.scene);
+    renderer.set_view(view.packed);
+    const count = Math.min(this.columns.count, renderer.max_particles());
+    renderer.set_count(count + this.tellPoints(renderer, view, count));
     renderer.set_style(JSON.stringify({ ...this.style(now), dim: 0, outline: -1 }));
     this.style_due = true;
     const picture = renderer.read_pixels(width, height, transparent);

@@ -120,7 +120,8 @@ export function createFormula(engine, description) {
   }).observe(preview);
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
-    editor.focus();
+    if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
+    else editor.focus();
   });
 
   const help = h('button', { type: 'button', class: 'button plain small', on: { click: () => openFunctions(description, (name) => insert(name)) } }, 'Functions');
@@ -130,7 +131,7 @@ export function createFormula(engine, description) {
     editor.replace(Math.min(anchor, head), Math.max(anchor, head), `${name}(`);
     editor.focus();
   }
-  return h(
+  const section = h(
     'div',
     { class: 'section formula' },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
@@ -138,5 +139,6 @@ export function createFormula(engine, description) {
     error,
     preview,
   );
+  effect(() => { section.hidden = engine.field.value?.kind === 'points'; });
+  return section;
 }
-

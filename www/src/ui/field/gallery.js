@@ -1,7 +1,10 @@
-/** The gallery: one picture per surface, chosen like radio buttons. */
+/** The gallery: one picture per surface, chosen like radio buttons; formulas first, then models from points and the file opened last. */
 import { computed, effect } from '@preact/signals-core';
+import { FILE_SURFACE, FILE_TYPES } from '../../engine/types.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
+import { icon } from '../icons.js';
+import { FORMATS, LIMIT, listOf } from './files.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -14,29 +17,79 @@ const PICTURE_PX = 160;
 export function createGallery(engine, description) {
   /** @type {Map<string, HTMLInputElement>} */
   const inputs = new Map();
-  const tiles = description.surfaces.map(({ id, name, story }) => {
+
+  /** @param {string} id @param {string} name @param {Node} face @param {() => import('../explain.js').Explanation} help */
+  function createTile(id, name, face, help) {
     const input = h('input', {
       type: 'radio', name: 'surface', value: id, class: 'visually-hidden', 'aria-label': name,
       on: { change: () => engine.setSurface(id), click: () => again(id) },
     });
     inputs.set(id, input);
+    const tile = h('label', { class: 'tile', data: { surface: id } }, input, face);
+    explain(tile, help);
+    return tile;
+  }
+
+  /** @param {{ id: string, name: string, story: string, credit?: string }} entry */
+  function pictured({ id, name, story, credit }) {
     const picture = h('img', { alt: '', width: PICTURE_PX, height: PICTURE_PX, decoding: 'async', src: `./gallery/${id}.webp` });
     picture.addEventListener('error', () => picture.replaceWith(h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name)), { once: true });
-    const tile = h('label', { class: 'tile', data: { surface: id } }, input, picture);
-    explain(tile, () => ({ title: name, text: story }));
-    return tile;
-  });
+    return createTile(id, name, picture, () => ({ title: name, text: story, ideal: credit }));
+  }
 
   /** Choosing the present surface again takes its own formula back. @param {string} id */
   function again(id) {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
   }
 
-  const chosen = computed(() => (engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface));
+  const models = h('div', { class: 'tiles', role: 'group', 'aria-label': 'From points' }, description.models.map(pictured));
+  const open = createOpen(engine);
+  models.append(...open);
+  // The file opened last gets a tile of its own: one press leads back to it.
+  const file = computed(() => (engine.field.value?.surface === FILE_SURFACE ? engine.field.value.model?.name ?? 'File' : null));
+  let file_name = '';
   effect(() => {
-    for (const [id, input] of inputs) input.checked = id === chosen.value;
+    const name = file.value;
+    if (name === null || name === file_name) return;
+    file_name = name;
+    inputs.get(FILE_SURFACE)?.closest('label')?.remove();
+    const face = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, icon('file'), extensionOf(name));
+    open[0].before(createTile(FILE_SURFACE, name, face, () => ({ title: name, text: 'The file opened last.' })));
+    check();
+  });
+
+  const chosen = computed(() => (engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface));
+  function check() {
+    for (const [id, input] of inputs) input.checked = id === chosen.peek();
+  }
+  effect(() => {
+    void chosen.value;
+    check();
     // In a strip the chosen one may stand outside: bring it in.
     if (chosen.value) inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   });
-  return h('fieldset', { class: 'section gallery' }, h('legend', { class: 'visually-hidden' }, 'Surface'), tiles);
+  return h(
+    'fieldset',
+    { class: 'section gallery' },
+    h('legend', { class: 'visually-hidden' }, 'Surface'),
+    h('div', { class: 'tiles', role: 'group', 'aria-label': 'Formulas' }, description.surfaces.map(pictured)),
+    h('h2', { class: 'tiles-head' }, 'From points'),
+    models,
+  );
+}
+
+/** @param {string} name */
+const extensionOf = (name) => /\.([a-z0-9]{1,4})$/i.exec(name)?.[1].toUpperCase() ?? 'File';
+
+/** The button that opens a file, and the chooser behind it. @param {Engine} engine @returns {HTMLElement[]} */
+function createOpen(engine) {
+  const chooser = h('input', { type: 'file', accept: FILE_TYPES, hidden: true, on: { change: () => {
+    const file = chooser.files?.[0];
+    // The same file may be chosen again after it was changed.
+    chooser.value = '';
+    if (file) void engine.openFile(file);
+  } } });
+  const button = h('button', { type: 'button', class: 'button open-file', on: { click: () => chooser.click() } }, 'Open file…');
+  explain(button, () => ({ title: 'A file of points', text: `${listOf(FORMATS)}, up to ${LIMIT}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.` }));
+  return [button, chooser];
 }

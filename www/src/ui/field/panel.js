@@ -3,8 +3,11 @@ import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { createGallery } from './gallery.js';
 import { createFormula } from './formula.js';
+import { createLoading } from './loading.js';
+import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
 import { createClipBox } from './clip-box.js';
+import { storyOf } from './story.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('../../engine/types.js').Description} Description */
@@ -18,29 +21,29 @@ export function mountField(body, engine, description) {
   fill(
     body,
     createGallery(engine, description),
+    ...createLoading(engine),
     createStory(engine, description),
     createFormula(engine, description),
+    createModel(engine, description),
     createParameters(engine),
     createClipBox(engine),
   );
 }
 
-/** Name, degree, genus and story of the surface at hand. @param {Engine} engine @param {Description} description */
+/** Name, facts, story and credit of the surface at hand. @param {Engine} engine @param {Description} description */
 function createStory(engine, description) {
   const section = h('div', { class: 'section story' });
-  const surface = computed(() => {
+  const story = computed(() => {
     const field = engine.field.value;
-    return field ? field.surface : engine.state.value.surface;
+    return storyOf(description, field ? field.surface : engine.state.value.surface, field?.model ?? null);
   });
   effect(() => {
-    const entry = description.surfaces.find(({ id }) => id === surface.value);
-    const facts = entry
-      ? [entry.degree === null ? null : `Degree ${entry.degree}`, entry.genus === null ? null : `genus ${entry.genus}`].filter(Boolean).join(' · ')
-      : '';
+    const { name, facts, text, credit } = story.value;
     fill(
       section,
-      h('div', { class: 'section-head' }, h('h2', null, entry ? entry.name : 'Your own formula'), facts ? h('span', { class: 'quiet' }, facts) : null),
-      entry && !entry.story ? null : h('p', { class: 'quiet' }, entry ? entry.story : 'The surface where the formula below is zero. Names other than x, y and z become sliders.'),
+      h('div', { class: 'section-head' }, h('h2', null, name), facts ? h('span', { class: 'quiet' }, facts) : null),
+      text ? h('p', { class: 'quiet' }, text) : null,
+      credit ? h('p', { class: 'credit' }, credit) : null,
     );
   });
   return section;

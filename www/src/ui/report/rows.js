@@ -34,6 +34,20 @@ export function figuresOf(report, key) {
   };
 }
 
+/**
+ * Whether a report says anything of a figure: not every run has every one. Without a report every row has its place.
+ * @param {Report | null} report
+ * @param {string} key
+ */
+export function isTold(report, key) {
+  if (!report) return true;
+  const { now, before } = figuresOf(report, key);
+  return (now ?? before ?? null) !== null;
+}
+
+/** The core's words, in those of a person. @type {Record<string, string>} */
+const WORDS = { proven: 'proven', searched: 'dense search' };
+
 /** Digits of a figure in all: decimals of large numbers say nothing. */
 const MOST_DIGITS = 5;
 /** More decimals than this are not written out. */
@@ -41,7 +55,7 @@ const TINY_DIGITS = 4;
 
 /** @param {ReportRow} row @param {unknown} value */
 export function writeFigure({ digits, unit }, value) {
-  if (typeof value === 'string') return value;
+  if (typeof value === 'string') return WORDS[value] ?? value;
   if (typeof value !== 'number') return MISSING;
   if (unit === '%') return formatFixed(value * 100, digits);
   // So many decimals are there for very small figures, which read better as powers of ten.

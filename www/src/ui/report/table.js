@@ -2,7 +2,7 @@
 import { effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
-import { compare, figuresOf, groupRows, writeFigure } from './rows.js';
+import { compare, figuresOf, groupRows, isTold, writeFigure } from './rows.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
@@ -18,18 +18,22 @@ export function createTable(report, rows) {
   const table = h(
     'table',
     { class: 'figures', 'aria-label': 'Figures of the run' },
-    groups.map(([group, members], i) => h(
-      'tbody',
-      null,
-      h(
-        'tr',
-        { class: 'group' },
-        h('th', { scope: 'rowgroup' }, group),
-        h('td', null, i === headed ? 'Front' : null),
-        h('td', null, i === headed ? 'Relaxed' : null),
-      ),
-      members.map((row) => createRow(report, row)),
-    )),
+    groups.map(([group, members], i) => {
+      const body = h(
+        'tbody',
+        null,
+        h(
+          'tr',
+          { class: 'group' },
+          h('th', { scope: 'rowgroup' }, group),
+          h('td', null, i === headed ? 'Front' : null),
+          h('td', null, i === headed ? 'Relaxed' : null),
+        ),
+        members.map((row) => createRow(report, row)),
+      );
+      effect(() => { body.hidden = !members.some((row) => isTold(report.value, row.key)); });
+      return body;
+    }),
   );
   const section = h('div', { class: 'section' }, table);
   effect(() => { section.hidden = report.value === null; });
@@ -56,7 +60,9 @@ function createRow(report, row) {
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
   });
   const paired = isPaired(row);
-  return h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now);
+  const line = h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now);
+  effect(() => { line.hidden = !isTold(report.value, row.key); });
+  return line;
 }
 
 const CHANGES = { better: 'Relaxation made it better.', worse: 'Relaxation made it worse.', same: '' };

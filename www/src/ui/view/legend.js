@@ -57,28 +57,31 @@ const SCALES = {
       count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
     ))),
   ],
-  diverging: (legend) => SCALES.sequential(legend),
   normal: (legend) => (legend.entries?.length ? SCALES.categories(legend) : SCALES.cyclic(legend)),
-  sequential: ({ colours, range, mark, unit }) => {
-    const ramp = h('div', { class: 'ramp', 'aria-hidden': 'true' });
-    ramp.style.backgroundImage = `linear-gradient(to right, ${colours.join(', ')})`;
-    if (!range) return [ramp];
-    const [low, high] = range;
-    const tick = h('span', { class: 'tick' });
-    const inside = mark !== undefined && mark >= low && mark <= high && high > low;
-    if (inside) {
-      tick.style.left = `${((mark - low) / (high - low)) * 100}%`;
-      ramp.append(tick);
-    }
-    return [
-      ramp,
-      h(
-        'div',
-        { class: 'ends' },
-        h('span', null, formatSignificant(low)),
-        unit ? h('span', { class: 'unit' }, unit) : null,
-        h('span', null, formatSignificant(high)),
-      ),
-    ];
-  },
+  sequential: (legend) => rampOf(legend, ([low, high]) => [formatSignificant(low), formatSignificant(high)]),
+  // Values beyond the ends have the colour of the end.
+  diverging: (legend) => rampOf(legend, ([low, high]) => [`≤\u2009${formatSignificant(low, 2)}`, `≥\u2009${formatSignificant(high, 2)}`]),
 };
+
+/**
+ * A ramp of colours, its ends in figures, and a tick at the value worth one.
+ * @param {Legend} legend
+ * @param {(range: [number, number]) => [string, string]} write
+ */
+function rampOf({ colours, range, mark, unit, kind }, write) {
+  const ramp = h('div', { class: 'ramp', 'aria-hidden': 'true' });
+  ramp.style.backgroundImage = `linear-gradient(to right, ${colours.join(', ')})`;
+  if (!range) return [ramp];
+  const [low, high] = range;
+  const share = mark === undefined || !(high > low) ? NaN : (mark - low) / (high - low);
+  if (share >= 0 && share <= 1) {
+    const tick = h('span', { class: 'tick' });
+    tick.style.left = `${share * 100}%`;
+    ramp.append(tick);
+  }
+  const [first, last] = write(range);
+  // The middle belongs to the zero of a diverging ramp; its unit goes with the name.
+  const middle = kind === 'diverging' ? h('span', null, '0') : unit ? h('span', { class: 'unit' }, unit) : null;
+  const ends = h('div', { class: 'ends', data: { kind } }, h('span', null, first), middle, h('span', null, last));
+  return kind === 'diverging' && unit ? [ramp, ends, h('span', { class: 'unit' }, unit)] : [ramp, ends];
+}

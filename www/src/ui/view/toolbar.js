@@ -28,6 +28,7 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
     tool('minus', 'Zoom out', 'Key −', () => engine.zoom(1 / ZOOM)),
     tool('fit', 'Fit', 'Brings the whole surface into view. Key F.', () => engine.fit()),
     view,
+    pointsToggle(engine),
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('link', 'Copy link', 'A link that holds the whole state and the camera.', () => copyLink(engine, toast)),
     tool('picture', 'Save picture', 'The picture as a PNG file.', () => savePicture(engine, toast)),
@@ -52,6 +53,15 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
 function tool(name, label, help, act) {
   const button = h('button', { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} }, icon(name));
   explain(button, () => ({ title: label, text: help }), { side: 'left' });
+  return button;
+}
+
+/** Shows or hides the points that a model was made of. @param {Engine} engine */
+function pointsToggle(engine) {
+  const shown = computed(() => engine.state.value.view.points);
+  const button = tool('points', 'Show points', 'The points that the surface goes through, as dots.', () => engine.setView({ points: !shown.peek() }));
+  effect(() => { button.hidden = engine.field.value?.kind !== 'points'; });
+  effect(() => button.setAttribute('aria-pressed', String(shown.value)));
   return button;
 }
 

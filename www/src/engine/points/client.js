@@ -1,0 +1,98 @@
+/**
+ * The page's side of models from points: one order at a time, the answers kept, so that a model chosen again is there at once.
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('./protocol.js').FromPoints} FromPoints
+ * @typedef {import('./protocol.js').Order} Order
+ * @typedef {import('./protocol.js').Solved} Solved
+ */
+/**
+ * What the client needs of a worker, so that tests can hand it a scripted one.
+ * @typedef {object} WorkerLike
+ * @property {(message: Order) => void} postMessage
+ * @property {() => void} terminate
+ * @property {((event: {data: FromPoints}) => void) | null} onmessage
+ * @property {((event: {message?: string}) => void) | null} onerror
+ */
+/** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
+/** How an order ended; `given_up` by the page. @typedef {{solved: Solved} | {refusal: Refusal} | {given_up: true}} Outcome */
+
+/**
+ * A worker that says nothing for so long is ended. Reading a large file is one step, and a person can give up at any time, so
+ * this only catches what nobody waits for.
+ */
+export const SILENCE_MS = 30_000;
+
+export class PointsClient {
+  /**
+   * @param {object} options
+   * @param {() => WorkerLike} options.spawn
+   * @param {(progress: Extract<FromPoints, {type: 'progress'}>) => void} options.onProgress
+   * @param {{setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} [options.clock]
+   */
+  constructor({ spawn, onProgress, clock = { setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) } }) {
+    this.spawn = spawn;
+    this.onProgress = onProgress;
+    this.clock = clock;
+    /** @type {Map<string, Solved>} */
+    this.solved = new Map();
+    /** Ends the order under way. @type {((outcome: Outcome) => void) | null} */
+    this.end = null;
+  }
+
+  /** The solved model of that name, if there is one. @param {string | undefined} key */
+  get(key) {
+    return key === undefined ? undefined : this.solved.get(key);
+  }
+
+  /**
+   * Solves a model and keeps it under `key`. An order under way is given up.
+   * @param {string} key @param {Order} order
+   * @returns {Promise<Outcome>}
+   */
+  load(key, order) {
+    this.giveUp();
+    return new Promise((resolve) => {
+      const worker = this.spawn();
+      /** @type {any} */
+      let timer;
+      const end = (/** @type {Outcome} */ outcome) => {
+        this.clock.clearTimeout(timer);
+        worker.onmessage = null;
+        worker.onerror = null;
+        worker.terminate();
+        if (this.end === end) this.end = null;
+        if ('solved' in outcome) this.solved.set(key, outcome.solved);
+        resolve(outcome);
+      };
+      const refuse = (/** @type {string} */ kind, /** @type {string} */ message, /** @type {string} */ details = '', /** @type {number | null} */ line = null) =>
+        end({ refusal: { kind, message, details, line: line ?? (Number(/\bline (\d+)/.exec(message)?.[1]) || null) } });
+      const listen = () => {
+        this.clock.clearTimeout(timer);
+        timer = this.clock.setTimeout(() => refuse('silent', 'the solver fell silent and was stopped'), SILENCE_MS);
+      };
+      worker.onmessage = ({ data }) => {
+        listen();
+        switch (data.type) {
+          case 'progress': this.onProgress(data); break;
+          case 'solved': end({ solved: data.solved }); break;
+          case 'refused': refuse(data.kind, data.message, '', data.line); break;
+          case 'crashed': refuse('crashed', 'the solver stopped on an error', `${data.message}\n${data.stack}`); break;
+          case 'failed': refuse('bundle', data.message); break;
+          default:
+        }
+      };
+      worker.onerror = (event) => refuse('bundle', event.message || 'the solver did not load');
+      this.end = end;
+      listen();
+      worker.postMessage(order);
+    });
+  }
+
+  giveUp() {
+    this.end?.({ given_up: true });
+  }
+}

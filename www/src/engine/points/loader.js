@@ -1,0 +1,155 @@
+/**
+ * From a wish for a model or a file to its surface. The state may name a built-in model that is not solved yet: it is ordered,
+ * and sampled once it is there; where that fails the state goes back to the surface before. A file enters the state only when it is solved.
+ *
+ * @module
+ */
+import { batch } from '@preact/signals-core';
+import { defaultState, fromPoints, modelOf } from '../share/state.js';
+import { FILE_SURFACE, LARGEST_FILE_BYTES } from '../types.js';
+import { PointsClient } from './client.js';
+
+/**
+ * @typedef {import('../store.js').Store} Store
+ * @typedef {import('../types.js').State} State
+ * @typedef {import('./client.js').Refusal} Refusal
+ * @typedef {import('./client.js').WorkerLike} WorkerLike
+ * @typedef {import('./protocol.js').Order} Order
+ */
+/** What of the state makes the surface. @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'bounds'>} Shape */
+/** @typedef {{grow?: boolean, fit?: boolean}} SampleOptions */
+
+/** @param {string} surface @param {string} [formula] @returns {Shape} */
+export const shapeOf = (surface, formula = '') => ({ surface, formula, parameters: {}, declared: [], bounds: null });
+
+export class ModelLoader {
+  /**
+   * @param {object} options
+   * @param {Store} options.store
+   * @param {() => WorkerLike} options.spawn
+   * @param {(options: SampleOptions) => void} options.sample  samples the state as it is
+   */
+  constructor({ store, spawn, sample }) {
+    this.store = store;
+    this.sample = sample;
+    this.client = new PointsClient({
+      spawn,
+      onProgress: ({ stage, label, fraction }) => {
+        const { loading } = store;
+        if (loading.value) loading.value = { ...loading.value, stage, label, fraction };
+      },
+    });
+    /** The file opened last, by the name of its solved model. */
+    this.file_key = '';
+    this.files = 0;
+    /** The shape that was sampled last. @type {Shape | null} */
+    this.last = null;
+    /** The order under way. */
+    this.order_id = 0;
+  }
+
+  get has_file() {
+    return this.file_key !== '';
+  }
+
+  /** The name of the state's solved model; undefined for a formula. */
+  key() {
+    const { surface } = this.store.state.value;
+    if (!fromPoints(this.store.description.value, surface)) return undefined;
+    return surface === FILE_SURFACE ? this.file_key : surface;
+  }
+
+  /** Whether the state's surface can be sampled now. */
+  ready() {
+    const key = this.key();
+    return key === undefined || this.client.get(key) !== undefined;
+  }
+
+  /** The state's surface is being sampled: the one to go back to. */
+  settled() {
+    const { surface, formula, parameters, declared, bounds } = this.store.state.value;
+    this.last = { surface, formula, parameters, declared, bounds };
+  }
+
+  /** The state, or as long as its model is on its way the state with the surface before. */
+  present() {
+    const { state } = this.store;
+    return this.ready() ? state.value : { ...state.value, ...this.before() };
+  }
+
+  /** @returns {Shape} */
+  before() {
+    const { description } = this.store;
+    if (this.last || !description.value) return this.last ?? shapeOf('');
+    const { surface, formula } = defaultState(description.value);
+    return shapeOf(surface, formula);
+  }
+
+  /** Orders the state's model and samples it once it is there. @param {SampleOptions} options */
+  async load(options) {
+    const { state, loading, description } = this.store;
+    const id = state.value.surface;
+    const model = modelOf(description.value, id);
+    if (!model || loading.value?.id === id) return;
+    const done = await this.order(id, model.name, id, { model: id }, () => {
+      if (state.value.surface === id) this.sample(options);
+    });
+    if (done || state.value.surface !== id || loading.value?.id === id) return;
+    const nothing = this.last === null;
+    state.value = { ...state.value, ...this.before() };
+    if (nothing) this.sample(options);
+  }
+
+  /** @param {File} file */
+  async openFile(file) {
+    if (file.size > LARGEST_FILE_BYTES) {
+      const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
+      this.refused(FILE_SURFACE, file.name, { kind: 'too_large', message: `the file has ${mb(file.size)} MB; up to ${mb(LARGEST_FILE_BYTES)} MB are read`, line: null });
+      return;
+    }
+    this.files += 1;
+    const key = `file ${this.files}`;
+    const { state } = this.store;
+    await this.order(FILE_SURFACE, file.name, key, { file }, () => {
+      this.file_key = key;
+      state.value = { ...state.value, ...shapeOf(FILE_SURFACE) };
+      this.sample({ grow: true, fit: true });
+    });
+  }
+
+  /**
+   * @param {string} id @param {string} name @param {string} key @param {Order} order
+   * @param {() => void} done  called when it is solved
+   * @returns {Promise<boolean>} whether it was
+   */
+  async order(id, name, key, order, done) {
+    const { loading, loadingError } = this.store;
+    this.order_id += 1;
+    const mine = this.order_id;
+    batch(() => {
+      loadingError.value = null;
+      loading.value = { id, name, stage: 'starting', label: 'Starting', fraction: 0 };
+    });
+    const outcome = await this.client.load(key, order);
+    if (this.order_id !== mine) return false;
+    // In one go, so that nobody sees neither the loading nor the run.
+    batch(() => {
+      loading.value = null;
+      if ('solved' in outcome) done();
+      else if ('refusal' in outcome) this.refused(id, name, outcome.refusal);
+    });
+    return 'solved' in outcome;
+  }
+
+  /** @param {string} id @param {string} name @param {Refusal} refusal */
+  refused(id, name, { kind, message, line, details }) {
+    const { loadingError, notice } = this.store;
+    loadingError.value = { id, name, kind, message, line };
+    notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
+  }
+
+  /** Gives up the order under way. */
+  cancel() {
+    this.client.giveUp();
+  }
+}

@@ -1,0 +1,66 @@
+/**
+ * From an order to a solved model, step by step. Clock and pause are handed in, so that the loop runs in tests on a scripted
+ * bundle.
+ *
+ * @module
+ */
+import { nextBudget } from '../sampling/job.js';
+import { words } from '../sampling/load.js';
+
+/**
+ * @typedef {import('./protocol.js').Order} Order
+ * @typedef {import('./protocol.js').FromPoints} FromPoints
+ */
+/**
+ * The bundle's class as the loop uses it.
+ * @typedef {object} PointsLike
+ * @property {(id: string) => string} model
+ * @property {(name: string, bytes: Uint8Array, centres: number) => string} file
+ * @property {(budget: number) => string} step
+ * @property {() => Uint8Array} field
+ * @property {() => string} info
+ * @property {() => Float32Array} centres
+ */
+
+/** A step takes about this long: the way to a thousand centres is then told in some hundred pieces. */
+const STEP_MS = 30;
+const FIRST_BUDGET = 1024;
+/** The bundle's own number of centres. */
+const USUAL_CENTRES = 0;
+
+/**
+ * @param {PointsLike} points
+ * @param {Order} order
+ * @param {{now_ms: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) => void}} env
+ */
+export async function solve(points, order, env) {
+  /** @param {{kind: string, message: string, line?: number | null}} error */
+  const refuse = ({ kind, message, line }) => env.post({ type: 'refused', kind, message, line: line ?? null });
+  env.post({ type: 'progress', stage: 'reading', label: 'Reading', fraction: 0 });
+  let begun;
+  if ('model' in order) {
+    begun = JSON.parse(points.model(order.model));
+  } else {
+    let bytes;
+    try {
+      bytes = new Uint8Array(await order.file.arrayBuffer());
+    } catch (error) {
+      return refuse({ kind: 'unreadable', message: `the file cannot be read: ${words(error)}` });
+    }
+    begun = JSON.parse(points.file(order.file.name, bytes, USUAL_CENTRES));
+  }
+  if (!begun.ok) return refuse(begun.error);
+  for (let budget = FIRST_BUDGET; ;) {
+    const before = env.now_ms();
+    const step = JSON.parse(points.step(budget));
+    if (!step.ok) return refuse(step.error);
+    if (step.done) break;
+    budget = nextBudget(budget, env.now_ms() - before, STEP_MS);
+    env.post({ type: 'progress', stage: step.stage, label: step.label ?? '', fraction: step.fraction });
+    await env.pause();
+  }
+  const info = JSON.parse(points.info());
+  if (!info.ok) return refuse(info.error);
+  const [field, centres] = [points.field(), points.centres()];
+  env.post({ type: 'solved', solved: { field, centres, info: { info: info.info, bounds: info.bounds } } }, [field.buffer, centres.buffer]);
+}

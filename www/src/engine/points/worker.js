@@ -1,0 +1,47 @@
+/**
+ * The worker that turns points into a field: one order, one answer, then it waits to be ended.
+ *
+ * @module
+ */
+import { loadModule, words } from '../sampling/load.js';
+import { solve } from './solve.js';
+
+/**
+ * @typedef {import('./protocol.js').FromPoints} FromPoints
+ * @typedef {import('./protocol.js').Order} Order
+ */
+
+/** @param {FromPoints} message @param {Transferable[]} [transfer] */
+const post = (message, transfer = []) => self.postMessage(message, { transfer });
+
+/** The last words of the bundle's panic hook, which writes to the console. */
+let last_words = '';
+const say = console.error.bind(console);
+console.error = (...parts) => {
+  last_words = parts.map(String).join(' ').slice(0, 4000);
+  say(...parts);
+};
+
+const scripts = import.meta.glob('../../wasm/points/points.js');
+const modules = import.meta.glob('../../wasm/points/points_bg.wasm', { query: '?url', import: 'default' });
+
+self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
+  post({ type: 'progress', stage: 'starting', label: 'Starting', fraction: 0 });
+  let points;
+  try {
+    const [script] = Object.values(scripts);
+    const [url] = Object.values(modules);
+    if (!script || !url) throw new Error('The solver for points is not part of this build.');
+    const { default: init, Points } = /** @type {typeof import('../../wasm/points/points.js')} */ (await script());
+    await init({ module_or_path: await loadModule(/** @type {string} */ (await url()), 'solver for points') });
+    points = new Points();
+  } catch (error) {
+    post({ type: 'failed', message: words(error) });
+    return;
+  }
+  try {
+    await solve(points, order, { now_ms: () => performance.now(), pause: () => new Promise((resolve) => setTimeout(resolve)), post });
+  } catch (error) {
+    post({ type: 'crashed', message: last_words || words(error), stack: error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '' });
+  }
+};

@@ -1,0 +1,52 @@
+/**
+ * The points that a model interpolates, as dots on the picture.
+ *
+ * A dot is two discs that face the eye, ink on a casing, of a fixed size on the screen. They are written behind the particles
+ * into the same buffer, so that every way of drawing has them without a line of its own; since they face the eye they are
+ * written anew for every picture, which for the few hundred points of a model costs nothing.
+ *
+ * @module
+ */
+
+/** Radius of the ink, and what the casing adds, in page pixels. */
+const INK_PX = 1.7;
+const CASING_PX = 0.9;
+/** Smaller discs, in pixels of the canvas, are drawn as soft points: the ink would be lost in its casing. */
+const LEAST_INK = 2.4;
+
+/**
+ * @param {Float32Array} points  three numbers each
+ * @param {import('./camera.js').View} view  made for page pixels
+ * @param {object} options
+ * @param {number} options.px  canvas pixels per page pixel
+ * @param {number} options.size  the renderer draws discs at this share of their radius
+ * @param {number} options.lift  how far a dot is moved towards the eye, out of the discs around it
+ * @param {{ink: number, casing: number}} options.palette
+ */
+export function dotsOf(points, view, { px, size, lift, palette }) {
+  const n = points.length / 3;
+  const positions = new Float32Array(6 * n);
+  const normals = new Float32Array(6 * n);
+  const radii = new Float32Array(2 * n);
+  const colours = new Uint32Array(2 * n);
+  const { eye, forward } = view;
+  const ink_px = Math.max(INK_PX, LEAST_INK / px);
+  for (let i = 0; i < n; i += 1) {
+    const to_eye = [0, 1, 2].map((k) => eye[k] - points[3 * i + k]);
+    const distance = Math.hypot(to_eye[0], to_eye[1], to_eye[2]) || 1;
+    const depth = -(to_eye[0] * forward[0] + to_eye[1] * forward[1] + to_eye[2] * forward[2]);
+    const world_per_px = view.world_per_px * Math.max(depth, 0);
+    for (const [j, radius_px, colour] of [[2 * i, ink_px + CASING_PX, palette.casing], [2 * i + 1, ink_px, palette.ink]]) {
+      const radius = radius_px * world_per_px;
+      // The ink lies before its casing by more than the depth buffer's step.
+      const forth = Math.min(lift + (j & 1 ? radius : 0), 0.5 * distance) / distance;
+      for (let k = 0; k < 3; k += 1) {
+        positions[3 * j + k] = points[3 * i + k] + to_eye[k] * forth;
+        normals[3 * j + k] = to_eye[k] / distance;
+      }
+      radii[j] = radius / size;
+      colours[j] = colour;
+    }
+  }
+  return { positions, normals, radii, colours };
+}

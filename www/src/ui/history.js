@@ -1,0 +1,109 @@
+/**
+ * What can be undone: surface, formula, parameters, clip box and settings, the last hundred of them. Typing and dragging count as
+ * one change for as long as they go on. The browser's own history is left alone: Back leaves the page, as it does everywhere.
+ */
+import { effect, signal } from '@preact/signals-core';
+
+/** @typedef {import('../engine/types.js').Engine} Engine */
+/** @typedef {import('../engine/types.js').State} State */
+/** @typedef {import('../engine/types.js').Shape} Shape */
+
+export const MOST_ENTRIES = 100;
+/** Changes of the same thing that follow one another faster than this are one. */
+const PAUSE_MS = 800;
+
+/** @param {State} state @returns {Shape} */
+export const shapeOf = ({ surface, formula, parameters, declared, bounds, settings }) => ({ surface, formula, parameters, declared, bounds, settings });
+
+/**
+ * The one thing in which two states differ, such as `formula` or `settings.count`; null where there are several.
+ * @param {Shape} before
+ * @param {Shape} after
+ */
+export function difference(before, after) {
+  /** @type {string[]} */
+  const found = [];
+  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'bounds'])) {
+    if (JSON.stringify(before[key]) !== JSON.stringify(after[key])) found.push(key);
+  }
+  for (const key of /** @type {const} */ (['parameters', 'settings'])) {
+    const [a, b] = [before[key], after[key]];
+    for (const name of new Set([...Object.keys(a), ...Object.keys(b)])) if (a[name] !== b[name]) found.push(`${key}.${name}`);
+  }
+  return found.length === 1 ? found[0] : null;
+}
+
+/** The entries, and where among them the page is. Pure. */
+export class History {
+  /** @param {number} [most] */
+  constructor(most = MOST_ENTRIES) {
+    this.most = most;
+    /** @type {Shape[]} */
+    this.entries = [];
+    this.at = -1;
+    /** What the newest entry changed, while more of the same may follow. @type {string | null} */
+    this.open = null;
+    this.last_ms = 0;
+  }
+
+  get canUndo() {
+    return this.at > 0;
+  }
+
+  get canRedo() {
+    return this.at < this.entries.length - 1;
+  }
+
+  /**
+   * @param {Shape} shape
+   * @param {number} now_ms
+   * @param {boolean} [faulty] the entry before holds a formula with an error: nothing to come back to
+   */
+  record(shape, now_ms, faulty = false) {
+    const present = this.entries[this.at];
+    if (present && JSON.stringify(present) === JSON.stringify(shape)) return;
+    const what = present ? difference(present, shape) : null;
+    const goesOn = what !== null && what === this.open && (now_ms - this.last_ms < PAUSE_MS || (faulty && what === 'formula'));
+    this.last_ms = now_ms;
+    this.open = what;
+    this.entries.length = this.at + 1;
+    if (goesOn) this.entries[this.at] = shape;
+    else this.entries.push(shape);
+    if (this.entries.length > this.most + 1) this.entries.shift();
+    this.at = this.entries.length - 1;
+  }
+
+  /** @param {-1 | 1} step @returns {Shape | null} what is to be restored */
+  move(step) {
+    const entry = this.entries[this.at + step];
+    if (!entry) return null;
+    this.at += step;
+    this.open = null;
+    return entry;
+  }
+}
+
+/** Records what the engine's state holds. @param {Engine} engine */
+export function createHistory(engine) {
+  const history = new History();
+  const canUndo = signal(false);
+  const canRedo = signal(false);
+  const tell = () => {
+    canUndo.value = history.canUndo;
+    canRedo.value = history.canRedo;
+  };
+  effect(() => {
+    const state = engine.state.value;
+    // Before the core has arrived there is nothing to come back to.
+    if (!engine.description.value || state.surface === '') return;
+    history.record(shapeOf(state), performance.now(), engine.fieldError.peek() !== null);
+    tell();
+  });
+  /** @param {-1 | 1} step */
+  const move = (step) => {
+    const entry = history.move(step);
+    if (entry) engine.restore(entry);
+    tell();
+  };
+  return { canUndo, canRedo, undo: () => move(-1), redo: () => move(1) };
+}

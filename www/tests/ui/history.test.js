@@ -1,0 +1,69 @@
+import { describe, expect, it } from 'vitest';
+import { difference, History, MOST_ENTRIES } from '../../src/ui/history.js';
+
+/** @param {object} [change] @returns {any} */
+const shape = (change) => ({ surface: 'sphere', formula: 'x', parameters: {}, declared: [], bounds: null, settings: {}, ...change });
+
+describe('the history', () => {
+  it('goes back and forth, and forgets what was undone when something else is done', () => {
+    const history = new History();
+    history.record(shape(), 0);
+    expect(history.canUndo).toBe(false);
+    history.record(shape({ surface: 'torus', formula: 'y' }), 1);
+    history.record(shape({ surface: 'heart', formula: 'z' }), 2);
+    expect(history.move(-1)?.surface).toBe('torus');
+    expect(history.move(-1)?.surface).toBe('sphere');
+    expect(history.move(-1)).toBeNull();
+    expect(history.move(1)?.surface).toBe('torus');
+    history.record(shape({ surface: 'cube', formula: 'w' }), 3);
+    expect(history.canRedo).toBe(false);
+    expect(history.move(-1)?.surface).toBe('torus');
+  });
+
+  it('takes a drag for one change, and a pause for its end', () => {
+    const history = new History();
+    history.record(shape(), 0);
+    for (let i = 1; i <= 50; i += 1) history.record(shape({ parameters: { a: i } }), i * 16);
+    expect(history.entries.length).toBe(2);
+    history.record(shape({ parameters: { a: 60 } }), 5000);
+    expect(history.entries.length).toBe(3);
+    history.record(shape({ parameters: { a: 60, b: 1 } }), 5001);
+    expect(history.entries.length).toBe(4);
+    expect(history.move(-1)?.parameters).toEqual({ a: 60 });
+  });
+
+  it('never comes back to half a formula', () => {
+    const history = new History();
+    history.record(shape({ formula: 'x' }), 0);
+    history.record(shape({ formula: 'x+' }), 1000);
+    history.record(shape({ formula: 'x+y' }), 9000, true);
+    expect(history.entries.map(({ formula }) => formula)).toEqual(['x', 'x+y']);
+  });
+
+  it('does not record what it has itself restored', () => {
+    const history = new History();
+    history.record(shape(), 0);
+    history.record(shape({ formula: 'y' }), 1);
+    const back = history.move(-1);
+    history.record({ .../** @type {any} */ (back) }, 2);
+    expect(history.canRedo).toBe(true);
+  });
+
+  it('is bounded: five hundred steps back end at the hundredth', () => {
+    const history = new History();
+    for (let i = 0; i < 500; i += 1) history.record(shape({ surface: `s${i}`, formula: `${i}` }), i);
+    expect(history.entries.length).toBe(MOST_ENTRIES + 1);
+    let last = null;
+    for (let i = 0; i < 500; i += 1) last = history.move(-1) ?? last;
+    expect(last?.surface).toBe(`s${499 - MOST_ENTRIES}`);
+    expect(history.canUndo).toBe(false);
+  });
+
+  it('knows the one thing in which two states differ', () => {
+    expect(difference(shape(), shape({ formula: 'y' }))).toBe('formula');
+    expect(difference(shape(), shape({ settings: { count: 3 } }))).toBe('settings.count');
+    expect(difference(shape({ parameters: { a: 1 } }), shape())).toBe('parameters.a');
+    expect(difference(shape(), shape({ formula: 'y', parameters: { a: 1 } }))).toBeNull();
+    expect(difference(shape(), shape())).toBeNull();
+  });
+});
