@@ -148,7 +148,9 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
   host.addEventListener('pointerup', (event) => end(event, true), { signal });
   host.addEventListener('pointercancel', (event) => end(event, false), { signal });
   host.addEventListener('lostpointercapture', (event) => end(event, false), { signal });
-  host.addEventListener('pointerleave', () => {
+  host.addEventListener('pointerleave', (event) => {
+    // A finger leaves whenever it is lifted: what it tapped stays chosen.
+    if (event.pointerType === 'touch') return;
     cancelAnimationFrame(hover_frame);
     hover_frame = 0;
     leave();
