@@ -1,4 +1,5 @@
 /** What the interface's browser tests share. */
+import AxeBuilder from '@axe-core/playwright';
 import { expect } from '@playwright/test';
 
 /** The panels are tested without a graphics device: software rendering of large windows is slow. */
@@ -52,6 +53,12 @@ export async function atRest(page) {
     store.lastCamera = now;
     return same;
   }, undefined, { polling: 300 });
+}
+
+/** What axe has to say; nothing is scanned half-way through a fade. @param {import('@playwright/test').Page} page */
+export async function scan(page) {
+  await atRest(page);
+  return new AxeBuilder({ page }).withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']).analyze();
 }
 
 /** @param {import('@playwright/test').Page} page @returns {Promise<any>} */

@@ -1,6 +1,5 @@
-import AxeBuilder from '@axe-core/playwright';
 import { expect, test } from '@playwright/test';
-import { atRest, open, state } from './helpers.js';
+import { open, scan, state } from './helpers.js';
 
 const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
 
@@ -54,12 +53,6 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
       expect((await scan(page)).violations).toEqual([]);
     });
   }
-}
-
-/** Nothing is scanned half-way through a fade. @param {import('@playwright/test').Page} page */
-async function scan(page) {
-  await atRest(page);
-  return new AxeBuilder({ page }).withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']).analyze();
 }
 
 test('targets are at least 24 pixels', async ({ page }) => {

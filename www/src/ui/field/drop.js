@@ -9,7 +9,7 @@ import { carriesFiles, FORMATS, LIMIT, listOf } from './files.js';
 export function mountDrop(engine, toast) {
   const target = h(
     'div',
-    { class: 'drop', hidden: true },
+    { class: 'drop', role: 'status', hidden: true },
     h('div', { class: 'drop-text' }, h('strong', null, 'Drop to sample its surface'), h('span', { class: 'quiet' }, `${listOf(FORMATS)}, up to ${LIMIT}`)),
   );
   document.body.append(target);

@@ -73,7 +73,8 @@ function rampOf({ colours, range, mark, unit, kind }, write) {
   ramp.style.backgroundImage = `linear-gradient(to right, ${colours.join(', ')})`;
   if (!range) return [ramp];
   const [low, high] = range;
-  const share = mark === undefined || !(high > low) ? NaN : (mark - low) / (high - low);
+  if (low === high) return [ramp, h('div', { class: 'ends' }, h('span', null, `${formatSignificant(low)} everywhere`))];
+  const share = mark === undefined ? NaN : (mark - low) / (high - low);
   if (share >= 0 && share <= 1) {
     const tick = h('span', { class: 'tick' });
     tick.style.left = `${share * 100}%`;
