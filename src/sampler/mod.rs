@@ -11,6 +11,7 @@ mod octree;
 mod pairs;
 mod project;
 mod relax;
+mod repulsion;
 mod search;
 mod seeds;
 mod settings;
@@ -496,9 +497,10 @@ impl Sampler {
                 }
                 Phase::Relaxation => {
                     let start = self.projector.evaluations;
+                    let mut surface =
+                        relax::Surface { field: &mut *field, projector: &mut self.projector, sizing: None };
                     let (rest, moved) = self.relaxation.step(
-                        field,
-                        &mut self.projector,
+                        &mut surface,
                         &mut self.front.grid,
                         &mut self.pairs,
                         &mut self.particles,
@@ -695,8 +697,7 @@ impl Sampler {
     fn begin_relaxation(&mut self) {
         self.front.grid.release();
         self.relaxation.begin(
-            self.radius as f32,
-            self.tolerance,
+            relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance },
             &self.bounds,
             self.settings.relax_steps,
             self.particles.len(),

@@ -85,6 +85,46 @@ pub(super) struct Tolerance {
     pub(super) min_gradient: f32,
 }
 
+/// How far a point may go along the gradient, and when it has arrived.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Descent {
+    /// Largest |f|/|∇f| of a point of the surface.
+    pub(super) residual: f32,
+    /// A point farther than this from where it began is given up.
+    pub(super) reach: f32,
+    /// A point whose last correction was shorter is not evaluated again: by the quadratic convergence of Newton's method
+    /// its residual is then below the tolerance's order, and its normal is that of the point before the correction.
+    pub(super) trust: f32,
+}
+
+/// What applies to each of some points on their way along the gradient, and what is asked of the field there.
+pub(super) trait Descents {
+    /// What applies to point `i`.
+    fn of(&self, i: usize) -> Descent;
+
+    /// Evaluates the field at `points`, which are those with the numbers `which`.
+    #[inline(always)]
+    fn evaluate(
+        &mut self,
+        field: &mut dyn Field,
+        which: &[u32],
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+    ) {
+        let _ = which;
+        field.gradients(points, value, gradient);
+    }
+}
+
+/// The same for all points.
+impl Descents for Descent {
+    #[inline(always)]
+    fn of(&self, _: usize) -> Descent {
+        *self
+    }
+}
+
 /// One circle under way.
 #[derive(Clone, Copy)]
 struct Active {
@@ -289,26 +329,18 @@ impl Projector {
 
     /// Moves each of at most [`BATCH`] points onto the surface along the gradient, by Newton's method.
     ///
-    /// `normal[i]` becomes the unit normal. `ok[i]` says that the point is on the surface within `tolerance`; a point
-    /// is given up when it has not arrived after `max_steps` evaluations, when it has gone farther than `reach` from
-    /// where it began, or where the field is undefined or flat.
-    ///
-    /// With `verify` false, a point whose last correction was shorter than `trust` is not evaluated again: by the
-    /// quadratic convergence of Newton's method its residual is then below the tolerance's order, and its normal is
-    /// that of the point before the correction.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one hot routine with two callers; a struct would only rename these"
-    )]
+    /// `normal[i]` becomes the unit normal. `ok[i]` says that the point is on the surface as `descents` ask; a point is
+    /// given up when it has not arrived after `max_steps` evaluations, when it has gone too far from where it began, or
+    /// where the field is undefined or its gradient is not above `min_gradient`.
+    #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
     pub(super) fn land_along_gradient(
         &mut self,
         field: &mut dyn Field,
         points: &mut [Vec3],
         normal: &mut [Vec3],
         ok: &mut [bool],
-        tolerance: Tolerance,
-        reach: f32,
-        trust: f32,
+        min_gradient: f32,
+        descents: &mut impl Descents,
         max_steps: u32,
     ) {
         let n = points.len();
@@ -325,21 +357,23 @@ impl Projector {
             self.points.clear();
             self.points.extend(active[..count].iter().map(|&i| points[i as usize]));
             self.evaluations += count as u64;
-            field.gradients(&self.points, &mut self.value[..count], &mut self.gradient[..count]);
+            let (value, gradient) = (&mut self.value[..count], &mut self.gradient[..count]);
+            descents.evaluate(field, &active[..count], &self.points, value, gradient);
             let mut kept = 0;
             for k in 0..count {
                 let i = active[k] as usize;
+                let Descent { residual, reach, trust } = descents.of(i);
                 let (value, gradient) = (self.value[k], self.gradient[k]);
                 let slope_sq = gradient.length_squared();
                 let inverse_slope = 1.0 / slope_sq.sqrt();
                 let slope = slope_sq * inverse_slope;
                 // Written so that NaN fails.
-                if !(slope > tolerance.min_gradient && slope.is_finite() && value.is_finite()) {
+                if !(slope > min_gradient && slope.is_finite() && value.is_finite()) {
                     continue;
                 }
                 normal[i] = gradient * inverse_slope;
                 let distance = value.abs() * inverse_slope;
-                if distance <= tolerance.residual {
+                if distance <= residual {
                     ok[i] = true;
                     continue;
                 }

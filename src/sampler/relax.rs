@@ -1,43 +1,39 @@
-//! Relaxation by Gaussian repulsion, paper §4.5 after Witkin and Heckbert 1994, §4: no fission, no death, one radius.
+//! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane and is brought back onto
+//! the surface, a given number of times (paper §4.5 and the end of §5).
 //!
-//! Each pair has the energy exp(−d²/2σ²) with σ = r; every particle moves against its gradient in the tangent plane and
-//! is brought back onto the surface. The hexagonal lattice of spacing 2r is then close to equilibrium (2.017 r).
+//! What repels is a law of pairs ([`Repulsion`]): a Gaussian for particles of one size, the overlap for particles of many.
+//! Steps, neighbour lists and the way back onto the surface are the same.
 //!
 //! # Differs from the paper
 //!
-//! * The pair energy is cut off at 3σ and shifted so that it ends at zero: the sum is continuous in the positions.
-//! * The step is not the fixed dt = 0.03 of Witkin and Heckbert but as large as stays stable: a step that does not lower
-//!   the energy is taken back and halved, so the energy falls at every step.
+//! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
+//!   so the energy falls at every step.
 
 use super::pairs::Pairs;
 use super::project::{BATCH, Projector, Tolerance};
+use super::repulsion::{Gaussian, Overlap, Points, Repulsion};
+use super::sizing::Sizing;
 use super::uniform::CELL_PER_REACH;
 use crate::field::Field;
+
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::spatial::{CellGrid, Neighbour, Vicinity};
+use core::ops::Range;
 use glam::Vec3;
 
-/// Range of the repulsion in σ.
-pub(super) const CUT_OFF: f32 = 3.0;
-/// The neighbour lists reach this much farther, in σ, so that they serve while particles move. It was chosen by counting
-/// instructions: a wider one lengthens every list, a narrower one has more of them made anew.
+/// Range of the Gaussian, in radii.
+pub(super) const CUT_OFF: f32 = Gaussian::RANGE;
+/// The neighbour lists reach this much farther, in mean radii of a pair, so that they serve while particles move. It was
+/// chosen by counting instructions: a wider one lengthens every list, a narrower one has more of them made anew.
 pub(super) const SKIN: f32 = 0.4;
-/// First step size, in units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ²,
-/// so steps below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in
-/// ten steps and set the squeezed rows trembling.
-const FIRST_STEP: f32 = 0.6;
 /// Step sizes halve after a failure and grow back by this factor after a success.
 const GROWTH: f32 = 1.05;
-/// Largest step size.
-const MAX_STEP: f32 = FIRST_STEP;
-/// No particle moves farther than this in one step, in σ.
-const MAX_MOVE: f32 = 0.35;
 /// Failures in a row after which the configuration counts as being at its minimum.
 const MAX_FAILURES: u32 = 6;
-/// Evaluations to bring one particle back onto the surface.
-const MAX_NEWTON: u32 = 6;
-/// A Newton correction shorter than this, in σ, leaves a residual of the order of its square.
+/// No particle moves farther than this in one step, in radii.
+pub(super) const MAX_MOVE: f32 = 0.35;
+/// A Newton correction shorter than this, in radii, leaves a residual of the order of its square.
 const TRUSTED_CORRECTION: f32 = 0.02;
 
 /// What a relaxation does next.
@@ -52,14 +48,32 @@ enum Stage {
     Move,
     Restore,
     Polish,
+    /// Lower the radii that a neighbour's does not allow.
+    Grade,
     Done,
+}
+
+/// What repels, and what it takes to be on the surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Law {
+    /// Particles of this radius.
+    Gaussian { radius: f32, tolerance: Tolerance },
+    /// Particles of radii up to `largest`, on a surface that single precision resolves to `resolution`.
+    Overlap { largest: f32, resolution: f32, min_gradient: f32 },
+}
+
+/// The surface that the particles stay on.
+pub(super) struct Surface<'a> {
+    pub(super) field: &'a mut dyn Field,
+    pub(super) projector: &'a mut Projector,
+    /// The radius field of an adaptive run.
+    pub(super) sizing: Option<&'a Sizing>,
 }
 
 /// A relaxation under way.
 #[derive(Clone, Debug)]
 pub(super) struct Relaxation {
-    radius: f32,
-    tolerance: Tolerance,
+    law: Law,
     bounds: Bounds,
     target: u32,
     done: u32,
@@ -79,6 +93,10 @@ pub(super) struct Relaxation {
     /// Positions before the step under judgement; empty before the first.
     previous: Vec<Vec3>,
     has_previous: bool,
+    /// Radii before that step, where they change.
+    previous_radius: Vec<f32>,
+    /// Whether this pass over the radii has lowered one.
+    lowered: bool,
     step_size: f32,
     failures: u32,
     /// Energy of the positions whose forces are being computed.
@@ -89,8 +107,7 @@ pub(super) struct Relaxation {
 impl Relaxation {
     pub(super) fn new() -> Self {
         Self {
-            radius: 1.0,
-            tolerance: Tolerance::default(),
+            law: Law::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
             bounds: Bounds::cube(1.0),
             target: 0,
             done: 0,
@@ -105,7 +122,9 @@ impl Relaxation {
             force: Vec::new(),
             previous: Vec::new(),
             has_previous: false,
-            step_size: FIRST_STEP,
+            previous_radius: Vec::new(),
+            lowered: false,
+            step_size: 0.0,
             failures: 0,
             sum: 0.0,
             energy: Vec::new(),
@@ -117,25 +136,28 @@ impl Relaxation {
         self.done = 0;
         self.stage = Stage::Done;
         self.energy.clear();
-        self.step_size = FIRST_STEP;
     }
 
     /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short.
     pub(super) fn begin(
         &mut self,
-        radius: f32,
-        tolerance: Tolerance,
+        law: Law,
         bounds: &Bounds,
         target: u32,
         particles: usize,
         pairs: &mut Pairs,
     ) {
-        self.radius = radius;
-        self.tolerance = tolerance;
+        self.law = law;
         self.bounds = *bounds;
         self.target = target;
         self.has_previous = false;
         self.failures = 0;
+        if self.done == 0 {
+            self.step_size = match law {
+                Law::Gaussian { .. } => Gaussian::STEP,
+                Law::Overlap { .. } => Overlap::STEP,
+            };
+        }
         self.energy.truncate(self.done as usize);
         self.way.clear();
         self.way.resize(particles, 0.0);
@@ -161,12 +183,16 @@ impl Relaxation {
 
     /// Takes back a step that is only half made. Returns whether positions changed.
     pub(super) fn abandon(&mut self, particles: &mut Particles) -> bool {
-        let half_made = matches!(self.stage, Stage::Move | Stage::Restore);
-        if half_made {
-            particles.position[..self.next].copy_from_slice(&self.previous[..self.next]);
+        let moved = match self.stage {
+            Stage::Move => 0..self.next,
+            Stage::Restore => self.next..self.previous.len(),
+            _ => 0..0,
+        };
+        for i in moved.clone() {
+            self.restore(particles, i);
         }
         self.stage = Stage::Done;
-        half_made
+        !moved.is_empty()
     }
 
     fn enter(&mut self, stage: Stage) {
@@ -174,11 +200,32 @@ impl Relaxation {
         self.next = 0;
     }
 
-    /// Does up to `budget` units (one particle in one stage); returns what is left and whether particles moved.
+    /// Does up to `budget` units (one particle in one stage); returns what is left and whether particles moved. `sizing` is
+    /// the radius field of an adaptive run.
     pub(super) fn step(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        surface: &mut Surface,
+        grid: &mut CellGrid,
+        pairs: &mut Pairs,
+        particles: &mut Particles,
+        budget: u32,
+    ) -> (u32, bool) {
+        match (self.law, surface.sizing) {
+            (Law::Gaussian { radius, tolerance }, _) => {
+                self.run(&Gaussian::new(radius, tolerance), surface, grid, pairs, particles, budget)
+            }
+            (Law::Overlap { resolution, min_gradient, .. }, Some(sizing)) => {
+                let law = Overlap { sizing, resolution, min_gradient };
+                self.run(&law, surface, grid, pairs, particles, budget)
+            }
+            (Law::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
+        }
+    }
+
+    fn run<L: Repulsion>(
+        &mut self,
+        law: &L,
+        surface: &mut Surface,
         grid: &mut CellGrid,
         pairs: &mut Pairs,
         particles: &mut Particles,
@@ -194,8 +241,9 @@ impl Relaxation {
             match self.stage {
                 Stage::Grid => {
                     if range.start == 0 {
-                        grid.reset(CELL_PER_REACH * self.list_reach());
-                        self.vicinity.reset(self.list_reach(), self.far.len());
+                        let reach = self.list_reach::<L>();
+                        grid.reset(CELL_PER_REACH * reach);
+                        self.vicinity.reset(reach, self.far.len());
                         for &i in &self.far {
                             self.vicinity.add(particles.position[i as usize]);
                         }
@@ -212,7 +260,7 @@ impl Relaxation {
                 }
                 Stage::Refresh => {
                     for k in range {
-                        self.refresh(grid, pairs, particles, self.far[k] as usize);
+                        self.refresh(law, grid, pairs, particles, self.far[k] as usize);
                     }
                     if last == n {
                         self.far.clear();
@@ -222,16 +270,19 @@ impl Relaxation {
                 }
                 Stage::Forces => {
                     for i in range {
-                        self.repel(pairs, particles, i);
+                        self.repel(law, pairs, particles, i);
                     }
                     if last == n {
                         self.enter(Stage::Judge);
                     }
                 }
-                Stage::Judge => self.judge(particles),
+                Stage::Judge => self.judge::<L>(particles),
                 Stage::Move => {
+                    let mut points = Points::new();
                     for first in (range.start..last).step_by(BATCH) {
-                        self.advance(field, projector, particles, first..last.min(first + BATCH));
+                        let range = first..last.min(first + BATCH);
+                        self.advance(law, particles, range.clone(), &mut points);
+                        self.land(law, surface, particles, range, &mut points, TRUSTED_CORRECTION);
                     }
                     moved |= !range.is_empty();
                     if last == n {
@@ -241,8 +292,9 @@ impl Relaxation {
                 Stage::Restore => {
                     for i in range {
                         let back = (particles.position[i] - self.previous[i]).length();
-                        particles.position[i] = self.previous[i];
-                        self.went(i, back);
+                        let shrunk = particles.radius[i];
+                        self.restore(particles, i);
+                        self.went(law, particles, i, back, particles.radius[i] - shrunk);
                     }
                     moved = true;
                     if last == n {
@@ -251,12 +303,26 @@ impl Relaxation {
                     }
                 }
                 Stage::Polish => {
+                    let mut points = Points::new();
                     for first in (range.start..last).step_by(BATCH) {
-                        self.polish(field, projector, particles, first..last.min(first + BATCH));
+                        let range = first..last.min(first + BATCH);
+                        points.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
+                        self.land(law, surface, particles, range, &mut points, 0.0);
                     }
                     moved |= !range.is_empty();
                     if last == n {
-                        self.enter(Stage::Done);
+                        self.lowered = false;
+                        self.enter(if L::RESIZES { Stage::Grade } else { Stage::Done });
+                    }
+                }
+                Stage::Grade => {
+                    let slope = surface.sizing.map_or(0.0, Sizing::slope);
+                    for i in range {
+                        self.lowered |= grade(slope, pairs, particles, i);
+                    }
+                    if last == n {
+                        self.enter(if self.lowered { Stage::Grade } else { Stage::Done });
+                        self.lowered = false;
                     }
                 }
                 Stage::Done => {}
@@ -281,34 +347,55 @@ impl Relaxation {
         }
     }
 
-    /// Radius within which the lists hold every pair.
-    fn list_reach(&self) -> f32 {
-        (CUT_OFF + SKIN) * self.radius
+    /// Radius within which the lists hold every pair, for the largest particles.
+    fn list_reach<L: Repulsion>(&self) -> f32 {
+        let largest = match self.law {
+            Law::Gaussian { radius, .. } => radius,
+            Law::Overlap { largest, .. } => largest,
+        };
+        (L::RANGE + SKIN) * largest
     }
 
-    /// Notes that particle `i` has gone some way: two particles that have each gone half the skin may have come within
-    /// the cut-off without being listed.
+    /// Notes that particle `i` has gone some way and grown: two particles of which each has used up half of its skin may
+    /// have come within range without being listed.
     #[inline]
-    fn went(&mut self, i: usize, distance: f32) {
+    fn went<L: Repulsion>(&mut self, law: &L, particles: &Particles, i: usize, distance: f32, grown: f32) {
         let before = self.way[i];
-        let after = before + distance;
+        let mut after = before + distance;
+        if L::RESIZES {
+            after += 0.5 * L::RANGE * grown.max(0.0);
+        }
         self.way[i] = after;
-        let limit = 0.5 * SKIN * self.radius;
+        let limit = 0.5 * SKIN * law.radius(particles, i);
         if after > limit && before <= limit {
             self.far.push(i as u32);
         }
     }
 
-    /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the cut-off and the skin.
-    /// Those of a larger index get it into their lists.
-    fn refresh(&mut self, grid: &CellGrid, pairs: &mut Pairs, particles: &Particles, i: usize) {
+    /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the range and the skin. Those of
+    /// a larger index get it into their lists.
+    fn refresh<L: Repulsion>(
+        &mut self,
+        law: &L,
+        grid: &CellGrid,
+        pairs: &mut Pairs,
+        particles: &Particles,
+        i: usize,
+    ) {
         self.way[i] = 0.0;
-        grid.gather(particles.position[i], self.list_reach(), &mut self.found);
+        grid.gather(particles.position[i], self.list_reach::<L>(), &mut self.found);
         let normal = particles.normal[i];
+        let radius = law.radius(particles, i);
         self.list.clear();
-        for &Neighbour { index: j, .. } in &self.found {
+        for &Neighbour { index: j, distance_sq, .. } in &self.found {
             if particles.normal[j as usize].dot(normal) <= 0.0 {
                 continue;
+            }
+            if L::RESIZES {
+                let reach = 0.5 * (L::RANGE + SKIN) * (radius + law.radius(particles, j as usize));
+                if distance_sq > reach * reach {
+                    continue;
+                }
             }
             if (j as usize) < i {
                 self.list.push(j);
@@ -321,27 +408,25 @@ impl Relaxation {
 
     /// Adds the repulsion between particle `i` and its listed neighbours to the forces on both, and to the energy.
     #[inline]
-    fn repel(&mut self, pairs: &Pairs, particles: &Particles, i: usize) {
+    fn repel<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles, i: usize) {
         let p = particles.position[i];
-        // Squared distances are measured in σ² = r².
-        let scale = 0.5 / (self.radius * self.radius);
+        let radius = law.radius(particles, i);
         let mut force = Vec3::ZERO;
         let mut energy = 0.0;
         for &j in pairs.of(i) {
-            let d = p - particles.position[j as usize];
-            let half_sq = d.length_squared() * scale;
-            let near = half_sq < 0.5 * CUT_OFF * CUT_OFF;
-            let weight = if near { gaussian(half_sq) } else { 0.0 };
-            energy += if near { weight - CUT_OFF_ENERGY } else { 0.0 };
-            force += d * weight;
-            self.force[j as usize] -= d * weight;
+            let j = j as usize;
+            let offset = p - particles.position[j];
+            let (weight, of_pair) = law.pair(offset, 0.5 * (radius + law.radius(particles, j)));
+            energy += of_pair;
+            force += offset * weight;
+            self.force[j] -= offset * weight;
         }
         self.force[i] += force;
         self.sum += f64::from(energy);
     }
 
     /// Accepts the last step or has it taken back.
-    fn judge(&mut self, particles: &Particles) {
+    fn judge<L: Repulsion>(&mut self, particles: &Particles) {
         let energy = self.sum / particles.len() as f64;
         if self.has_previous {
             let before = self.energy.last().copied().unwrap_or(f64::INFINITY);
@@ -350,7 +435,7 @@ impl Relaxation {
                 self.failures += 1;
                 return self.enter(Stage::Restore);
             }
-            self.step_size = (self.step_size * GROWTH).min(MAX_STEP);
+            self.step_size = (self.step_size * GROWTH).min(L::STEP);
             self.failures = 0;
             self.done += 1;
         }
@@ -363,111 +448,90 @@ impl Relaxation {
             return self.enter(Stage::Polish);
         }
         self.previous.resize(particles.len(), Vec3::ZERO);
+        if L::RESIZES {
+            self.previous_radius.resize(particles.len(), 0.0);
+        }
         self.has_previous = true;
         self.enter(Stage::Move);
     }
 
-    /// Moves a batch of particles along their forces and back onto the surface.
-    fn advance(
+    /// Moves a batch of particles along their forces: into `points`, in the tangent planes.
+    fn advance<L: Repulsion>(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
-        particles: &mut Particles,
-        range: core::ops::Range<usize>,
+        law: &L,
+        particles: &Particles,
+        range: Range<usize>,
+        points: &mut Points,
     ) {
-        let count = range.len();
-        let mut points = [Vec3::ZERO; BATCH];
-        let mut normals = [Vec3::ZERO; BATCH];
-        let mut ok = [false; BATCH];
-        let longest = MAX_MOVE * self.radius;
-        for (point, i) in points.iter_mut().zip(range.clone()) {
+        for (k, i) in range.enumerate() {
             let p = particles.position[i];
             let normal = particles.normal[i];
+            let radius = law.radius(particles, i);
             let force = self.force[i] - normal * normal.dot(self.force[i]);
             self.previous[i] = p;
-            *point = p + (force * self.step_size).clamp_length_max(longest);
+            if L::RESIZES {
+                self.previous_radius[i] = radius;
+            }
+            points.position[k] = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
         }
-        projector.land_along_gradient(
-            field,
-            &mut points[..count],
-            &mut normals,
-            &mut ok,
-            self.tolerance,
-            longest,
-            TRUSTED_CORRECTION * self.radius,
-            MAX_NEWTON,
-        );
+    }
+
+    /// Puts a batch of particles where `points` come to the surface, with their radii there.
+    fn land<L: Repulsion>(
+        &mut self,
+        law: &L,
+        surface: &mut Surface,
+        particles: &mut Particles,
+        range: Range<usize>,
+        points: &mut Points,
+        trust: f32,
+    ) {
+        points.count = range.len();
+        if L::RESIZES {
+            points.radius[..range.len()].copy_from_slice(&particles.radius[range.clone()]);
+        }
+        law.land(surface.field, surface.projector, points, trust);
         for (k, i) in range.enumerate() {
             // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
-            if ok[k] && self.bounds.contains(points[k]) && normals[k].dot(particles.normal[i]) > 0.0 {
-                self.went(i, (points[k] - self.previous[i]).length());
-                particles.position[i] = points[k];
-                particles.normal[i] = normals[k];
+            let (position, normal) = (points.position[k], points.normal[k]);
+            if points.ok[k] && self.bounds.contains(position) && normal.dot(particles.normal[i]) > 0.0 {
+                let distance = (position - particles.position[i]).length();
+                let mut grown = 0.0;
+                if L::RESIZES {
+                    grown = points.radius[k] - particles.radius[i];
+                    particles.radius[i] = points.radius[k];
+                }
+                self.went(law, particles, i, distance, grown);
+                particles.position[i] = position;
+                particles.normal[i] = normal;
             }
         }
     }
 
-    /// Brings residual and normal of a batch to full accuracy.
-    fn polish(
-        &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
-        particles: &mut Particles,
-        range: core::ops::Range<usize>,
-    ) {
-        let count = range.len();
-        let mut points = [Vec3::ZERO; BATCH];
-        let mut normals = [Vec3::ZERO; BATCH];
-        let mut ok = [false; BATCH];
-        points[..count].copy_from_slice(&particles.position[range.clone()]);
-        projector.land_along_gradient(
-            field,
-            &mut points[..count],
-            &mut normals,
-            &mut ok,
-            self.tolerance,
-            MAX_MOVE * self.radius,
-            0.0,
-            MAX_NEWTON,
-        );
-        for (k, i) in range.enumerate() {
-            if ok[k] && self.bounds.contains(points[k]) {
-                particles.position[i] = points[k];
-                particles.normal[i] = normals[k];
-            }
+    /// Puts particle `i` back where the step under judgement found it.
+    fn restore(&self, particles: &mut Particles, i: usize) {
+        particles.position[i] = self.previous[i];
+        if let Some(&radius) = self.previous_radius.get(i) {
+            particles.radius[i] = radius;
         }
     }
 }
 
-/// exp(−CUT_OFF²/2).
-const CUT_OFF_ENERGY: f32 = 0.011_108_997;
-
-/// exp(−x) for 0 ≤ x ≤ 4.5 to 2·10⁻⁵ of its value; of no meaning elsewhere.
-///
-/// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
-#[inline(always)]
-fn gaussian(x: f32) -> f32 {
-    let y = x * (-1.0 / 16.0);
-    let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
-    let e2 = e * e;
-    let e4 = e2 * e2;
-    let e8 = e4 * e4;
-    e8 * e8
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn gaussian_is_accurate_within_the_cut_off() {
-        for k in 0..=450 {
-            let x = k as f32 * 0.01;
-            let exact = libm::exp(-f64::from(x));
-            let got = f64::from(gaussian(x));
-            assert!((got / exact - 1.0).abs() < 3e-5, "x = {x}: {got} against {exact}");
+/// Lowers the radius of particle `i` to what its listed neighbours allow it at this slope, and theirs to what it allows
+/// them. Says whether any was lowered.
+fn grade(slope: f32, pairs: &Pairs, particles: &mut Particles, i: usize) -> bool {
+    let mut lowered = false;
+    for &j in pairs.of(i) {
+        let j = j as usize;
+        let rise = slope * (particles.position[i] - particles.position[j]).length();
+        let (a, b) = (particles.radius[i], particles.radius[j]);
+        if a > b + rise {
+            particles.radius[i] = b + rise;
+            lowered = true;
+        } else if b > a + rise {
+            particles.radius[j] = a + rise;
+            lowered = true;
         }
-        let end = libm::exp(-0.5 * f64::from(CUT_OFF * CUT_OFF));
-        assert!((f64::from(CUT_OFF_ENERGY) / end - 1.0).abs() < 1e-6);
     }
+    lowered
 }

@@ -1,7 +1,7 @@
 //! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
 
 use super::octree::Octree;
-use super::project::{BATCH, Projector, Tolerance};
+use super::project::{BATCH, Descent, Projector, Tolerance};
 use super::search::Search;
 use super::sheets::{are_connected, is_one_sheet, lift, middle};
 use crate::field::Field;
@@ -99,9 +99,8 @@ impl Seeds {
                 &mut points,
                 &mut normal,
                 &mut ok,
-                tolerance,
-                reach,
-                0.0,
+                tolerance.min_gradient,
+                &mut Descent { residual: tolerance.residual, reach, trust: 0.0 },
                 MAX_STEPS,
             );
             for (k, &p) in points.iter().enumerate() {

@@ -90,6 +90,11 @@ impl Sizing {
         self.envelope.at(position)
     }
 
+    /// Slope L: |r(x) − r(y)| ≤ L |x − y|.
+    pub(super) fn slope(&self) -> f32 {
+        self.slope
+    }
+
     /// Particles that cover the surface in perfect hexagons: ∫ dA / (2√3 r²).
     pub(super) fn predicted_count(&self) -> f64 {
         self.predicted

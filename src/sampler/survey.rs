@@ -2,7 +2,7 @@
 //! can see), how large it is, and how finely single precision resolves it.
 
 use super::Search;
-use super::project::{BATCH, Projector, Tolerance, tolerance};
+use super::project::{BATCH, Descent, Projector, Tolerance, tolerance};
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
@@ -211,9 +211,8 @@ fn project(
             chunk,
             &mut normal,
             &mut ok,
-            coarse,
-            2.0 * spacing,
-            0.0,
+            coarse.min_gradient,
+            &mut Descent { residual: coarse.residual, reach: 2.0 * spacing, trust: 0.0 },
             MAX_STEPS,
         );
         for i in 0..chunk.len() {

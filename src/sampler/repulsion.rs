@@ -1,0 +1,250 @@
+//! What repels particles: a Gaussian for those of one size (paper §4.5), the overlap of discs for those of many (§5).
+
+use super::project::{BATCH, Descent, Descents, Projector, Tolerance, tolerance};
+use super::relax::MAX_MOVE;
+use super::sizing::Sizing;
+use crate::differential::{Curvature, curvatures_of};
+use crate::field::Field;
+use crate::math::Sym3;
+use crate::particles::Particles;
+use glam::Vec3;
+
+/// Evaluations to bring one particle back onto the surface.
+const MAX_NEWTON: u32 = 6;
+
+/// Some particles on their way back to the surface.
+pub(super) struct Points {
+    pub(super) count: usize,
+    pub(super) position: [Vec3; BATCH],
+    pub(super) normal: [Vec3; BATCH],
+    /// Radius, where that changes.
+    pub(super) radius: [f32; BATCH],
+    /// Whether the point has come to the surface.
+    pub(super) ok: [bool; BATCH],
+}
+
+impl Points {
+    pub(super) fn new() -> Self {
+        Self {
+            count: 0,
+            position: [Vec3::ZERO; BATCH],
+            normal: [Vec3::ZERO; BATCH],
+            radius: [0.0; BATCH],
+            ok: [false; BATCH],
+        }
+    }
+}
+
+/// A law of repulsion between the two particles of a pair. Lengths are in mean radii of the pair unless said otherwise.
+pub(super) trait Repulsion {
+    /// Distance beyond which it ends.
+    const RANGE: f32;
+    /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
+    const STEP: f32;
+    /// Whether the radii change as particles move.
+    const RESIZES: bool;
+
+    /// Radius of particle `i`.
+    fn radius(&self, particles: &Particles, i: usize) -> f32;
+
+    /// Force over offset, and energy, of a pair with this offset and mean radius, both lengths.
+    fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32);
+
+    /// Brings `points` onto the surface, and their radii up to date. A correction below `trust` radii is not checked.
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32);
+}
+
+/// Gaussian repulsion after Witkin and Heckbert 1994, §4: no fission, no death, one radius.
+///
+/// Each pair has the energy exp(−d²/2σ²) with σ = r; every particle moves against its gradient. The hexagonal lattice of
+/// spacing 2r is then close to equilibrium (2.017 r).
+///
+/// # Differs from the paper
+///
+/// The pair energy is cut off at 3σ and shifted so that it ends at zero: the sum is continuous in the positions.
+pub(super) struct Gaussian {
+    radius: f32,
+    tolerance: Tolerance,
+    /// 1/2σ².
+    scale: f32,
+}
+
+impl Gaussian {
+    pub(super) fn new(radius: f32, tolerance: Tolerance) -> Self {
+        Self { radius, tolerance, scale: 0.5 / (radius * radius) }
+    }
+}
+
+impl Repulsion for Gaussian {
+    const RANGE: f32 = 3.0;
+    /// In units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
+    /// below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in ten
+    /// steps and set the squeezed rows trembling.
+    const STEP: f32 = 0.6;
+    const RESIZES: bool = false;
+
+    #[inline(always)]
+    fn radius(&self, _: &Particles, _: usize) -> f32 {
+        self.radius
+    }
+
+    #[inline(always)]
+    fn pair(&self, offset: Vec3, _: f32) -> (f32, f32) {
+        // Squared distances are measured in σ² = r².
+        let half_sq = offset.length_squared() * self.scale;
+        let near = half_sq < 0.5 * Self::RANGE * Self::RANGE;
+        let weight = if near { gaussian(half_sq) } else { 0.0 };
+        (weight, if near { weight - END_ENERGY } else { 0.0 })
+    }
+
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
+        let mut descent = Descent {
+            residual: self.tolerance.residual,
+            reach: MAX_MOVE * self.radius,
+            trust: trust * self.radius,
+        };
+        projector.land_along_gradient(
+            field,
+            &mut points.position[..points.count],
+            &mut points.normal,
+            &mut points.ok,
+            self.tolerance.min_gradient,
+            &mut descent,
+            MAX_NEWTON,
+        );
+    }
+}
+
+/// exp(−RANGE²/2).
+const END_ENERGY: f32 = 0.011_108_997;
+
+/// exp(−x) for 0 ≤ x ≤ 4.5 to 2·10⁻⁵ of its value; of no meaning elsewhere.
+///
+/// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
+#[inline(always)]
+fn gaussian(x: f32) -> f32 {
+    let y = x * (-1.0 / 16.0);
+    let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
+    let e2 = e * e;
+    let e4 = e2 * e2;
+    let e8 = e4 * e4;
+    e8 * e8
+}
+
+/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): each pair
+/// pushes apart by its overlap.
+pub(super) struct Overlap<'a> {
+    pub(super) sizing: &'a Sizing,
+    /// What single precision resolves, and the least gradient that is one.
+    pub(super) resolution: f32,
+    pub(super) min_gradient: f32,
+}
+
+impl Repulsion for Overlap<'_> {
+    const RANGE: f32 = 2.0 * REACH;
+    const STEP: f32 = 0.25;
+    const RESIZES: bool = true;
+
+    #[inline(always)]
+    fn radius(&self, particles: &Particles, i: usize) -> f32 {
+        particles.radius[i]
+    }
+
+    #[inline(always)]
+    fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32) {
+        let reach = Self::RANGE * mean;
+        let distance_sq = offset.length_squared();
+        if distance_sq >= reach * reach {
+            return (0.0, 0.0);
+        }
+        let distance = distance_sq.sqrt();
+        let overlap = reach - distance;
+        let share = overlap / mean;
+        // Two particles in one place have no direction to part in.
+        (if distance > 0.0 { overlap / distance } else { 0.0 }, share * share)
+    }
+
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
+        let mut bent = Bent {
+            radius: &points.radius,
+            resolution: self.resolution,
+            trust,
+            hessian: [Sym3::default(); BATCH],
+            met: [(Vec3::ZERO, Sym3::default()); BATCH],
+        };
+        projector.land_along_gradient(
+            field,
+            &mut points.position[..points.count],
+            &mut points.normal,
+            &mut points.ok,
+            self.min_gradient,
+            &mut bent,
+            MAX_NEWTON,
+        );
+        let Bent { met, .. } = bent;
+        let gradient: [Vec3; BATCH] = core::array::from_fn(|k| met[k].0);
+        let hessian: [Sym3<f32>; BATCH] = core::array::from_fn(|k| met[k].1);
+        let mut curvature = [Curvature::default(); BATCH];
+        let n = points.count;
+        curvatures_of(&gradient[..n], &hessian[..n], &mut curvature[..n]);
+        for k in 0..n {
+            points.radius[k] = self.sizing.radius(points.position[k], &curvature[k]);
+        }
+    }
+}
+
+/// Points on their way to the surface with what the field's last evaluation says of the curvature there.
+struct Bent<'a> {
+    radius: &'a [f32; BATCH],
+    resolution: f32,
+    trust: f32,
+    hessian: [Sym3<f32>; BATCH],
+    met: [(Vec3, Sym3<f32>); BATCH],
+}
+
+impl Descents for Bent<'_> {
+    #[inline(always)]
+    fn of(&self, i: usize) -> Descent {
+        let radius = self.radius[i];
+        Descent {
+            residual: tolerance(radius, self.resolution, 0.0).residual,
+            reach: MAX_MOVE * radius,
+            trust: self.trust * radius,
+        }
+    }
+
+    fn evaluate(
+        &mut self,
+        field: &mut dyn Field,
+        which: &[u32],
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+    ) {
+        let hessian = &mut self.hessian[..points.len()];
+        field.hessians(points, value, gradient, hessian);
+        for ((&i, &gradient), &hessian) in which.iter().zip(gradient.iter()).zip(hessian.iter()) {
+            self.met[i as usize] = (gradient, hessian);
+        }
+    }
+}
+
+/// Sum of radii, over its own, up to which discs count as overlapping.
+const REACH: f32 = 1.15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaussian_is_accurate_within_the_cut_off() {
+        for k in 0..=450 {
+            let x = k as f32 * 0.01;
+            let exact = libm::exp(-f64::from(x));
+            let got = f64::from(gaussian(x));
+            assert!((got / exact - 1.0).abs() < 3e-5, "x = {x}: {got} against {exact}");
+        }
+        let end = libm::exp(-0.5 * f64::from(Gaussian::RANGE * Gaussian::RANGE));
+        assert!((f64::from(END_ENERGY) / end - 1.0).abs() < 1e-6);
+    }
+}
