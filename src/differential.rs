@@ -98,22 +98,19 @@ pub fn curvatures(field: &mut dyn Field, points: &[Vec3], out: &mut [Curvature])
 /// If the slices differ in length.
 pub fn curvatures_of(gradient: &[Vec3], hessian: &[Sym3<f32>], out: &mut [Curvature]) {
     assert!(gradient.len() == hessian.len() && gradient.len() == out.len(), "one curvature for each point");
-    let chunks = gradient.chunks(LANES).zip(hessian.chunks(LANES)).zip(out.chunks_mut(LANES));
-    for ((gradient, hessian), out) in chunks {
-        // The last chunk is filled up with its first entry.
-        let at = |k: usize| if k < out.len() { k } else { 0 };
-        let g = |of: fn(&Vec3) -> f32| Lanes(core::array::from_fn(|k| of(&gradient[at(k)])));
-        let h = |of: fn(&Sym3<f32>) -> f32| Lanes(core::array::from_fn(|k| of(&hessian[at(k)])));
-        let gradient = [g(|g| g.x), g(|g| g.y), g(|g| g.z)];
-        let hessian = Sym3 {
-            xx: h(|h| h.xx),
-            xy: h(|h| h.xy),
-            xz: h(|h| h.xz),
-            yy: h(|h| h.yy),
-            yz: h(|h| h.yz),
-            zz: h(|h| h.zz),
-        };
-        let [k1, k2, x, y, z] = principal(gradient, &hessian);
+    for (first, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
+        let mut entries = [[0.0; LANES]; 9];
+        for k in 0..LANES {
+            // The last chunk is filled up with its first point.
+            let i = first + if k < out.len() { k } else { 0 };
+            let (g, h) = (&gradient[i], &hessian[i]);
+            let of_point = [g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz];
+            for (entry, value) in entries.iter_mut().zip(of_point) {
+                entry[k] = value;
+            }
+        }
+        let [x, y, z, xx, xy, xz, yy, yz, zz] = entries.map(Lanes);
+        let [k1, k2, x, y, z] = principal([x, y, z], &Sym3 { xx, xy, xz, yy, yz, zz });
         for (k, out) in out.iter_mut().enumerate() {
             let direction = Vec3::new(x.0[k], y.0[k], z.0[k]);
             *out = Curvature { k1: k1.0[k], k2: k2.0[k], direction };

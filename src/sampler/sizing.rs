@@ -22,6 +22,7 @@ const ROUNDS: usize = 2;
 const MAX_ATTEMPTS: u32 = 6;
 /// A predicted count this near is met: the prediction itself is no better.
 const COUNT_TOLERANCE: f64 = 2e-3;
+const SQRT_3: f32 = 1.732_050_8;
 /// Area of the hexagonal cell of a particle over r².
 const CELL_AREA: f64 = 2.0 * 1.732_050_807_568_877_2;
 
@@ -227,27 +228,45 @@ impl Envelope {
 
     /// Lowers every active node to what the others allow it, along ways over active nodes.
     fn spread(&mut self, slope: f32) {
-        // The thirteen neighbours that come before a node; the others come after it, mirrored.
-        let [_, row, layer] = self.strides();
-        let mut neighbours = [(0, 0.0); 13];
-        for (m, neighbour) in neighbours.iter_mut().enumerate() {
-            let (i, j, k) = (m % 3, m / 3 % 3, m / 9);
-            let way = Vec3::new(i as f32 - 1.0, j as f32 - 1.0, k as f32 - 1.0).length();
-            *neighbour = (1 + row + layer - i - j * row - k * layer, slope * way * self.cell);
-        }
+        let steps = [1.0, core::f32::consts::SQRT_2, SQRT_3].map(|way| slope * way * self.cell);
         for _ in 0..ROUNDS {
+            let mut lowered = false;
             for k in 0..self.active.len() {
                 let n = self.active[k] as usize;
-                let lowest = |value: f32, (back, step): (usize, f32)| value.min(self.value[n - back] + step);
-                self.value[n] = neighbours.into_iter().fold(self.value[n], lowest);
+                lowered |= self.lower_node(n, steps, |distance| n - distance);
             }
             for k in (0..self.active.len()).rev() {
                 let n = self.active[k] as usize;
-                let lowest =
-                    |value: f32, (ahead, step): (usize, f32)| value.min(self.value[n + ahead] + step);
-                self.value[n] = neighbours.into_iter().fold(self.value[n], lowest);
+                lowered |= self.lower_node(n, steps, |distance| n + distance);
+            }
+            if !lowered {
+                break;
             }
         }
+    }
+
+    /// Lowers node `n` to what thirteen of its neighbours allow it, those before it or those after it in the order of the
+    /// nodes; `steps` are the rises to a neighbour across a face, an edge and a corner. Says whether it was lowered.
+    #[inline(always)]
+    fn lower_node(&mut self, n: usize, steps: [f32; 3], at: impl Fn(usize) -> usize) -> bool {
+        let [_, row, layer] = self.strides();
+        let least = |a: f32, b: f32| if b < a { b } else { a };
+        let of = |distance: usize| self.value[at(distance)];
+        let face = [row, layer].map(of).into_iter().fold(of(1), least);
+        let edge = [row + 1, layer - 1, layer + 1, layer - row, layer + row]
+            .map(of)
+            .into_iter()
+            .fold(of(row - 1), least);
+        let corner = [layer - row + 1, layer + row - 1, layer + row + 1]
+            .map(of)
+            .into_iter()
+            .fold(of(layer - row - 1), least);
+        let value = least(least(face + steps[0], edge + steps[1]), corner + steps[2]);
+        let lower = value < self.value[n];
+        if lower {
+            self.value[n] = value;
+        }
+        lower
     }
 
     /// The function at `p`, by trilinear interpolation.
