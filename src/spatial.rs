@@ -178,6 +178,11 @@ impl CellGrid {
     /// history of insertions. Replaces the content of `found`.
     pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         found.clear();
+        self.gather_more(centre, radius, found);
+    }
+
+    /// [`CellGrid::gather`], added to what `found` holds.
+    pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
         let hi = (centre + radius).to_array().map(|x| self.coordinate(x));
         for bz in lo[2] >> 1..=hi[2] >> 1 {

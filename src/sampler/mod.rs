@@ -4,11 +4,15 @@
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
+mod adaptive;
+mod adaptive_grid;
+mod arcs;
+mod front;
 mod gaps;
-#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod laws;
 mod octree;
 mod pairs;
+mod placement;
 mod project;
 mod relax;
 mod repulsion;
@@ -16,7 +20,6 @@ mod search;
 mod seeds;
 mod settings;
 mod sheets;
-#[allow(dead_code, reason = "the adaptive front and its relaxation are the ones to use it")]
 mod sizing;
 mod survey;
 mod uniform;
@@ -30,7 +33,8 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use gaps::{Gaps, Ground};
+use adaptive::Surface;
+use front::Front;
 use glam::Vec3;
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
@@ -38,12 +42,15 @@ use rand_core::{Rng, SeedableRng};
 use relax::Relaxation;
 use seeds::{Place, Seeds};
 use serde::Serialize;
+use sizing::Sizing;
 use survey::{Absence, Survey, survey};
-use uniform::Front;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
 /// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
 const PACKING: f64 = 1.08;
+
+/// The same for the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces.
+const ADAPTIVE_PACKING: f64 = 1.02;
 
 /// A wanted count above this is approached through a pilot run with [`PILOT_SHARE`] of it, which shows the packing.
 const PILOT_FROM: f64 = 8_000.0;
@@ -65,10 +72,6 @@ const COUNT_ROOM: f64 = 1.1;
 /// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
 /// but no more than the peak that tests/memory.rs holds it to.
 const BYTES_PER_PARTICLE: usize = 120;
-
-/// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
-/// cover has no hole larger than 1.85 (1.6 of the ideal).
-const UNCOVERED: f32 = 2.0;
 
 /// What the sampler is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -191,9 +194,8 @@ pub struct Sampler {
     pilot: bool,
     projector: Projector,
     front: Front,
-    gaps: Gaps,
-    /// Whether the generation has come to the gaps.
-    filling: bool,
+    /// The radius field of an adaptive run.
+    sizing: Option<Sizing>,
     relaxation: Relaxation,
     pairs: Pairs,
     particles: Particles,
@@ -230,8 +232,7 @@ impl Sampler {
             pilot: false,
             projector: Projector::new(),
             front: Front::new(),
-            gaps: Gaps::default(),
-            filling: false,
+            sizing: None,
             relaxation: Relaxation::new(),
             pairs: Pairs::default(),
             particles: Particles::default(),
@@ -250,7 +251,7 @@ impl Sampler {
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        Counts { fates: self.front.fates, gaps_filled: self.gaps.filled, ..self.counts.clone() }
+        Counts { fates: self.front.fates(), gaps_filled: self.front.filled(), ..self.counts.clone() }
     }
 
     /// Energy per particle before the first relaxation step and after each: Σ exp(−d²/2σ²) over pairs, cut off at 3σ.
@@ -318,10 +319,18 @@ impl Sampler {
         }
         self.counts.seeding_evaluations = self.projector.evaluations;
 
+        self.sizing = None;
+        self.packing = PACKING;
+        if settings.sampling == Sampling::Adaptive {
+            let mut field = Scaled::new(field, self.factor);
+            let evaluations = &mut self.counts.seeding_evaluations;
+            self.sizing = Some(Sizing::new(&mut field, bounds, settings, &self.survey, evaluations));
+            self.packing = ADAPTIVE_PACKING;
+        }
+
         let area = self.survey.area;
         // Hexagonal packing: each particle takes 2√3 r².
-        self.packing = PACKING;
-        let per_radius_sq = area * PACKING / (2.0 * SQRT_3);
+        let per_radius_sq = area * self.packing / (2.0 * SQRT_3);
         self.radius = match settings.size_mode {
             SizeMode::Radius => settings.radius_share * bounds.diagonal(),
             SizeMode::Count => {
@@ -332,6 +341,12 @@ impl Sampler {
                 if radius > 0.0 { radius } else { settings.radius_share * bounds.diagonal() }
             }
         };
+        if let Some(sizing) = &mut self.sizing {
+            if settings.size_mode == SizeMode::Count {
+                sizing.scale_to(per_radius_sq / (self.radius * self.radius) / self.packing);
+            }
+            self.radius = typical_radius(&self.survey, sizing, self.radius);
+        }
         let predicted = match settings.size_mode {
             SizeMode::Radius => (per_radius_sq / (self.radius * self.radius)).round(),
             SizeMode::Count => f64::from(settings.count),
@@ -395,17 +410,12 @@ impl Sampler {
         let expected = (self.expected_count() * RESERVE).min(f64::from(self.settings.max_particles)) as usize;
         self.particles.reserve(expected);
         self.pairs.reserve(expected);
-        self.front.grid.reserve(expected);
         self.tolerance = tolerance(self.radius as f32, self.survey.resolution, self.survey.gradient_scale);
-        self.front.reset(
-            self.radius as f32,
-            self.settings.match_tolerance as f32,
-            self.tolerance,
-            &self.bounds,
-            self.settings.max_particles as usize,
-        );
-        self.filling = false;
-        self.gaps.clear();
+        let radii = match &self.sizing {
+            Some(sizing) => [sizing.smallest(), sizing.largest()],
+            None => [self.radius as f32; 2],
+        };
+        self.front.reset(&self.settings, (self.radius as f32, radii), &self.survey, &self.bounds, expected);
         self.counts.seeds = 0;
         self.counts.front_evaluations = 0;
         self.next_seed = 0;
@@ -440,7 +450,7 @@ impl Sampler {
             if self.phase == Phase::Relaxation {
                 self.moved |= self.relaxation.abandon(&mut self.particles);
             }
-            if self.phase != Phase::Relaxation && !self.filling {
+            if self.phase != Phase::Relaxation {
                 self.front.stop(&mut self.particles);
             }
             self.finish(StopReason::Cancelled);
@@ -460,35 +470,24 @@ impl Sampler {
                 Phase::Seeding => left = self.seed(field, left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
-                    left = if self.filling {
-                        let mut ground = Ground {
-                            radius: self.radius as f32,
-                            tolerance: self.tolerance,
-                            bounds: self.bounds,
-                            max_particles: self.settings.max_particles as usize,
-                            grid: &mut self.front.grid,
-                            pairs: &mut self.pairs,
-                            particles: &mut self.particles,
-                        };
-                        self.gaps.step(field, &mut self.projector, &mut ground, left)
-                    } else {
-                        self.front.step(
-                            field,
-                            &mut self.projector,
-                            &mut self.pairs,
-                            &mut self.particles,
-                            left,
-                        )
+                    let mut surface = Surface {
+                        field,
+                        projector: &mut self.projector,
+                        sizing: self.sizing.as_ref(),
+                        pairs: &mut self.pairs,
+                        particles: &mut self.particles,
                     };
+                    left = self.front.step(&mut surface, left);
                     self.counts.generation_evaluations += self.projector.evaluations - start;
                     self.counts.front_evaluations += self.projector.evaluations - start;
-                    if self.filling {
-                        if self.gaps.is_done() {
+                    if !self.front.is_done() {
+                    } else if self.front.is_filling() {
+                        if !self.front.fill() {
                             self.end_generation();
                         }
-                    } else if self.front.is_done() {
+                    } else {
                         self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
-                        if self.front.capped {
+                        if self.front.capped() {
                             self.end_generation();
                         } else {
                             self.phase = Phase::Seeding;
@@ -501,7 +500,7 @@ impl Sampler {
                         relax::Surface { field: &mut *field, projector: &mut self.projector, sizing: None };
                     let (rest, moved) = self.relaxation.step(
                         &mut surface,
-                        &mut self.front.grid,
+                        self.front.grid(),
                         &mut self.pairs,
                         &mut self.particles,
                         left,
@@ -510,7 +509,7 @@ impl Sampler {
                     left = rest;
                     self.counts.relaxation_evaluations += self.projector.evaluations - start;
                     if self.relaxation.is_done() {
-                        let reason = if self.front.capped { StopReason::Cap } else { StopReason::Complete };
+                        let reason = if self.front.capped() { StopReason::Cap } else { StopReason::Complete };
                         self.finish(reason);
                     }
                 }
@@ -523,7 +522,7 @@ impl Sampler {
     /// The state as of now; the `moved` flag is cleared by reading it.
     pub fn progress(&mut self) -> Progress {
         let particles = match self.phase {
-            Phase::Generation if !self.filling => self.front.settled(),
+            Phase::Generation => self.front.settled(self.particles.len()),
             _ => self.particles.len(),
         };
         let expected = self.expected_count();
@@ -601,16 +600,16 @@ impl Sampler {
             };
             self.next_seed += 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
-            let clear = UNCOVERED * self.radius as f32;
-            if !self.front.is_covered(&self.particles, position, normal, clear) {
+            if !self.front.is_covered(&self.particles, position, normal) {
                 let start = self.projector.evaluations;
                 let is_zero = self.survey.is_zero(field, &mut self.projector, i);
                 self.counts.seeding_evaluations += self.projector.evaluations - start;
                 if !is_zero {
                     continue;
                 }
-                self.begin_front(position, normal);
-                return budget;
+                if self.begin_front(field, position, normal) {
+                    return budget;
+                }
             }
         }
         budget
@@ -623,9 +622,7 @@ impl Sampler {
             let (witness, left) = self.seeds.next(budget);
             budget = left;
             let Some((position, normal)) = witness else {
-                if self.settings.gaps == GapPolicy::Fill && !self.front.seams.is_empty() {
-                    self.gaps.begin(&mut self.front.seams);
-                    self.filling = true;
+                if self.settings.gaps == GapPolicy::Fill && self.front.fill() {
                     self.phase = Phase::Generation;
                 } else {
                     self.end_generation();
@@ -633,30 +630,40 @@ impl Sampler {
                 return budget;
             };
             let mut near = self.seeds.take_near();
-            let clear = UNCOVERED * self.radius as f32;
-            self.front.near(&self.particles, position, normal, clear, &mut near);
+            self.front.near(&self.particles, position, normal, &mut near);
             let start = self.projector.evaluations;
             let witness = (position, normal);
             let place =
                 self.seeds.place(field, &mut self.projector, &self.particles, witness, near, self.tolerance);
             self.counts.seeding_evaluations += self.projector.evaluations - start;
-            if place == Place::Bare {
-                self.begin_front(position, normal);
+            if place == Place::Bare && self.begin_front(field, position, normal) {
                 return budget;
             }
         }
         budget
     }
 
-    /// Starts a front, unless the limit on particles is reached.
-    fn begin_front(&mut self, position: Vec3, normal: Vec3) {
+    /// Starts a front, unless the limit on particles is reached. Says whether the seeding stops here: an adaptive front cannot
+    /// start where the surface has no radius.
+    fn begin_front(&mut self, field: &mut dyn Field, position: Vec3, normal: Vec3) -> bool {
         if self.particles.len() >= self.settings.max_particles as usize {
-            self.front.capped = true;
-            return self.end_generation();
+            self.front.cap();
+            self.end_generation();
+            return true;
         }
-        self.front.add_seed(&mut self.particles, position, normal);
-        self.counts.seeds += 1;
-        self.phase = Phase::Generation;
+        let mut surface = Surface {
+            field,
+            projector: &mut self.projector,
+            sizing: self.sizing.as_ref(),
+            pairs: &mut self.pairs,
+            particles: &mut self.particles,
+        };
+        let started = self.front.add_seed(&mut surface, position, normal);
+        if started {
+            self.counts.seeds += 1;
+            self.phase = Phase::Generation;
+        }
+        started
     }
 
     /// Decides, once the surface is covered, whether the count is met, and goes on to the relaxation.
@@ -677,17 +684,21 @@ impl Sampler {
             && (self.pilot || (miss - 1.0).abs() > COUNT_TOLERANCE)
             && self.attempt < MAX_ATTEMPTS
             && count > 1
-            && !self.front.capped
+            && !self.front.capped()
         {
             self.packing *= count as f64 / self.expected_count();
             self.radius *= miss.sqrt();
+            if let Some(sizing) = &mut self.sizing {
+                sizing.scale(miss.sqrt());
+                self.radius = typical_radius(&self.survey, sizing, self.radius);
+            }
             self.pilot = false;
             return self.begin_attempt();
         }
-        if self.front.fates.added == 0 && !self.front.capped {
+        if self.front.fates().added == 0 && !self.front.capped() {
             self.finish(StopReason::OneParticle);
         } else if self.settings.relax_steps == 0 {
-            self.finish(if self.front.capped { StopReason::Cap } else { StopReason::Complete });
+            self.finish(if self.front.capped() { StopReason::Cap } else { StopReason::Complete });
         } else {
             self.phase = Phase::Relaxation;
             self.begin_relaxation();
@@ -695,7 +706,7 @@ impl Sampler {
     }
 
     fn begin_relaxation(&mut self) {
-        self.front.grid.release();
+        self.front.release();
         self.relaxation.begin(
             relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance },
             &self.bounds,
@@ -709,6 +720,13 @@ impl Sampler {
         self.stop_reason = Some(reason);
         self.phase = Phase::Done;
     }
+}
+
+/// The radius of which as many uniform particles would cover the surface as the `sizing` asks for; `other` where there is no
+/// surface.
+fn typical_radius(survey: &Survey, sizing: &Sizing, other: f64) -> f64 {
+    let radius = (survey.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
+    if radius > 0.0 && radius.is_finite() { radius } else { other }
 }
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -19,7 +19,7 @@ const MAX_BRACKET_STEPS: u32 = 38;
 const MAX_TURN: f32 = 0.2;
 
 /// The circle is searched while the child stays within about 100° of the tangent plane: cos θ above this.
-const MIN_COS: f32 = -0.18;
+pub(super) const MIN_COS: f32 = -0.18;
 
 /// Newton on the circle is trusted while the circle crosses the surface at more than about 6°.
 const MIN_CROSSING: f32 = 0.1;
@@ -49,13 +49,13 @@ pub(super) struct Circle {
 
 impl Circle {
     #[inline(always)]
-    fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
+    pub(super) fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
     }
 
     /// Derivative of the point by θ.
     #[inline(always)]
-    fn tangent(&self, [cos, sin]: [f32; 2]) -> Vec3 {
+    pub(super) fn tangent(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         (self.normal * cos - self.direction * sin) * self.radius
     }
 }
@@ -398,7 +398,7 @@ const HALF_TURN: f32 = 0.055;
 
 /// (cos θ, sin θ) turned by the angle whose half has the tangent `t`: exact to rounding, arithmetic only.
 #[inline(always)]
-fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
+pub(super) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     let scale = 1.0 / (1.0 + t * t);
     let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
     [cos * c - sin * s, sin * c + cos * s]

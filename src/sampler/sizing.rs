@@ -84,6 +84,7 @@ impl Sizing {
         self.law.radius(curvature).min(self.envelope.at(position))
     }
 
+    #[cfg(test)]
     /// What the radius at `position` is at most, without a Hessian. Not close to it where the surface bends more than at
     /// the nearest points of the survey.
     #[inline]

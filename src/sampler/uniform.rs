@@ -70,9 +70,15 @@ pub struct FateCounts {
 }
 
 impl FateCounts {
-    fn count(&mut self, fate: SlotFate) {
+    pub(super) fn count(&mut self, fate: SlotFate) {
         if let Some(count) = self.of(fate) {
             *count += 1;
+        }
+    }
+
+    pub(super) fn uncount(&mut self, fate: SlotFate) {
+        if let Some(count) = self.of(fate) {
+            *count -= 1;
         }
     }
 
@@ -112,7 +118,7 @@ enum Stage {
 
 /// The advancing front.
 #[derive(Clone)]
-pub(super) struct Front {
+pub(super) struct UniformFront {
     radius: f32,
     match_radius: f32,
     tolerance: Tolerance,
@@ -155,7 +161,7 @@ struct Shape {
     c: f32,
 }
 
-impl Front {
+impl UniformFront {
     pub(super) fn new() -> Self {
         Self {
             radius: 1.0,
@@ -267,9 +273,7 @@ impl Front {
             if self.found.len() > 1 {
                 self.grid.remove(self.seed_place);
                 for k in 0..6 {
-                    if let Some(count) = self.fates.of(particles.slots[last].get(k)) {
-                        *count -= 1;
-                    }
+                    self.fates.uncount(particles.slots[last].get(k));
                 }
                 particles.truncate(last);
                 self.seams.retain(|&i| (i as usize) < last);

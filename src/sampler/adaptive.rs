@@ -1,0 +1,615 @@
+//! Adaptive sampling, paper §5: a front of particles of different radii. Each places its children in the free arcs between
+//! the particles around it, so that they touch it, generation level by generation level.
+//!
+//! # Differs from the paper
+//!
+//! * As in the uniform front, a queue takes the place of the stack.
+//! * The children of a whole level are first placed by prediction: on the surface by the parent's curvature, with the
+//!   radius that the neighbours' radii foretell. They are then projected together, and their fates decided one by one in the
+//!   order of the queue, at their final places.
+//! * The children of an arc share its slack evenly; in the paper the last one gets it all.
+//! * A particle whose child was lost to another one looks for room a second time once the front is done.
+
+use super::adaptive_grid::{Held, RadiusGrids};
+use super::arcs::{Base, Guess, Ring};
+use super::pairs::Pairs;
+use super::placement::{Landed, Placement, Proposal};
+use super::project::{BATCH, Circle, Projector, tolerance};
+use super::relax::{CUT_OFF, SKIN};
+use super::settings::Settings;
+use super::sizing::Sizing;
+use super::uniform::FateCounts;
+use crate::differential::Curvature;
+use crate::field::Field;
+use crate::math::{Bounds, tangent_frame};
+use crate::particles::{Particles, SlotFate, Slots};
+use crate::spatial::Neighbour;
+use core::f32::consts::TAU;
+use glam::{Vec2, Vec3};
+
+/// Everything that a child of usual size can collide with is within this many radii of the parent; the second ring of a
+/// lattice is at 3.46.
+const REACH: f32 = 3.7;
+
+/// Neighbours within this share of r_i + r_j count as touching.
+const TOUCHING: f32 = 1.25;
+
+/// Neighbours within this many radii tell the gradient of the radius.
+const RING: f32 = 2.8;
+
+/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
+/// no more than 45°, give or take [`RISE_SLACK`]: this is sin² 45°.
+const MAX_RISE_SQ: f32 = 0.5;
+
+/// Distance, as a share of r_i + r_j, below which the direction between two particles tells nothing.
+const RISE_SLACK: f32 = 0.35;
+
+/// Slots of a particle, at most.
+const SLOTS: usize = 10;
+
+/// Rounds in which particles that lost a child look for room again.
+const MAX_FILLS: u32 = 4;
+
+/// A child on its way to the surface. Its provisional place stands in the particle columns.
+#[derive(Clone, Copy, Debug)]
+struct Child {
+    proposal: Proposal,
+    slot: u32,
+    held: Held,
+    /// Distance to the nearest collision when it was placed.
+    clearance: f32,
+}
+
+/// Someone on the circle around a parent.
+#[derive(Clone, Copy, Debug)]
+struct Occupant {
+    /// Direction in the tangent plane, from 0 to 2π.
+    angle: f32,
+    /// A new child with its distance to the nearest collision, if it fits; none for a particle that was there.
+    child: Option<(Guess, Option<f32>)>,
+}
+
+/// What the front does next within a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Find the free arcs of parent `next`.
+    Place,
+    /// Project the children from `next` on.
+    Project,
+    /// Decide the final fate of child `next`.
+    Settle,
+}
+
+/// What a front works with and on, besides itself.
+pub(super) struct Surface<'a> {
+    pub(super) field: &'a mut dyn Field,
+    pub(super) projector: &'a mut Projector,
+    /// The radius field, which adaptive fronts need.
+    pub(super) sizing: Option<&'a Sizing>,
+    pub(super) pairs: &'a mut Pairs,
+    pub(super) particles: &'a mut Particles,
+}
+
+impl<'a> Surface<'a> {
+    fn sizing(&self) -> &'a Sizing {
+        self.sizing.expect("an adaptive run begins with a radius field")
+    }
+}
+
+/// The advancing front.
+#[derive(Clone)]
+pub(super) struct AdaptiveFront {
+    match_tolerance: f32,
+    resolution: f32,
+    gradient_scale: f32,
+    bounds: Bounds,
+    max_particles: usize,
+    grids: RadiusGrids,
+    found: Vec<Neighbour>,
+    ring: Ring,
+    /// Places in the ring of those that touch the parent, but for the one that placed it.
+    touching: Vec<u32>,
+    circle: Vec<Occupant>,
+    stage: Stage,
+    next: usize,
+    seed_place: Held,
+    /// Particles of the level under way.
+    parents: Vec<u32>,
+    /// Particles before the level under way.
+    first: usize,
+    /// Particles before this index are final; provisional children stand from here on.
+    settled: usize,
+    children: Vec<Child>,
+    proposals: Vec<Proposal>,
+    landings: Vec<Landed>,
+    batch: Vec<Landed>,
+    placement: Placement,
+    /// Curvature at each settled particle.
+    curvature: Vec<Curvature>,
+    /// Largest distance between a provisional and a final place in this level, and by how much a radius grew.
+    drift: f32,
+    growth: f32,
+    /// Particles that lost a child to another one.
+    pub(super) seams: Vec<u32>,
+    fills: u32,
+    /// Particles placed since the filling began.
+    pub(super) filled: u64,
+    pub(super) fates: FateCounts,
+    pub(super) capped: bool,
+}
+
+impl AdaptiveFront {
+    pub(super) fn new() -> Self {
+        Self {
+            match_tolerance: 0.7,
+            resolution: 0.0,
+            gradient_scale: 1.0,
+            bounds: Bounds::cube(1.0),
+            max_particles: 0,
+            grids: RadiusGrids::new(),
+            found: Vec::new(),
+            ring: Ring::default(),
+            touching: Vec::new(),
+            circle: Vec::new(),
+            stage: Stage::Place,
+            next: 0,
+            seed_place: Held::default(),
+            parents: Vec::new(),
+            first: 0,
+            settled: 0,
+            children: Vec::new(),
+            proposals: Vec::with_capacity(BATCH),
+            landings: Vec::new(),
+            batch: Vec::with_capacity(BATCH),
+            placement: Placement::new(),
+            curvature: Vec::new(),
+            drift: 0.0,
+            growth: 0.0,
+            seams: Vec::new(),
+            fills: 0,
+            filled: 0,
+            fates: FateCounts::default(),
+            capped: false,
+        }
+    }
+
+    /// Prepares for particles of radii from `radii[0]` to `radii[1]`; `resolution` and `gradient_scale` are what the survey
+    /// found.
+    pub(super) fn reset(
+        &mut self,
+        settings: &Settings,
+        radii: [f32; 2],
+        (resolution, gradient_scale): (f32, f32),
+        bounds: &Bounds,
+        expected: usize,
+    ) {
+        self.match_tolerance = settings.match_tolerance as f32;
+        self.resolution = resolution;
+        self.gradient_scale = gradient_scale;
+        self.bounds = *bounds;
+        self.max_particles = settings.max_particles as usize;
+        self.curvature.reserve_exact(expected.saturating_sub(self.curvature.len()));
+        self.filled = 0;
+        self.grids.reset(radii[0], radii[1], REACH);
+        self.stage = Stage::Place;
+        self.next = 0;
+        self.parents.clear();
+        self.first = 0;
+        self.settled = 0;
+        self.children.clear();
+        self.landings.clear();
+        self.curvature.clear();
+        self.seams.clear();
+        self.fills = 0;
+        self.fates = FateCounts::default();
+        self.capped = false;
+    }
+
+    /// Whether every particle has placed its children.
+    pub(super) fn is_done(&self) -> bool {
+        self.parents.is_empty()
+    }
+
+    /// Particles that are final.
+    pub(super) fn settled(&self) -> usize {
+        self.settled
+    }
+
+    /// Gives back what only the front needs.
+    pub(super) fn release(&mut self) {
+        self.grids.release();
+    }
+
+    /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
+    pub(super) fn is_covered(
+        &mut self,
+        particles: &Particles,
+        position: Vec3,
+        normal: Vec3,
+        share: f32,
+    ) -> bool {
+        self.grids.gather(position, |largest| share * largest, &mut self.found);
+        self.found.iter().any(|near| {
+            let j = near.index as usize;
+            let reach = share * particles.radius[j];
+            particles.normal[j].dot(normal) > 0.0 && near.distance_sq <= reach * reach
+        })
+    }
+
+    /// Takes the last seed back if it stayed alone and touches another particle, of whatever sheet: see the uniform front.
+    pub(super) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
+        let last = particles.len() - 1;
+        if particles.parent[last] != Particles::NO_PARENT {
+            return;
+        }
+        let radius = particles.radius[last];
+        self.grids.gather(particles.position[last], |largest| radius + largest, &mut self.found);
+        let touches = self.found.iter().any(|near| {
+            let (j, d) = (near.index as usize, near.distance_sq.sqrt());
+            j != last && d <= radius + particles.radius[j]
+        });
+        if touches {
+            self.grids.remove(self.seed_place);
+            for k in 0..SLOTS {
+                self.fates.uncount(particles.slots[last].get(k));
+            }
+            particles.truncate(last);
+            self.curvature.truncate(last);
+            self.seams.retain(|&i| (i as usize) < last);
+            pairs.truncate(last);
+            self.settled = last;
+        }
+    }
+
+    /// Adds a first particle. Only between levels. Says whether the place has a radius.
+    pub(super) fn add_seed(&mut self, surface: &mut Surface, position: Vec3, normal: Vec3) -> bool {
+        debug_assert!(self.is_done());
+        let sizing = surface.sizing();
+        let (_, spot) = self.placement.look(surface.field, surface.projector, sizing, position);
+        if spot.radius.is_nan() || spot.radius <= 0.0 {
+            return false;
+        }
+        let index = surface.particles.len();
+        self.seed_place = self.grids.insert(position, spot.radius, index as u32);
+        surface.particles.push(position, normal, spot.radius, Particles::NO_PARENT, 0, Slots::default());
+        self.curvature.push(spot.curvature);
+        self.parents.push(index as u32);
+        self.settled = index + 1;
+        self.begin_level();
+        true
+    }
+
+    fn begin_level(&mut self) {
+        self.first = self.settled;
+        (self.stage, self.next) = (Stage::Place, 0);
+    }
+
+    /// Has the particles that lost a child look for room again; false if there is nothing more to do.
+    pub(super) fn fill(&mut self) -> bool {
+        if self.seams.is_empty() || self.fills >= MAX_FILLS || self.capped {
+            return false;
+        }
+        self.fills += 1;
+        core::mem::swap(&mut self.parents, &mut self.seams);
+        self.seams.clear();
+        self.begin_level();
+        true
+    }
+
+    /// Does up to `budget` units (a particle's arcs, a child's projection, a child's fate) and returns what is left.
+    pub(super) fn step(&mut self, surface: &mut Surface, mut budget: u32) -> u32 {
+        while budget > 0 && !self.is_done() {
+            match self.stage {
+                Stage::Place => {
+                    if self.next < self.parents.len() {
+                        self.place_children(surface, self.parents[self.next] as usize);
+                        self.next += 1;
+                        budget -= 1;
+                    } else {
+                        (self.stage, self.next) = (Stage::Project, 0);
+                        self.landings.clear();
+                        (self.drift, self.growth) = (0.0, 0.0);
+                    }
+                }
+                Stage::Project => {
+                    let count = (self.children.len() - self.next).min(BATCH).min(budget as usize);
+                    if count > 0 {
+                        self.project_children(surface, count);
+                        self.next += count;
+                        budget -= count as u32;
+                    } else {
+                        (self.stage, self.next) = (Stage::Settle, 0);
+                    }
+                }
+                Stage::Settle => {
+                    if self.next < self.children.len() {
+                        self.settle_child(surface.particles, self.next);
+                        self.next += 1;
+                        budget -= 1;
+                    } else {
+                        surface.particles.truncate(self.settled);
+                        self.children.clear();
+                        self.parents.clear();
+                        if !self.capped {
+                            self.parents.extend(self.first as u32..self.settled as u32);
+                        }
+                        self.begin_level();
+                    }
+                }
+            }
+        }
+        budget
+    }
+
+    /// Ends the front where it is: provisional children are dropped.
+    pub(super) fn stop(&mut self, particles: &mut Particles) {
+        particles.truncate(self.settled);
+        self.children.clear();
+        self.parents.clear();
+    }
+
+    /// Finds the free arcs of particle `parent` and enters provisional children in each.
+    fn place_children(&mut self, surface: &mut Surface, parent: usize) {
+        let particles = &mut *surface.particles;
+        let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
+        let reach = REACH * radius;
+        let mut found = core::mem::take(&mut self.found);
+        self.grids.gather(p, |_| reach, &mut found);
+        // Every particle gets its list when it places its children for the first time.
+        let again = surface.pairs.len() > parent;
+        let alone_on_sheet = self.read_surroundings(&found, surface.pairs, particles, parent);
+
+        let grandparent = particles.parent[parent];
+        let is_seed = grandparent == Particles::NO_PARENT;
+        let (u, w) = if is_seed {
+            tangent_frame(n)
+        } else {
+            let towards = particles.position[grandparent as usize] - p;
+            let u = (towards - n * towards.dot(n)).normalize_or_zero();
+            if u == Vec3::ZERO { tangent_frame(n) } else { (u, n.cross(u)) }
+        };
+        let slope = if self.ring.len() > 0 { self.ring.slope(u, w, radius) } else { Vec2::ZERO };
+        let shape = shape_in(&self.curvature[parent], u, w);
+        let base = Base { radius, u, w, n, shape, slope };
+        self.ring.find_arcs(&base);
+
+        self.circle.clear();
+        if !again {
+            for k in 0..self.touching.len() {
+                let angle = self.ring.angle(self.touching[k] as usize);
+                self.enter(Occupant { angle: if angle < 0.0 { angle + TAU } else { angle }, child: None });
+            }
+        }
+        for k in 0..self.ring.arcs.len() {
+            let arc = self.ring.arcs[k];
+            let count = self.ring.spread(&base, arc).len();
+            for m in 0..count {
+                let angle = self.ring.children[m];
+                let guess = base.child_at(angle);
+                let room = self.ring.clearance(guess.offset, guess.radius, self.match_tolerance);
+                // The gathered particles are those within the reach; beyond it anything may be.
+                let seen = reach - guess.distance - 2.0 * self.match_tolerance * guess.radius;
+                let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
+                let fits = room >= 0.0;
+                let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
+                self.enter(Occupant { angle: angle + turn, child: Some((guess, fits.then_some(clearance))) });
+                if fits {
+                    self.ring.push(guess.offset, guess.radius, false);
+                }
+            }
+        }
+        self.fill_slots(particles, parent, again);
+        self.found = found;
+    }
+
+    /// Enters an occupant of the circle around a parent in the order of the angles.
+    fn enter(&mut self, occupant: Occupant) {
+        let mut at = self.circle.len();
+        self.circle.push(occupant);
+        while at > 0 && self.circle[at - 1].angle > occupant.angle {
+            self.circle.swap(at, at - 1);
+            at -= 1;
+        }
+    }
+
+    /// Gives every occupant of the circle a slot, and the children a provisional place. A parent that looks for room `again`
+    /// keeps the slots it has filled.
+    fn fill_slots(&mut self, particles: &mut Particles, parent: usize, again: bool) {
+        let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
+        let mut slots = particles.slots[parent];
+        let mut slot = 0;
+        if again {
+            slot = (0..SLOTS).rev().find(|&k| slots.get(k) != SlotFate::Open).map_or(0, |k| k + 1);
+        } else if particles.parent[parent] != Particles::NO_PARENT {
+            slots.set(0, SlotFate::Parent);
+            slot = 1;
+        }
+        let level = particles.level[parent] + 1;
+        let mut children = self.circle.iter().filter(|occupant| occupant.child.is_some()).count();
+        for k in 0..self.circle.len() {
+            let occupant = self.circle[k];
+            children -= usize::from(occupant.child.is_some());
+            let fate = match occupant.child {
+                // Where there are more occupants than slots, those that were there before stand back.
+                None if slot + children >= SLOTS => continue,
+                None => SlotFate::Matched,
+                Some(_) if slot >= SLOTS => break,
+                Some((_, None)) => SlotFate::Matched,
+                Some(_) if particles.len() >= self.max_particles => {
+                    self.capped = true;
+                    SlotFate::Capped
+                }
+                Some((guess, Some(clearance))) => {
+                    let index = particles.len() as u32;
+                    let position = p + guess.offset;
+                    let (normal, child_radius) = (guess.normal, guess.radius);
+                    particles.push(position, normal, child_radius, parent as u32, level, initial_slots());
+                    let circle = Circle {
+                        centre: p,
+                        normal: n,
+                        direction: guess.direction,
+                        radius: guess.distance,
+                        guess: guess.turn,
+                    };
+                    self.children.push(Child {
+                        proposal: Proposal { circle, parent_radius: radius, slope: guess.slope },
+                        slot: slot as u32,
+                        held: self.grids.insert(position, child_radius, index),
+                        clearance,
+                    });
+                    slot += 1;
+                    continue;
+                }
+            };
+            slots.set(slot, fate);
+            self.fates.count(fate);
+            slot += 1;
+        }
+        particles.slots[parent] = slots;
+    }
+
+    /// Reads what was gathered around `parent`: into the ring what its children may collide with, and into `pairs` the
+    /// particles before it that repel it. All of those are final, so the list is complete. Says whether all that was found
+    /// is of the parent's sheet.
+    fn read_surroundings(
+        &mut self,
+        found: &[Neighbour],
+        pairs: &mut Pairs,
+        particles: &Particles,
+        parent: usize,
+    ) -> bool {
+        let (normal, radius) = (particles.normal[parent], particles.radius[parent]);
+        let settled = self.settled;
+        let exact_sq = (RING * radius) * (RING * radius);
+        let grandparent = particles.parent[parent];
+        self.ring.clear();
+        self.touching.clear();
+        let mut alone = true;
+        let list = found.iter().filter_map(|near| {
+            let j = near.index as usize;
+            if j == parent {
+                return None;
+            }
+            let (other, both) = (particles.normal[j], radius + particles.radius[j]);
+            let along = other.dot(normal) > 0.0;
+            let rise = near.offset.dot(normal);
+            let slack = RISE_SLACK * both;
+            if along && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack) {
+                if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
+                    self.touching.push(self.ring.len() as u32);
+                }
+                self.ring.push(near.offset, particles.radius[j], j < settled && near.distance_sq <= exact_sq);
+            } else {
+                alone = false;
+            }
+            let reach = 0.5 * (CUT_OFF + SKIN) * both;
+            (j < parent && along && near.distance_sq <= reach * reach).then_some(near.index)
+        });
+        if pairs.len() == parent {
+            pairs.push(list);
+        } else {
+            list.for_each(drop);
+        }
+        alone
+    }
+
+    fn project_children(&mut self, surface: &mut Surface, count: usize) {
+        self.proposals.clear();
+        self.proposals.extend(self.children[self.next..self.next + count].iter().map(|child| child.proposal));
+        let (resolution, gradient_scale) = (self.resolution, self.gradient_scale);
+        let sizing = surface.sizing();
+        self.placement.land(
+            surface.field,
+            surface.projector,
+            sizing,
+            &self.proposals,
+            &|radius| tolerance(radius, resolution, gradient_scale),
+            &mut self.batch,
+        );
+        for (k, landing) in self.batch.iter().enumerate() {
+            if let Landed::On(spot) = landing {
+                let provisional = self.first + self.next + k;
+                let moved = (spot.position - surface.particles.position[provisional]).length();
+                self.drift = self.drift.max(moved);
+                self.growth = self.growth.max(spot.radius - surface.particles.radius[provisional]);
+            }
+        }
+        self.landings.extend_from_slice(&self.batch);
+    }
+
+    /// Final fate of child `k` of the level, in queue order.
+    fn settle_child(&mut self, particles: &mut Particles, k: usize) {
+        let child = self.children[k];
+        // Settled children close up over those that were not added.
+        let provisional = self.first + k;
+        let parent = particles.parent[provisional];
+        let fate = match self.landings[k] {
+            Landed::NotConverged => SlotFate::NotConverged,
+            Landed::Undefined => SlotFate::Undefined,
+            Landed::On(spot) if !self.bounds.contains(spot.position) => SlotFate::Outside,
+            Landed::On(spot) => {
+                let moved = (spot.position - particles.position[provisional]).length();
+                let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
+                let safe = child.clearance - moved - self.drift - self.match_tolerance * grown > 0.0;
+                if !safe && self.collides(particles, spot.position, spot.normal, spot.radius) {
+                    if self.seams.last() != Some(&parent) {
+                        self.seams.push(parent);
+                    }
+                    SlotFate::Matched
+                } else {
+                    let index = self.settled;
+                    self.grids.update(child.held, spot.position, spot.radius, index as u32);
+                    particles.position[index] = spot.position;
+                    particles.normal[index] = spot.normal;
+                    particles.radius[index] = spot.radius;
+                    particles.parent[index] = parent;
+                    particles.level[index] = particles.level[provisional];
+                    self.curvature.push(spot.curvature);
+                    self.settled += 1;
+                    self.filled += u64::from(self.fills > 0);
+                    SlotFate::Added
+                }
+            }
+        };
+        if fate != SlotFate::Added {
+            self.grids.remove(child.held);
+        }
+        self.fates.count(fate);
+        particles.slots[parent as usize].set(child.slot as usize, fate);
+    }
+
+    /// Whether a settled particle of the same sheet is nearer than the match tolerance allows.
+    fn collides(&mut self, particles: &Particles, position: Vec3, normal: Vec3, radius: f32) -> bool {
+        let share = self.match_tolerance;
+        self.grids.gather(position, |largest| share * (radius + largest), &mut self.found);
+        let settled = self.settled;
+        self.found.iter().any(|near| {
+            let j = near.index as usize;
+            if j >= settled || particles.normal[j].dot(normal) <= 0.0 {
+                return false;
+            }
+            let both = radius + particles.radius[j];
+            let (limit, slack) = (share * both, RISE_SLACK * both);
+            let rise = near.offset.dot(normal);
+            near.distance_sq <= limit * limit
+                && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack)
+        })
+    }
+}
+
+/// Second fundamental form in the frame (u, w).
+fn shape_in(curvature: &Curvature, u: Vec3, w: Vec3) -> [f32; 3] {
+    let d = curvature.direction;
+    let (x, y) = (d.dot(u), d.dot(w));
+    // The direction of κ₂ is that of κ₁ turned by 90°.
+    let (k1, k2) = (curvature.k1, curvature.k2);
+    let shape = [k1 * x * x + k2 * y * y, (k1 - k2) * x * y, k1 * y * y + k2 * x * x];
+    if shape.iter().all(|k| k.is_finite()) { shape } else { [0.0; 3] }
+}
+
+/// Slots of a new particle: the parent's is known.
+fn initial_slots() -> Slots {
+    let mut slots = Slots::default();
+    slots.set(0, SlotFate::Parent);
+    slots
+}
