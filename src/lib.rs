@@ -54,6 +54,7 @@
 //! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
 //! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
+//! * [`trace`]: the log with which the adaptive front can be replayed.
 //! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`points`]: from a file of points to a field (feature `points`, on by default).
@@ -76,6 +77,7 @@ pub mod render;
 pub mod sampler;
 pub mod session;
 pub mod spatial;
+pub mod trace;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 

@@ -16,11 +16,11 @@ pub struct Particles {
     pub parent: Vec<u32>,
     /// Generation level: 0 for a seed, the parent's level + 1 otherwise.
     pub level: Vec<u32>,
-    /// What became of the particle's six slots: see [`SlotFate`].
+    /// What became of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
 }
 
-/// What became of one of the six slots around a particle (paper §4.4).
+/// What became of one of the slots around a particle: six in hexagons (paper §4.4), up to ten where the radii vary (§5), in the order of their angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum SlotFate {
@@ -56,19 +56,19 @@ impl SlotFate {
     ];
 }
 
-/// The fates of six slots, three bits each; slot `k` at bits `3k..3k + 3`.
+/// The fates of up to ten slots, three bits each; slot `k` at bits `3k..3k + 3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Slots(pub u32);
 
 impl Slots {
-    /// Fate of slot `k < 6`.
+    /// Fate of slot `k < 10`.
     #[must_use]
     pub fn get(self, k: usize) -> SlotFate {
         SlotFate::ALL[(self.0 >> (3 * k) & 7) as usize]
     }
 
-    /// Sets the fate of slot `k < 6`.
+    /// Sets the fate of slot `k < 10`.
     pub fn set(&mut self, k: usize, fate: SlotFate) {
         self.0 = self.0 & !(7 << (3 * k)) | (fate as u32) << (3 * k);
     }

@@ -10,20 +10,24 @@
 //! * The children of an arc share its slack evenly; in the paper the last one gets it all.
 //! * A particle whose child was lost to another one looks for room a second time once the front is done.
 
+mod pushing;
+
 use super::adaptive_grid::{Held, RadiusGrids};
-use super::arcs::{Base, Guess, Ring};
+use super::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use super::pairs::Pairs;
-use super::placement::{Landed, Placement, Proposal};
-use super::project::{BATCH, Circle, Projector, tolerance};
+use super::placement::{Landed, Placement, Proposal, Spot};
+use super::project::{BATCH, Circle, Landing, Projector, tolerance};
 use super::relax::{CUT_OFF, SKIN};
-use super::settings::Settings;
+use super::settings::{Placement as Method, Settings};
 use super::sizing::Sizing;
 use super::uniform::FateCounts;
 use crate::differential::Curvature;
 use crate::field::Field;
-use crate::math::{Bounds, tangent_frame};
+use crate::math::functions::atan2;
+use crate::math::{Bounds, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::spatial::Neighbour;
+use crate::trace::{Event, Step, Trace};
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
@@ -55,6 +59,8 @@ const MAX_FILLS: u32 = 4;
 struct Child {
     proposal: Proposal,
     slot: u32,
+    /// Number among the children of its parent.
+    number: u32,
     held: Held,
     /// Distance to the nearest collision when it was placed.
     clearance: f32,
@@ -65,8 +71,16 @@ struct Child {
 struct Occupant {
     /// Direction in the tangent plane, from 0 to 2π.
     angle: f32,
-    /// A new child with its distance to the nearest collision, if it fits; none for a particle that was there.
-    child: Option<(Guess, Option<f32>)>,
+    what: What,
+}
+
+/// What is known of an occupant.
+#[derive(Clone, Copy, Debug)]
+enum What {
+    /// A particle that was there, or a child whose fate is known.
+    Known(SlotFate),
+    /// A child to be projected, with its number and its distance to the nearest collision.
+    Child(Guess, u32, f32),
 }
 
 /// What the front does next within a level.
@@ -99,6 +113,7 @@ impl<'a> Surface<'a> {
 /// The advancing front.
 #[derive(Clone)]
 pub(super) struct AdaptiveFront {
+    method: Method,
     match_tolerance: f32,
     resolution: f32,
     gradient_scale: f32,
@@ -110,6 +125,10 @@ pub(super) struct AdaptiveFront {
     /// Places in the ring of those that touch the parent, but for the one that placed it.
     touching: Vec<u32>,
     circle: Vec<Occupant>,
+    /// Children of the present parent so far, placed or not.
+    born: u32,
+    /// Position of the present parent.
+    origin: Vec3,
     stage: Stage,
     next: usize,
     seed_place: Held,
@@ -123,6 +142,7 @@ pub(super) struct AdaptiveFront {
     proposals: Vec<Proposal>,
     landings: Vec<Landed>,
     batch: Vec<Landed>,
+    landing: Vec<Landing>,
     placement: Placement,
     /// Curvature at each settled particle.
     curvature: Vec<Curvature>,
@@ -132,6 +152,8 @@ pub(super) struct AdaptiveFront {
     /// Particles that lost a child to another one.
     pub(super) seams: Vec<u32>,
     fills: u32,
+    /// What is noted of a particle that is followed.
+    pub(super) trace: Trace,
     /// Particles placed since the filling began.
     pub(super) filled: u64,
     pub(super) fates: FateCounts,
@@ -141,6 +163,7 @@ pub(super) struct AdaptiveFront {
 impl AdaptiveFront {
     pub(super) fn new() -> Self {
         Self {
+            method: Method::Direct,
             match_tolerance: 0.7,
             resolution: 0.0,
             gradient_scale: 1.0,
@@ -151,6 +174,8 @@ impl AdaptiveFront {
             ring: Ring::default(),
             touching: Vec::new(),
             circle: Vec::new(),
+            born: 0,
+            origin: Vec3::ZERO,
             stage: Stage::Place,
             next: 0,
             seed_place: Held::default(),
@@ -161,12 +186,14 @@ impl AdaptiveFront {
             proposals: Vec::with_capacity(BATCH),
             landings: Vec::new(),
             batch: Vec::with_capacity(BATCH),
+            landing: Vec::new(),
             placement: Placement::new(),
             curvature: Vec::new(),
             drift: 0.0,
             growth: 0.0,
             seams: Vec::new(),
             fills: 0,
+            trace: Trace::default(),
             filled: 0,
             fates: FateCounts::default(),
             capped: false,
@@ -183,6 +210,7 @@ impl AdaptiveFront {
         bounds: &Bounds,
         expected: usize,
     ) {
+        self.method = settings.placement;
         self.match_tolerance = settings.match_tolerance as f32;
         self.resolution = resolution;
         self.gradient_scale = gradient_scale;
@@ -201,6 +229,7 @@ impl AdaptiveFront {
         self.curvature.clear();
         self.seams.clear();
         self.fills = 0;
+        self.trace.clear();
         self.fates = FateCounts::default();
         self.capped = false;
     }
@@ -228,12 +257,32 @@ impl AdaptiveFront {
         normal: Vec3,
         share: f32,
     ) -> bool {
+        self.gather_cover(particles, position, normal, share);
+        !self.found.is_empty()
+    }
+
+    /// Those particles, nearest first, in `near`.
+    pub(super) fn near(
+        &mut self,
+        particles: &Particles,
+        position: Vec3,
+        normal: Vec3,
+        share: f32,
+        near: &mut Vec<u32>,
+    ) {
+        self.gather_cover(particles, position, normal, share);
+        sort_few(&mut self.found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
+        near.clear();
+        near.extend(self.found.iter().map(|found| found.index));
+    }
+
+    fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3, share: f32) {
         self.grids.gather(position, |largest| share * largest, &mut self.found);
-        self.found.iter().any(|near| {
+        self.found.retain(|near| {
             let j = near.index as usize;
             let reach = share * particles.radius[j];
             particles.normal[j].dot(normal) > 0.0 && near.distance_sq <= reach * reach
-        })
+        });
     }
 
     /// Takes the last seed back if it stayed alone and touches another particle, of whatever sheet: see the uniform front.
@@ -265,7 +314,7 @@ impl AdaptiveFront {
     pub(super) fn add_seed(&mut self, surface: &mut Surface, position: Vec3, normal: Vec3) -> bool {
         debug_assert!(self.is_done());
         let sizing = surface.sizing();
-        let (_, spot) = self.placement.look(surface.field, surface.projector, sizing, position);
+        let spot = self.placement.look(surface.field, surface.projector, sizing, position);
         if spot.radius.is_nan() || spot.radius <= 0.0 {
             return false;
         }
@@ -350,7 +399,7 @@ impl AdaptiveFront {
 
     /// Finds the free arcs of particle `parent` and enters provisional children in each.
     fn place_children(&mut self, surface: &mut Surface, parent: usize) {
-        let particles = &mut *surface.particles;
+        let particles = &*surface.particles;
         let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
         let reach = REACH * radius;
         let mut found = core::mem::take(&mut self.found);
@@ -359,6 +408,7 @@ impl AdaptiveFront {
         let again = surface.pairs.len() > parent;
         let alone_on_sheet = self.read_surroundings(&found, surface.pairs, particles, parent);
 
+        self.origin = p;
         let grandparent = particles.parent[parent];
         let is_seed = grandparent == Particles::NO_PARENT;
         let (u, w) = if is_seed {
@@ -368,38 +418,94 @@ impl AdaptiveFront {
             let u = (towards - n * towards.dot(n)).normalize_or_zero();
             if u == Vec3::ZERO { tangent_frame(n) } else { (u, n.cross(u)) }
         };
-        let slope = if self.ring.len() > 0 { self.ring.slope(u, w, radius) } else { Vec2::ZERO };
-        let shape = shape_in(&self.curvature[parent], u, w);
-        let base = Base { radius, u, w, n, shape, slope };
+        let mut base = Base { radius, u, w, n, shape: [0.0; 3], slope: Vec2::ZERO };
+        if self.method == Method::Direct {
+            base.shape = shape_in(&self.curvature[parent], u, w);
+            base.slope = self.ring.slope(u, w, radius);
+        }
         self.ring.find_arcs(&base);
+        if self.trace.follows(parent as u32) {
+            self.note_surroundings(&found, particles, parent, &base);
+        }
 
         self.circle.clear();
+        self.born = 0;
         if !again {
             for k in 0..self.touching.len() {
                 let angle = self.ring.angle(self.touching[k] as usize);
-                self.enter(Occupant { angle: if angle < 0.0 { angle + TAU } else { angle }, child: None });
+                let angle = if angle < 0.0 { angle + TAU } else { angle };
+                self.enter(Occupant { angle, what: What::Known(SlotFate::Matched) });
             }
         }
+        match self.method {
+            Method::Direct => self.predict_children(parent, &base, alone_on_sheet),
+            Method::Faithful => self.push_children(surface, parent, &base),
+        }
+        self.fill_slots(surface.particles, parent, again);
+        self.found = found;
+    }
+
+    /// Spreads children over the free arcs, by prediction.
+    fn predict_children(&mut self, parent: usize, base: &Base, alone_on_sheet: bool) {
+        let id = parent as u32;
         for k in 0..self.ring.arcs.len() {
             let arc = self.ring.arcs[k];
-            let count = self.ring.spread(&base, arc).len();
+            let count = self.ring.spread(base, arc).len();
             for m in 0..count {
                 let angle = self.ring.children[m];
                 let guess = base.child_at(angle);
                 let room = self.ring.clearance(guess.offset, guess.radius, self.match_tolerance);
                 // The gathered particles are those within the reach; beyond it anything may be.
-                let seen = reach - guess.distance - 2.0 * self.match_tolerance * guess.radius;
+                let seen = REACH * base.radius - guess.distance - 2.0 * self.match_tolerance * guess.radius;
                 let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
-                let fits = room >= 0.0;
                 let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
-                self.enter(Occupant { angle: angle + turn, child: Some((guess, fits.then_some(clearance))) });
+                let fits = room >= 0.0;
+                let what = if fits {
+                    What::Child(guess, self.born, clearance)
+                } else {
+                    What::Known(SlotFate::Matched)
+                };
+                self.enter(Occupant { angle: angle + turn, what });
+                if self.trace.follows(id) {
+                    let Room { phi, tau } = self.ring.room(base, arc, m, guess.radius);
+                    let position = self.origin + guess.offset;
+                    let radius = guess.radius;
+                    self.trace.note_child(id, self.born, || Step::Start { position, radius });
+                    self.trace.note_child(id, self.born, || Step::Room { phi_rad: phi, tau_rad: tau });
+                    if !fits {
+                        let (fate, particle) = (SlotFate::Matched, Particles::NO_PARENT);
+                        self.trace.note_child(id, self.born, || Step::Fate { fate, particle });
+                    }
+                }
+                self.born += 1;
                 if fits {
                     self.ring.push(guess.offset, guess.radius, false);
                 }
             }
         }
-        self.fill_slots(particles, parent, again);
-        self.found = found;
+    }
+
+    /// Notes a parent that is followed and what was gathered around it.
+    fn note_surroundings(&mut self, found: &[Neighbour], particles: &Particles, parent: usize, base: &Base) {
+        let position = particles.position[parent];
+        self.trace.note(parent as u32, || Event::Parent {
+            position,
+            normal: base.n,
+            radius: base.radius,
+            zero: base.u,
+        });
+        for near in found {
+            let j = near.index as usize;
+            let radius = particles.radius[j];
+            if j != parent && same_sheet(near, base.n, particles.normal[j], base.radius + radius) {
+                self.trace.note(parent as u32, || Event::Neighbour {
+                    particle: near.index,
+                    position: particles.position[j],
+                    radius,
+                    angle_rad: atan2(near.offset.dot(base.w), near.offset.dot(base.u)),
+                });
+            }
+        }
     }
 
     /// Enters an occupant of the circle around a parent in the order of the angles.
@@ -425,21 +531,23 @@ impl AdaptiveFront {
             slot = 1;
         }
         let level = particles.level[parent] + 1;
-        let mut children = self.circle.iter().filter(|occupant| occupant.child.is_some()).count();
+        let was_there = |what: What| matches!(what, What::Known(SlotFate::Matched));
+        let mut children = self.circle.iter().filter(|occupant| !was_there(occupant.what)).count();
         for k in 0..self.circle.len() {
-            let occupant = self.circle[k];
-            children -= usize::from(occupant.child.is_some());
-            let fate = match occupant.child {
-                // Where there are more occupants than slots, those that were there before stand back.
-                None if slot + children >= SLOTS => continue,
-                None => SlotFate::Matched,
-                Some(_) if slot >= SLOTS => break,
-                Some((_, None)) => SlotFate::Matched,
-                Some(_) if particles.len() >= self.max_particles => {
+            let what = self.circle[k].what;
+            children -= usize::from(!was_there(what));
+            // Where there are more occupants than slots, those that were there before stand back.
+            if slot + children >= SLOTS && was_there(what) {
+                continue;
+            }
+            let fate = match what {
+                _ if slot >= SLOTS => break,
+                What::Known(fate) => fate,
+                What::Child(..) if particles.len() >= self.max_particles => {
                     self.capped = true;
                     SlotFate::Capped
                 }
-                Some((guess, Some(clearance))) => {
+                What::Child(guess, number, clearance) => {
                     let index = particles.len() as u32;
                     let position = p + guess.offset;
                     let (normal, child_radius) = (guess.normal, guess.radius);
@@ -454,6 +562,7 @@ impl AdaptiveFront {
                     self.children.push(Child {
                         proposal: Proposal { circle, parent_radius: radius, slope: guess.slope },
                         slot: slot as u32,
+                        number,
                         held: self.grids.insert(position, child_radius, index),
                         clearance,
                     });
@@ -491,10 +600,7 @@ impl AdaptiveFront {
                 return None;
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
-            let along = other.dot(normal) > 0.0;
-            let rise = near.offset.dot(normal);
-            let slack = RISE_SLACK * both;
-            if along && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack) {
+            if same_sheet(near, normal, other, both) {
                 if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
                     self.touching.push(self.ring.len() as u32);
                 }
@@ -503,7 +609,7 @@ impl AdaptiveFront {
                 alone = false;
             }
             let reach = 0.5 * (CUT_OFF + SKIN) * both;
-            (j < parent && along && near.distance_sq <= reach * reach).then_some(near.index)
+            (j < parent && other.dot(normal) > 0.0 && near.distance_sq <= reach * reach).then_some(near.index)
         });
         if pairs.len() == parent {
             pairs.push(list);
@@ -574,6 +680,14 @@ impl AdaptiveFront {
         if fate != SlotFate::Added {
             self.grids.remove(child.held);
         }
+        if self.trace.follows(parent) {
+            if let Landed::On(Spot { position, normal, radius, .. }) = self.landings[k] {
+                self.trace.note_child(parent, child.number, || Step::Landed { position, normal, radius });
+            }
+            let particle =
+                if fate == SlotFate::Added { self.settled as u32 - 1 } else { Particles::NO_PARENT };
+            self.trace.note_child(parent, child.number, || Step::Fate { fate, particle });
+        }
         self.fates.count(fate);
         particles.slots[parent as usize].set(child.slot as usize, fate);
     }
@@ -585,16 +699,22 @@ impl AdaptiveFront {
         let settled = self.settled;
         self.found.iter().any(|near| {
             let j = near.index as usize;
-            if j >= settled || particles.normal[j].dot(normal) <= 0.0 {
-                return false;
-            }
             let both = radius + particles.radius[j];
-            let (limit, slack) = (share * both, RISE_SLACK * both);
-            let rise = near.offset.dot(normal);
-            near.distance_sq <= limit * limit
-                && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack)
+            let limit = share * both;
+            j < settled
+                && near.distance_sq <= limit * limit
+                && same_sheet(near, normal, particles.normal[j], both)
         })
     }
+}
+
+/// Whether a particle with the normal `other` belongs to the sheet of a point with the normal `normal` from which it was
+/// found; `both` is r_i + r_j.
+#[inline(always)]
+fn same_sheet(near: &Neighbour, normal: Vec3, other: Vec3, both: f32) -> bool {
+    let rise = near.offset.dot(normal);
+    let slack = RISE_SLACK * both;
+    normal.dot(other) > 0.0 && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack)
 }
 
 /// Second fundamental form in the frame (u, w).

@@ -150,8 +150,46 @@ pub(super) struct Arc {
     pub(super) from: f32,
     /// Where a child touches the particle behind the arc; less than `from` where it does not fit between them.
     pub(super) to: f32,
+    /// Where no child gets in before this angle.
+    pub(super) start: f32,
     /// Nothing is there: the arc is the whole circle.
     pub(super) whole: bool,
+}
+
+/// The comparison that decides about a child (Fig. 7g).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// φ: the angle at the parent that the child's diameter takes.
+    pub(super) phi: f32,
+    /// τ: the free angle, of which φ is used up where the child just fits.
+    pub(super) tau: f32,
+}
+
+impl Room {
+    /// That of a child beside nothing.
+    pub(super) fn whole(parent_radius: f32, radius: f32) -> Self {
+        Self { phi: taken(parent_radius, radius), tau: TAU }
+    }
+
+    /// That of a child between two others, given by place and radius, the second one in the direction of growing angles.
+    pub(super) fn between(
+        parent_radius: f32,
+        radius: f32,
+        (before, before_radius): (Vec2, f32),
+        (behind, behind_radius): (Vec2, f32),
+    ) -> Self {
+        let phi = taken(parent_radius, radius);
+        let distance = parent_radius + radius;
+        let beside = |centre: Vec2, other: f32| wedge(distance, centre.length(), radius + other, 0.0, 0.0);
+        let apart = atan2(before.perp_dot(behind), before.dot(behind));
+        let apart = if apart <= 0.0 { apart + TAU } else { apart };
+        Self { phi, tau: apart - beside(before, before_radius) - beside(behind, behind_radius) + phi }
+    }
+}
+
+/// φ: twice the angle whose sine is r_c / (r_p + r_c).
+pub(super) fn taken(parent_radius: f32, radius: f32) -> f32 {
+    2.0 * asin(radius / (parent_radius + radius))
 }
 
 /// Eight neighbours. Lanes without one are infinitely far.
@@ -198,6 +236,8 @@ pub(super) struct Ring {
     closed: Vec<(f32, f32)>,
     pub(super) arcs: Vec<Arc>,
     pub(super) children: Vec<f32>,
+    /// What each child of the arc gave up to the others, or they to it, in radians.
+    slack: f32,
 }
 
 impl Ring {
@@ -319,7 +359,7 @@ impl Ring {
             }
         }
         if self.closed.is_empty() {
-            self.arcs.push(Arc { from: 0.0, to: TAU, whole: true });
+            self.arcs.push(Arc { from: 0.0, to: TAU, start: 0.0, whole: true });
             return;
         }
         let mut reached = self.closed.iter().fold(f32::NEG_INFINITY, |most, c| most.max(c.1)) - TAU;
@@ -352,7 +392,42 @@ impl Ring {
         }
         let most = from.0.iter().fold(0.0_f32, |a, &b| if b > a { b } else { a });
         let least = to.0.iter().fold(length, |a, &b| if b < a { b } else { a });
-        Arc { from: start + most, to: start + least, whole: false }
+        Arc { from: start + most, to: start + least, start, whole: false }
+    }
+
+    /// The neighbours at the two ends of an arc: those that a child at either end touches.
+    pub(super) fn ends(&self, arc: Arc) -> Option<(usize, usize)> {
+        if arc.whole {
+            return None;
+        }
+        let mut ends = (0, 0);
+        let (mut most, mut least) = (f32::NEG_INFINITY, f32::INFINITY);
+        for i in 0..self.len {
+            let chunk = &self.chunks[i / LANES];
+            let mut angle = self.angle(i) - arc.start;
+            while angle < 0.0 {
+                angle += TAU;
+            }
+            if angle >= TAU {
+                angle -= TAU;
+            }
+            let (end, begin) = (angle + chunk.behind.0[i % LANES] - TAU, angle - chunk.before.0[i % LANES]);
+            if end > most {
+                (most, ends.0) = (end, i);
+            }
+            if begin < least {
+                (least, ends.1) = (begin, i);
+            }
+        }
+        Some(ends)
+    }
+
+    /// Neighbour `i` in the tangent plane, at its true distance, and its radius.
+    pub(super) fn disc(&self, i: usize, base: &Base) -> (Vec2, f32) {
+        let (chunk, lane) = (&self.chunks[i / LANES], i % LANES);
+        let offset = Vec3::new(chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
+        let flat = Vec2::new(offset.dot(base.u), offset.dot(base.w));
+        (flat.normalize_or_zero() * offset.length(), chunk.radius.0[lane])
     }
 
     /// Angles of the children of an arc: as many as fit, evenly spread, so that no gap is left that is wider than the others.
@@ -373,15 +448,26 @@ impl Ring {
         if arc.whole {
             // The last one has come round to the first.
             self.children.pop();
+            self.slack = 0.0;
             let stretch = TAU / (at - arc.from);
             self.children.iter_mut().for_each(|angle| *angle *= stretch);
         } else {
             let slack = (arc.to - at) / (count + 1) as f32;
+            self.slack = slack;
             for (k, angle) in self.children.iter_mut().enumerate() {
                 *angle += slack * (k + 1) as f32;
             }
         }
         &self.children
+    }
+
+    /// φ and τ of child `k` of an arc that was spread, of the given radius: τ is what the children before it left.
+    pub(super) fn room(&self, base: &Base, arc: Arc, k: usize, radius: f32) -> Room {
+        let phi = taken(base.radius, radius);
+        if arc.whole {
+            return Room { phi, tau: TAU - self.children[k] };
+        }
+        Room { phi, tau: arc.to - (self.children[k] - self.slack * (k + 1) as f32) + phi }
     }
 
     /// Room that a place at `offset` with the radius `radius` leaves to the neighbours beyond `share` (r_i + r_j);
@@ -408,4 +494,4 @@ const SIN_60: f32 = 0.866_025_4;
 const SLOPE_PULL: f32 = 0.02;
 
 /// Most children of an arc, whatever the prediction says.
-const MAX_CHILDREN: usize = 16;
+pub(super) const MAX_CHILDREN: usize = 16;

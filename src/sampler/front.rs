@@ -2,6 +2,7 @@
 
 use super::adaptive::{AdaptiveFront, Surface};
 use super::gaps::{Gaps, Ground};
+use super::pairs::Pairs;
 use super::project::tolerance;
 use super::settings::{Sampling, Settings};
 use super::survey::Survey;
@@ -9,9 +10,8 @@ use super::uniform::{FateCounts, UniformFront};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::spatial::CellGrid;
+use crate::trace::Trace;
 use glam::Vec3;
-
-use super::pairs::Pairs;
 
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
@@ -95,6 +95,16 @@ impl Front {
                 self.uniform.is_covered(particles, position, normal, UNCOVERED * self.radius)
             }
             Sampling::Adaptive => self.adaptive.is_covered(particles, position, normal, UNCOVERED),
+        }
+    }
+
+    /// Those particles, nearest first, in `near`.
+    pub(super) fn near(&mut self, particles: &Particles, position: Vec3, normal: Vec3, near: &mut Vec<u32>) {
+        match self.sampling {
+            Sampling::Uniform => {
+                self.uniform.near(particles, position, normal, UNCOVERED * self.radius, near);
+            }
+            Sampling::Adaptive => self.adaptive.near(particles, position, normal, UNCOVERED, near),
         }
     }
 
@@ -198,6 +208,16 @@ impl Front {
             Sampling::Uniform => self.gaps.filled,
             Sampling::Adaptive => self.adaptive.filled,
         }
+    }
+
+    /// The log of the adaptive front.
+    pub(super) fn trace(&self) -> &Trace {
+        &self.adaptive.trace
+    }
+
+    /// Follows a particle, or none.
+    pub(super) fn follow(&mut self, particle: Option<u32>) {
+        self.adaptive.trace.follow(particle);
     }
 
     /// Whether the limit on particles was reached.

@@ -33,6 +33,7 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
+use crate::trace::Trace;
 use adaptive::Surface;
 use front::Front;
 use glam::Vec3;
@@ -258,6 +259,17 @@ impl Sampler {
     #[must_use]
     pub fn energy(&self) -> &[f64] {
         &self.relaxation.energy
+    }
+
+    /// Has the adaptive front of the next run keep a log of what happens at the particle with this index, or none.
+    pub fn follow(&mut self, particle: Option<u32>) {
+        self.front.follow(particle);
+    }
+
+    /// What happened at the particle that is followed.
+    #[must_use]
+    pub fn trace(&self) -> &Trace {
+        self.front.trace()
     }
 
     /// Repulsion radius r of the run.

@@ -111,21 +111,20 @@ impl Placement {
         curvatures_of(&self.gradient[..n], &self.hessian[..n], &mut self.curvature[..n]);
     }
 
-    /// What is known at one point, on the surface or near it: normal, radius, curvature; the value over the slope first.
+    /// What is known at one point, on the surface or near it.
     pub(super) fn look(
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
         sizing: &Sizing,
         position: Vec3,
-    ) -> (f32, Spot) {
+    ) -> Spot {
         self.points.clear();
         self.points.push(position);
         self.evaluate(field, projector);
-        let slope = self.gradient[0].length();
         let curvature = self.curvature[0];
         let radius = sizing.radius(position, &curvature);
-        (self.value[0] / slope, Spot { position, normal: self.gradient[0] / slope, radius, curvature })
+        Spot { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
     }
 
     /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the distance, together; a bracketed
@@ -287,7 +286,7 @@ impl Placement {
                 Landing::Undefined if best.is_none() => return Landed::Undefined,
                 _ => break,
             };
-            let (_, spot) = self.look(field, projector, sizing, position);
+            let spot = self.look(field, projector, sizing, position);
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
                 return Landed::Undefined;
             }
