@@ -17,7 +17,8 @@ use super::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use super::pairs::Pairs;
 use super::placement::{Landed, Placement, Proposal, Spot};
 use super::project::{BATCH, Circle, Landing, Projector, tolerance};
-use super::relax::{CUT_OFF, SKIN};
+use super::relax::SKIN;
+use super::repulsion::{Overlap, Repulsion};
 use super::settings::{Placement as Method, Settings};
 use super::sizing::Sizing;
 use super::uniform::FateCounts;
@@ -34,6 +35,9 @@ use glam::{Vec2, Vec3};
 /// Everything that a child of usual size can collide with is within this many radii of the parent; the second ring of a
 /// lattice is at 3.46.
 const REACH: f32 = 3.7;
+
+/// Particles within this share of r_i + r_j are listed for the relaxation.
+const LISTED: f32 = 0.5 * (Overlap::RANGE + SKIN);
 
 /// Neighbours within this share of r_i + r_j count as touching.
 const TOUCHING: f32 = 1.25;
@@ -120,6 +124,8 @@ pub(super) struct AdaptiveFront {
     bounds: Bounds,
     max_particles: usize,
     grids: RadiusGrids,
+    /// Radii of the parent within which others are gathered.
+    reach: f32,
     found: Vec<Neighbour>,
     ring: Ring,
     /// Places in the ring of those that touch the parent, but for the one that placed it.
@@ -170,6 +176,7 @@ impl AdaptiveFront {
             bounds: Bounds::cube(1.0),
             max_particles: 0,
             grids: RadiusGrids::new(),
+            reach: REACH,
             found: Vec::new(),
             ring: Ring::default(),
             touching: Vec::new(),
@@ -218,7 +225,10 @@ impl AdaptiveFront {
         self.max_particles = settings.max_particles as usize;
         self.curvature.reserve_exact(expected.saturating_sub(self.curvature.len()));
         self.filled = 0;
-        self.grids.reset(radii[0], radii[1], REACH);
+        // Neighbours that touch differ by this factor at most.
+        let ratio = (1.0 + settings.grading as f32) / (1.0 - settings.grading as f32);
+        self.reach = REACH.max(LISTED * (1.0 + ratio));
+        self.grids.reset(radii[0], radii[1], self.reach);
         self.stage = Stage::Place;
         self.next = 0;
         self.parents.clear();
@@ -401,7 +411,7 @@ impl AdaptiveFront {
     fn place_children(&mut self, surface: &mut Surface, parent: usize) {
         let particles = &*surface.particles;
         let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
-        let reach = REACH * radius;
+        let reach = self.reach * radius;
         let mut found = core::mem::take(&mut self.found);
         self.grids.gather(p, |_| reach, &mut found);
         // Every particle gets its list when it places its children for the first time.
@@ -456,7 +466,8 @@ impl AdaptiveFront {
                 let guess = base.child_at(angle);
                 let room = self.ring.clearance(guess.offset, guess.radius, self.match_tolerance);
                 // The gathered particles are those within the reach; beyond it anything may be.
-                let seen = REACH * base.radius - guess.distance - 2.0 * self.match_tolerance * guess.radius;
+                let seen =
+                    self.reach * base.radius - guess.distance - 2.0 * self.match_tolerance * guess.radius;
                 let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
                 let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
                 let fits = room >= 0.0;
@@ -608,7 +619,7 @@ impl AdaptiveFront {
             } else {
                 alone = false;
             }
-            let reach = 0.5 * (CUT_OFF + SKIN) * both;
+            let reach = LISTED * both;
             (j < parent && other.dot(normal) > 0.0 && near.distance_sq <= reach * reach).then_some(near.index)
         });
         if pairs.len() == parent {

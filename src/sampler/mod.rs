@@ -508,8 +508,11 @@ impl Sampler {
                 }
                 Phase::Relaxation => {
                     let start = self.projector.evaluations;
-                    let mut surface =
-                        relax::Surface { field: &mut *field, projector: &mut self.projector, sizing: None };
+                    let mut surface = relax::Surface {
+                        field: &mut *field,
+                        projector: &mut self.projector,
+                        sizing: self.sizing.as_ref(),
+                    };
                     let (rest, moved) = self.relaxation.step(
                         &mut surface,
                         self.front.grid(),
@@ -719,8 +722,18 @@ impl Sampler {
 
     fn begin_relaxation(&mut self) {
         self.front.release();
+        let law = match self.settings.sampling {
+            Sampling::Uniform => {
+                relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
+            }
+            Sampling::Adaptive => relax::Law::Overlap {
+                largest: self.particles.radius.iter().fold(0.0, |most: f32, &radius| most.max(radius)),
+                resolution: self.survey.resolution,
+                min_gradient: self.tolerance.min_gradient,
+            },
+        };
         self.relaxation.begin(
-            relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance },
+            law,
             &self.bounds,
             self.settings.relax_steps,
             self.particles.len(),

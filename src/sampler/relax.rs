@@ -58,7 +58,6 @@ enum Stage {
 pub(super) enum Law {
     /// Particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
-    #[allow(dead_code, reason = "the adaptive front is the one to use it")]
     /// Particles of radii up to `largest`, on a surface that single precision resolves to `resolution`.
     Overlap { largest: f32, resolution: f32, min_gradient: f32 },
 }
