@@ -128,8 +128,10 @@ pub struct Choice {
 /// A row of the report.
 #[derive(Clone, Debug, Serialize)]
 pub struct ReportRow {
-    /// Path into the report.
+    /// Path into the report. What is null there has no place in the run.
     pub key: &'static str,
+    /// Path of the upper end, if the row is a range that begins at `key`.
+    pub to: Option<&'static str>,
     /// Name for a person.
     pub label: &'static str,
     /// Group it is shown in.
@@ -364,7 +366,7 @@ const fn row(
     (ideal, better): (&'static str, Option<&'static str>),
     help: &'static str,
 ) -> ReportRow {
-    ReportRow { key, label, group, unit, digits, ideal, better, help }
+    ReportRow { key, to: None, label, group, unit, digits, ideal, better, help }
 }
 
 const LOWER: Option<&str> = Some("lower");
@@ -372,6 +374,16 @@ const HIGHER: Option<&str> = Some("higher");
 
 const REPORT: &[ReportRow] = &[
     row("count", "Particles", ("Run", "", 0), ("", None), "Particles on the surface."),
+    ReportRow {
+        to: Some("radius_max"),
+        ..row(
+            "radius_min",
+            "Radius",
+            ("Run", "", 4),
+            ("", None),
+            "Repulsion radius, in the units of x, y and z; of the smallest particle and of the largest where they differ.",
+        )
+    },
     row(
         "levels",
         "Generation levels",
@@ -464,6 +476,13 @@ const REPORT: &[ReportRow] = &[
         "Standard deviation of the distance to the nearest neighbour over its mean.",
     ),
     row(
+        "quality.size_cv",
+        "Fit to the wanted size",
+        ("Spacing", "%", 1),
+        ("0 %", LOWER),
+        "Standard deviation over mean of the distance between natural neighbours over the sum of their radii.",
+    ),
+    row(
         "quality.edge_cv",
         "Edge variation",
         ("Spacing", "%", 1),
@@ -499,11 +518,25 @@ const REPORT: &[ReportRow] = &[
         "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its pieces.",
     ),
     row(
-        "quality.components",
+        "components",
         "Connected pieces",
         ("Surface", "", 0),
         ("", None),
         "Pieces of the mesh of natural neighbours.",
+    ),
+    row(
+        "search",
+        "All pieces found",
+        ("Surface", "", 0),
+        ("proven", None),
+        "Proven: interval arithmetic shows that a front began on every piece of the surface in the box. By dense search: it looked at the nodes of a grid, which can miss a piece smaller than its cells.",
+    ),
+    row(
+        "undecided_cells",
+        "Undecided cells",
+        ("Surface", "", 0),
+        ("0", LOWER),
+        "Cells of the box in which the proof could neither find a piece nor rule one out.",
     ),
 ];
 

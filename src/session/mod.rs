@@ -122,6 +122,10 @@ pub struct Report {
     pub gaps_filled: u64,
     /// Repulsion radius.
     pub radius: f64,
+    /// Repulsion radius of the smallest particle; 0 without particles.
+    pub radius_min: f64,
+    /// Repulsion radius of the largest particle.
+    pub radius_max: f64,
     /// Field evaluations of the whole run.
     pub evaluations: u64,
     /// Field evaluations of the front per particle.
@@ -434,6 +438,9 @@ impl Session {
             }
             level_counts[level as usize] += 1;
         }
+        let sizes = particles.radius.iter().map(|&radius| f64::from(radius));
+        let radius_max = sizes.clone().fold(0.0, f64::max);
+        let radius_min = sizes.fold(radius_max, f64::min);
         let counts = self.sampler.counts();
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
@@ -455,6 +462,8 @@ impl Session {
             undecided_cells: self.sampler.undecided_cells(),
             gaps_filled: counts.gaps_filled,
             radius: self.sampler.radius(),
+            radius_min,
+            radius_max,
             evaluations,
             evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,
             fates: counts.fates,

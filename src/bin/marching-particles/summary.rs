@@ -72,6 +72,9 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         let Some(key) = row.key.strip_prefix("quality.") else {
             continue;
         };
+        if report["quality"][key].is_null() {
+            continue;
+        }
         let before = if compared { figure(row, &report["quality_before"][key]) } else { String::new() };
         let after = figure(row, &report["quality"][key]);
         writeln!(out, "{:LABEL$}{before:>COLUMN$}{after:>COLUMN$}{:>COLUMN$}", row.label, row.ideal)?;

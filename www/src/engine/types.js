@@ -54,9 +54,10 @@
  *   `equal` false other ones
  */
 /**
- * One row of the report. `key` is a path into {@link Report}, for example `quality.six`.
+ * One row of the report. `key` is a path into {@link Report}, for example `quality.six`; what is null there has no place in the run.
  * @typedef {object} ReportRow
  * @property {string} key
+ * @property {string | null} [to]  path of the upper end of a range that begins at `key`
  * @property {string} label
  * @property {string} group
  * @property {string} unit

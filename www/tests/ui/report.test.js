@@ -1,8 +1,8 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, trim } from '../../src/ui/report/bins.js';
-import { compare, figuresOf, groupRows, isTold, valueAt, writeFigure } from '../../src/ui/report/rows.js';
-import { captionOf } from '../../src/ui/view/caption.js';
+import { compare, figuresOf, groupRows, isTold, valueAt, writeFigure, writeRange } from '../../src/ui/report/rows.js';
+import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 import { wantsSlider } from '../../src/ui/scale.js';
 
 beforeAll(() => setLocale('en'));
@@ -29,7 +29,13 @@ describe('the report', () => {
     expect(writeFigure(row({ unit: '', digits: 6 }), 0)).toBe('0');
     expect(writeFigure(row(), null)).toBe('–');
     expect(writeFigure(row(), 'complete')).toBe('complete');
-    expect(writeFigure(row(), 'searched')).toBe('dense search');
+    expect(writeFigure(row(), 'searched')).toBe('by dense search');
+  });
+
+  it('writes a range as its ends, or as one figure', () => {
+    const radius = row({ key: 'radius_min', to: 'radius_max', unit: '', digits: 4 });
+    expect(writeRange(radius, /** @type {any} */ ({ radius_min: 0.01234, radius_max: 0.1 }))).toBe('0.0123\u202f–\u202f0.1');
+    expect(writeRange(radius, /** @type {any} */ ({ radius_min: 0.02, radius_max: 0.02 }))).toBe('0.02');
   });
 
   it('calls a figure better only when the change can be read', () => {
@@ -88,6 +94,10 @@ describe('the caption', () => {
   it('names the level and the count while the front grows', () => {
     expect(captionOf(progress, facts)).toBe('Level 12 · 1,463 particles');
     expect(captionOf({ ...progress, phase: 'relaxation' }, facts)).toBe('Relaxation 4 of 10 · 1,463 particles');
+  });
+
+  it('tells how far a model on its way is', () => {
+    expect(loadingOf({ id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.416 })).toBe('Bunny · Solving · 42%');
   });
 
   it('says so when a run was stopped or met its limit', () => {

@@ -46,7 +46,7 @@ export function isTold(report, key) {
 }
 
 /** The core's words, in those of a person. @type {Record<string, string>} */
-const WORDS = { proven: 'proven', searched: 'dense search' };
+const WORDS = { proven: 'proven', searched: 'by dense search' };
 
 /** Digits of a figure in all: decimals of large numbers say nothing. */
 const MOST_DIGITS = 5;
@@ -63,6 +63,16 @@ export function writeFigure({ digits, unit }, value) {
   if (digits === 0) return formatCount(value);
   const whole = Math.max(0, Math.floor(Math.log10(Math.abs(value) || 1)));
   return formatFixed(value, Math.max(0, Math.min(digits, MOST_DIGITS - 1 - whole)));
+}
+
+/**
+ * A range as its two ends, or as one figure where they are the same.
+ * @param {ReportRow} row
+ * @param {Report} report
+ */
+export function writeRange({ key, to }, report) {
+  const [low, high] = [key, to ?? key].map((path) => formatSignificant(valueAt(report, path)));
+  return low === high ? low : `${low}\u202f–\u202f${high}`;
 }
 
 /**

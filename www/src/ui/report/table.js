@@ -2,7 +2,7 @@
 import { effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
-import { compare, figuresOf, groupRows, isTold, writeFigure } from './rows.js';
+import { compare, figuresOf, groupRows, isTold, writeFigure, writeRange } from './rows.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
@@ -56,7 +56,7 @@ function createRow(report, row) {
     const current = report.value;
     const figures = current ? figuresOf(current, row.key) : null;
     before.textContent = writeFigure(row, figures?.before);
-    now.textContent = writeFigure(row, figures?.now);
+    now.textContent = current && row.to ? writeRange(row, current) : writeFigure(row, figures?.now);
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
   });
   const paired = isPaired(row);

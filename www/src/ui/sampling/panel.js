@@ -29,10 +29,11 @@ export function mountSampling(body, engine, { settings }, { head }) {
 }
 
 /** How far the run is. @param {Engine} engine */
-function createTrack({ busy, reveal, progress }) {
-  // The bar follows the picture while that still grows, and the run otherwise.
-  const growing = computed(() => busy.value || reveal.value !== null);
+function createTrack({ busy, reveal, progress, loading }) {
+  // The bar follows the picture while that still grows, and what is done for it otherwise.
+  const growing = computed(() => busy.value || reveal.value !== null || loading.value !== null);
   const fraction = computed(() => {
+    if (loading.value) return loading.value.fraction;
     const { particles, fraction: done } = progress.value;
     const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : busy.value ? done : 0;
     return Math.round(Math.min(1, share) * 200) / 200;
@@ -49,11 +50,12 @@ function createTrack({ busy, reveal, progress }) {
 /** @param {Engine} engine */
 function createActions(engine) {
   const { busy } = engine;
+  const stoppable = computed(() => busy.value || engine.loading.value !== null);
   const always = computed(() => true);
   const some = computed(() => engine.progress.value.particles > 0);
   return h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
     action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), always, 'primary in-tabs'),
-    action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), busy, 'in-tabs'),
+    action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), stoppable, 'in-tabs'),
     action('Generate only', 'Places the particles level by level and leaves them unrelaxed. Key G.', () => engine.generateOnly(), always),
     action('Relax one step', 'Moves the present particles one relaxation step further. Key E.', () => engine.relax(1), computed(() => some.value && !busy.value)),
   ]);

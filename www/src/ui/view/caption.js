@@ -1,8 +1,11 @@
 /** One quiet line that says where the run stands. Pure. */
-import { formatCount, formatSeconds, plural } from '../format.js';
+import { formatCount, formatSeconds, formatShare, plural } from '../format.js';
 
 /** While the picture of a finished run grows, level by level. @param {{ level: number, particles: number }} reveal */
 export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
+
+/** While a model or a file is on its way. @param {import('../../engine/types.js').Loading} loading */
+export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · ${formatShare(fraction, 0)}`;
 
 /**
  * @param {import('../../engine/types.js').Progress} progress

@@ -1,7 +1,7 @@
 /** What stands on the picture itself: the caption, the hint, the empty state, the poster's end. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
-import { captionOf, revealOf } from './caption.js';
+import { captionOf, loadingOf, revealOf } from './caption.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -24,7 +24,8 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
   const text = computed(() => (engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
     partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: secondsOf(engine.timing.value),
   })));
-  bindText(caption, () => text.value);
+  // The field panel reads the loading out.
+  bindText(caption, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
   announce(spoken, text, computed(() => engine.busy.value || engine.reveal.value !== null));
 
   // The poster stands in until the first particles are on screen.
