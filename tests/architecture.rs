@@ -40,7 +40,7 @@ const MAY_USE: [(&str, &[&str]); 17] = [
     // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
     ("render", &["math"]),
     ("web/core", &["json", "field", "sampler", "session"]),
-    ("web/points", &["json", "points"]),
+    ("web/points", &["json", "math", "points"]),
     ("web/render", &["render"]),
 ];
 

@@ -6,6 +6,7 @@
 
 mod eigen;
 pub mod fit;
+pub mod job;
 pub mod models;
 pub mod normals;
 pub mod read;
@@ -53,11 +54,8 @@ impl Cloud {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CloudError {
     /// All of them are one point.
-    #[error("all {count} points are at the same place; a surface takes points all round it")]
-    OnePlace {
-        /// Number of points.
-        count: usize,
-    },
+    #[error("all points are at the same place; a surface takes points all round it")]
+    OnePlace,
     /// All of them lie on a line.
     #[error("all points lie on a straight line; a surface takes points all round it")]
     Line,

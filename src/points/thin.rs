@@ -201,7 +201,7 @@ pub fn check_spread(points: &[DVec3]) -> Result<(), CloudError> {
     let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
     // Of a single point both the diagonal and the coordinates can be 0.
     if points.len() < 2 || diagonal <= SAME_SHARE * SAME_SHARE * lo.abs().max(hi.abs()).max_element() {
-        return Err(CloudError::OnePlace { count: points.len() });
+        return Err(CloudError::OnePlace);
     }
     let local = || points.iter().map(|p| (*p - middle) / diagonal);
     let mean = local().sum::<DVec3>() / points.len() as f64;

@@ -38,13 +38,13 @@ declare module '*/wasm/points/points.js' {
     readonly memory: WebAssembly.Memory;
   }
   export default function init(options: { module_or_path: WebAssembly.Module }): Promise<InitOutput>;
-  /** From a built-in model or a file to a field. Strings are JSON; a refusal is `{ok: false, error: {kind, message}}`. */
+  /** From a built-in model or a file to a field. Strings are JSON; a refusal is `{ok: false, error: {kind, message, line}}`, `line` being null for what is not in a line of a text. */
   export class Points {
     /** Begins a built-in model: `{ok: true}`. What was begun before is given up. */
     model(id: string): string;
     /** Begins a file, of which the name is for reports alone: `{ok: true}`. `centres` from 100 to 800; 0 is the default. */
     file(name: string, bytes: Uint8Array, centres: number): string;
-    /** Does up to `budget` units of work: `{ok: true, stage, label, fraction, done}`. Refused once something is wrong with the file. */
+    /** Does up to `budget` units of work: `{ok: true, stage, label, fraction, done}`, `stage` being reading, normals, thinning, solving or done. Refused once something is wrong with the file. */
     step(budget: number): string;
     /** The solved system for `Core.set_points`; empty before it is done. */
     field(): Uint8Array<ArrayBuffer>;

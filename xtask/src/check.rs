@@ -20,7 +20,7 @@ pub(crate) enum Part {
     Format,
     /// Clippy on the native code, warnings denied.
     Lint,
-    /// Clippy on the core and both renderers for wasm32, warnings denied.
+    /// Clippy on every WebAssembly bundle, warnings denied.
     LintWasm,
     /// rustdoc, warnings denied.
     Docs,
@@ -28,7 +28,7 @@ pub(crate) enum Part {
     Native,
     /// The shader tests alone (also part of `native`).
     Shaders,
-    /// The core as WebAssembly, in Node, against the digests of the native core.
+    /// The core and the solver for points as WebAssembly, in Node, against the digests of the native ones.
     Parity,
     /// The page: types and unit tests.
     Page,
@@ -179,10 +179,13 @@ fn shaders(project: &Project) -> Result<()> {
 }
 
 fn parity(project: &Project) -> Result<()> {
-    bundle::build(project, &[Bundle::Core])?;
-    let mut command = Command::new(node::node()?);
-    command.current_dir(&project.root).arg("tests/wasm/parity.mjs");
-    step::run("the same digests in WebAssembly as natively", &mut command, "").map(drop)
+    bundle::build(project, &[Bundle::Core, Bundle::Points])?;
+    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs"] {
+        let mut command = Command::new(node::node()?);
+        command.current_dir(&project.root).arg(script);
+        step::run(&format!("the same digests in WebAssembly as natively ({script})"), &mut command, "")?;
+    }
+    Ok(())
 }
 
 fn page(project: &Project) -> Result<()> {

@@ -24,6 +24,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
         // formula language, a tenth each the quality figures and the sampler. Optimising everything for size would save
         // another tenth and take three times as long to sample, so the rest has to come from less code.
         Bundle::Core => 168.0,
+        Bundle::Points => 100.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
     }

@@ -24,7 +24,7 @@ import { words } from '../sampling/load.js';
 
 /** A step takes about this long: the way to a thousand centres is then told in some hundred pieces. */
 const STEP_MS = 30;
-const FIRST_BUDGET = 1024;
+const FIRST_BUDGET = 64;
 /** The bundle's own number of centres. */
 const USUAL_CENTRES = 0;
 

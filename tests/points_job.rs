@@ -1,0 +1,235 @@
+//! The whole way from a file or a model to a field: the same bits everywhere, in any cut, and mistakes in words.
+//!
+//! `tests/golden/points.json` holds digests of the solved systems; `tests/wasm/points.mjs` holds the WebAssembly bundle to the
+//! same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test points_job`.
+
+use marching_particles::field::Field;
+use marching_particles::field::model::{MODELS, NormalSource};
+use marching_particles::field::rbf::{RbfData, RbfField};
+use marching_particles::points::fit::Fit;
+use marching_particles::points::job::{DEFAULT_CENTRES, Job, JobError, Stage};
+use proptest::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Runs a job by steps of `budget` pieces.
+fn run(mut job: Job, budget: u32) -> Result<Fit, JobError> {
+    let mut before = job.progress();
+    for _ in 0..1_000_000 {
+        let progress = job.step(budget)?;
+        assert!(
+            progress.fraction >= before.fraction && progress.fraction <= 1.0,
+            "{progress:?} after {before:?}"
+        );
+        assert_eq!(progress.done, progress.stage == Stage::Done);
+        before = progress;
+        if let Some(fit) = job.fit() {
+            assert!(progress.done && progress.fraction == 1.0, "{progress:?}");
+            assert_eq!(job.centres().len(), fit.info.centres as usize);
+            return Ok(fit.clone());
+        }
+    }
+    panic!("the job does not end: {before:?}");
+}
+
+fn file(text: &str, centres: u32) -> Result<Fit, JobError> {
+    run(Job::file("points.xyz", text.into(), centres)?, 100)
+}
+
+/// Points on an ellipsoid as text: those of the faces of a cube, on a grid, moved to it. `tests/wasm/points.mjs` makes the same.
+fn ellipsoid(steps: i32, normals: bool) -> String {
+    let mut text = String::new();
+    for i in -steps..=steps {
+        for j in -steps..=steps {
+            for k in -steps..=steps {
+                if i.abs().max(j.abs()).max(k.abs()) != steps {
+                    continue;
+                }
+                let [x, y, z] = [i, j, k].map(f64::from);
+                let length = (x * x + y * y + z * z).sqrt();
+                let [x, y, z] = [x / length, y / length * 0.7, z / length * 0.5];
+                let _ = write!(text, "{x} {y} {z}");
+                if normals {
+                    let [nx, ny, nz] = [x, y / 0.49, z / 0.25];
+                    let length = (nx * nx + ny * ny + nz * nz).sqrt();
+                    let _ = write!(text, " {} {} {}", nx / length, ny / length, nz / length);
+                }
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// FNV-1a over bytes, 16 hexadecimal digits.
+fn digest(bytes: &[u8]) -> String {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+#[derive(Serialize, Deserialize)]
+struct Golden {
+    runs: Vec<Run>,
+}
+
+/// A built-in model, or the ellipsoid of so many steps.
+#[derive(Serialize, Deserialize)]
+struct Run {
+    name: String,
+    model: Option<String>,
+    steps: i32,
+    normals: bool,
+    centres: u32,
+    digest: String,
+}
+
+#[test]
+fn systems_have_the_digests_that_other_platforms_give() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/points.json");
+    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
+    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
+    assert!(golden.runs.len() >= 3, "{} holds {} runs", path.display(), golden.runs.len());
+    let mut faults = Vec::new();
+    for case in &mut golden.runs {
+        let job = match &case.model {
+            Some(id) => Job::model(id),
+            None => Job::file("points.xyz", ellipsoid(case.steps, case.normals).into(), case.centres),
+        };
+        let fit = job.and_then(|job| run(job, 100)).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        let found = digest(&fit.data.to_bytes());
+        if found != case.digest {
+            faults.push(format!("{}: {found}, not {}", case.name, case.digest));
+        }
+        case.digest = found;
+    }
+    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
+        let text =
+            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
+        std::fs::write(&path, text).expect("the golden file can be written");
+        return;
+    }
+    let advice = "If surfaces were meant to move: UPDATE_GOLDEN=1 cargo test --test points_job";
+    assert!(faults.is_empty(), "\n{}\n{advice}\n", faults.join("\n"));
+}
+
+#[test]
+fn any_cut_into_steps_gives_the_same_system() {
+    let text = ellipsoid(7, false);
+    let of = |budget| {
+        let job = Job::file("points.xyz", text.clone().into(), DEFAULT_CENTRES).expect("a good file");
+        run(job, budget).expect("a good cloud")
+    };
+    let whole = of(u32::MAX);
+    for budget in [1, 7, 1000] {
+        assert_eq!(of(budget).data.to_bytes(), whole.data.to_bytes(), "budget {budget}");
+    }
+}
+
+#[test]
+fn a_field_meets_its_points_and_is_bounded() {
+    for (normals, source, warnings) in [(true, NormalSource::Given, 0), (false, NormalSource::Estimated, 1)] {
+        let fit = file(&ellipsoid(8, normals), 300).expect("a good cloud");
+        let info = &fit.info;
+        assert_eq!((info.points, info.centres, info.normals), (17 * 17 * 6 - 12 * 17 + 8, 300, source));
+        assert_eq!(info.warnings.len(), warnings, "{:?}", info.warnings);
+        assert_eq!(info.name, "points.xyz");
+        assert!(info.condition > 1e3 && info.condition < 1e9, "{info:?}");
+        assert!(info.residual_mean < 2e-4 && info.residual_max < 2e-3, "{info:?}");
+        for (k, half) in [1.0, 0.7, 0.5].into_iter().enumerate() {
+            assert!(fit.bounds.max[k] > half && fit.bounds.max[k] < half + 0.3, "{:?}", fit.bounds);
+        }
+        // What crosses to the core is read there.
+        let data = RbfData::from_bytes(&fit.data.to_bytes()).expect("bytes of our own");
+        let mut field = RbfField::new(data).expect("data of our own");
+        assert!(field.jet(glam::DVec3::ZERO).value < 0.0);
+        assert!(field.jet(fit.bounds.hi()).value > 0.0);
+    }
+}
+
+#[test]
+fn points_far_from_the_origin_are_moved_to_it_by_round_numbers() {
+    let text: String = ellipsoid(6, true)
+        .lines()
+        .map(|line| {
+            let words: Vec<f64> = line.split(' ').map(|word| word.parse().expect("a number")).collect();
+            format!(
+                "{} {} {} {} {} {}\n",
+                words[0] + 512_345.25,
+                words[1],
+                words[2] - 99.5,
+                words[3],
+                words[4],
+                words[5]
+            )
+        })
+        .collect();
+    let fit = file(&text, DEFAULT_CENTRES).expect("a good cloud");
+    assert_eq!(
+        fit.info.warnings,
+        [
+            "The points lie far from the origin for their size and were moved by -512345, 0, 100: single precision would lose \
+          their last digits."
+        ]
+    );
+    assert!(fit.bounds.contains(glam::Vec3::new(0.25, 0.0, 0.5)), "{:?}", fit.bounds);
+    assert!(fit.info.residual_max < 2e-3, "{:?}", fit.info);
+}
+
+#[test]
+fn every_built_in_model_becomes_a_field() {
+    for model in MODELS {
+        let fit = run(Job::model(model.id).expect("a model of the list"), 10).expect("a good model");
+        assert_eq!((fit.info.centres, fit.info.points), (model.points, model.points), "{}", model.id);
+        assert_eq!((fit.info.name.as_str(), fit.info.credit.as_str()), (model.name, model.credit));
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_said_and_said_again() {
+    let message = |result: Result<Fit, JobError>| result.map(|_| ()).expect_err("a mistake").to_string();
+    let tail = "; a surface takes points all round it";
+    assert_eq!(message(file("1 2 3\n1 2 3\n", 200)), format!("all points are at the same place{tail}"));
+    assert_eq!(
+        message(file("1 2 3\n2 4 6\n3 6 9\n", 200)),
+        format!("all points lie on a straight line{tail}")
+    );
+    assert_eq!(
+        message(file("0 0 1\n1 0 1\n0 1 1\n1 1 1\n", 200)),
+        format!("all points lie in a plane{tail}")
+    );
+    assert_eq!(message(file("1 2 3\n", 20)), "20 centres: choose 100 to 800");
+    let unknown = Job::model("teapot").map(|_| ()).expect_err("no such model");
+    assert!(unknown.to_string().starts_with("there is no model `teapot`; known are bunny, "), "{unknown}");
+    let mut job = Job::file("points.xyz", b"1 2 3\n4 5 x\n".to_vec(), 200).expect("a good beginning");
+    for _ in 0..2 {
+        let error = job.step(10).expect_err("a mistake");
+        assert_eq!((error.kind(), error.line()), ("line", Some(2)));
+        assert!(job.fit().is_none() && !job.progress().done);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Few points, many of them the same or nearly so, some with normals that contradict each other.
+    #[test]
+    fn no_cloud_ends_the_program(
+        points in proptest::collection::vec((-2_i8..3, -2_i8..3, -2_i8..3, 0_u8..3), 1..60),
+        normals in any::<bool>(), scale in -9_i32..9,
+    ) {
+        let scale = 10.0_f64.powi(scale);
+        let mut text = String::new();
+        for (x, y, z, near) in points {
+            let [x, y, z] = [x, y, z].map(|c| f64::from(c) * scale * (1.0 + 1e-7 * f64::from(near)));
+            let _ = write!(text, "{x:e} {y:e} {z:e}");
+            let _ = writeln!(text, "{}", if normals { [" 0 0 1", " 1 0 0", " 0.6 0.8 0"][usize::from(near)] } else { "" });
+        }
+        if let Ok(fit) = file(&text, 100) {
+            prop_assert!(fit.bounds.is_valid());
+            prop_assert!(fit.info.residual_max.is_finite());
+        }
+    }
+}

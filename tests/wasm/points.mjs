@@ -1,0 +1,139 @@
+// Holds the bundle for models from points to the digests that the native code is held to by tests/points_job.rs, and checks that
+// the core samples what it solves.
+//
+// Usage: node tests/wasm/points.mjs, after `cargo xtask wasm core points`.
+import { readFile } from 'node:fs/promises';
+import process from 'node:process';
+
+const root = new URL('../../', import.meta.url);
+/** @param {string} name */
+const load = async (name) => {
+  const folder = new URL(`www/src/wasm/${name}/`, root);
+  const bundle = await import(new URL(`${name}.js`, folder).href);
+  bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
+  return bundle;
+};
+const { Core } = await load('core');
+const { Points } = await load('points');
+
+/** Pieces of work per step: not the native test's number, which must make no difference. */
+const BUDGET = 37;
+
+/** @param {string} json an answer @param {string} name what it answers */
+function accepted(json, name) {
+  const answer = JSON.parse(json);
+  if (answer.ok !== true) throw new Error(`${name}: ${json}`);
+  return answer;
+}
+
+/** @param {boolean} holds @param {string} claim */
+function claim(holds, claim) {
+  if (!holds) throw new Error(claim);
+}
+
+/** The text that `ellipsoid` of tests/points_job.rs makes. @param {number} steps @param {boolean} normals */
+function ellipsoid(steps, normals) {
+  const lines = [];
+  // Rust writes no exponents, and the sign of a negative zero.
+  const word = (/** @type {number} */ x) => (Object.is(x, -0) ? '-0' : String(x));
+  for (let i = -steps; i <= steps; i += 1) {
+    for (let j = -steps; j <= steps; j += 1) {
+      for (let k = -steps; k <= steps; k += 1) {
+        if (Math.max(Math.abs(i), Math.abs(j), Math.abs(k)) !== steps) continue;
+        const length = Math.sqrt(i * i + j * j + k * k);
+        const [x, y, z] = [i / length, (j / length) * 0.7, (k / length) * 0.5];
+        const numbers = [x, y, z];
+        if (normals) {
+          const [nx, ny, nz] = [x, y / 0.49, z / 0.25];
+          const size = Math.sqrt(nx * nx + ny * ny + nz * nz);
+          numbers.push(nx / size, ny / size, nz / size);
+        }
+        lines.push(numbers.map(word).join(' '));
+      }
+    }
+  }
+  return new TextEncoder().encode(`${lines.join('\n')}\n`);
+}
+
+/** FNV-1a. @param {Uint8Array} bytes */
+function digest(bytes) {
+  let hash = 0xcbf29ce484222325n;
+  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
+  return hash.toString(16).padStart(16, '0');
+}
+
+/** Steps to the end. @param {Points} points @param {string} name */
+function finish(points, name) {
+  let before = 0;
+  for (;;) {
+    const progress = accepted(points.step(BUDGET), name);
+    claim(progress.fraction >= before && progress.fraction <= 1, `${name}: ${progress.fraction} after ${before}`);
+    before = progress.fraction;
+    if (progress.done) return accepted(points.info(), name);
+  }
+}
+
+/** Samples a solved field in the core. @param {Points} points @param {object} known @param {string} name */
+function sampled(points, known, name) {
+  const core = new Core();
+  accepted(core.set_points(points.field(), JSON.stringify(known)), `${name}: set_points`);
+  accepted(core.start(JSON.stringify({ radius_share: 0.02, relax_steps: 2 })), `${name}: start`);
+  while (JSON.parse(core.step(1000)).stop_reason === null);
+  const count = core.count();
+  core.free();
+  return count;
+}
+
+const { runs } = JSON.parse(await readFile(new URL('tests/golden/points.json', root), 'utf8'));
+claim(runs.length >= 3, `only ${runs.length} runs`);
+let failures = 0;
+const points = new Points();
+for (const { name, model, steps, normals, centres, digest: expected } of runs) {
+  accepted(model === null ? points.file('points.xyz', ellipsoid(steps, normals), centres) : points.model(model), name);
+  claim(points.field().length === 0 && JSON.parse(points.info()).ok === false, `${name}: a field before there is one`);
+  const { ok: _, ...known } = finish(points, name);
+  const found = digest(points.field());
+  const same = found === expected;
+  failures += same ? 0 : 1;
+  claim(points.centres().length === 3 * centres, `${name}: ${points.centres().length} numbers for ${centres} centres`);
+  const count = sampled(points, known, name);
+  claim(count > 300, `${name}: ${count} particles`);
+  console.log(`${same ? 'same' : 'DIFFERENT'}  ${name}: ${found}${same ? '' : `, natively ${expected}`}, ${count} particles`);
+}
+
+// A small mesh without normals, binary, and its mistakes.
+const header = `ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z
+element face 4\nproperty list uchar int vertex_indices\nend_header\n`;
+const corners = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1];
+const faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
+const ply = new Uint8Array(header.length + 4 * corners.length + 13 * 4);
+ply.set(new TextEncoder().encode(header));
+const view = new DataView(ply.buffer);
+corners.forEach((x, k) => view.setFloat32(header.length + 4 * k, x));
+for (let face = 0; face < 4; face += 1) {
+  const at = header.length + 4 * corners.length + 13 * face;
+  view.setUint8(at, 3);
+  for (let k = 0; k < 3; k += 1) view.setInt32(at + 1 + 4 * k, faces[3 * face + k]);
+}
+accepted(points.file('tetrahedron.ply', ply, 0), 'a tetrahedron');
+const { ok: _, ...known } = finish(points, 'a tetrahedron');
+claim(known.info.normals === 'from_mesh' && known.info.centres === 4, JSON.stringify(known));
+claim(sampled(points, known, 'a tetrahedron') > 100, 'a tetrahedron has too few particles');
+console.log('same  a binary mesh is read, solved and sampled');
+
+/** @param {string} json @param {string} kind @param {RegExp} words @param {number | null} line */
+function refused(json, kind, words, line) {
+  const { ok, error } = JSON.parse(json);
+  claim(ok === false && error.kind === kind && words.test(error.message) && error.line === line, `${json} for ${kind}`);
+}
+const text = (/** @type {string} */ words) => new TextEncoder().encode(words);
+refused(new Points().step(1), 'nothing', /no model and no file/, null);
+refused(points.model('teapot'), 'unknown_model', /known are bunny/, null);
+refused(points.file('a.xyz', new Uint8Array(0), 0), 'empty', /the file is empty/, null);
+refused(points.file('a.xyz', text('1 2 3\n'), 20), 'centres', /choose 100 to 800/, null);
+refused(points.file('a.ply', ply.slice(0, header.length + 4), 0), 'claim', /promises 4 vertex rows/, null);
+accepted(points.file('a.xyz', text('1 2 3\n4 nan 6\n'), 0), 'a file with a mistake in its second line');
+refused(points.step(1000), 'line', /^line 2: y is not a finite number/, 2);
+refused(points.step(1), 'line', /^line 2/, 2);
+console.log('same  mistakes are refused in words');
+process.exitCode = failures > 0 ? 1 : 0;
