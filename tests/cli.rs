@@ -244,3 +244,64 @@ fn help_teaches() {
     assert!(run(&["--version"]).status.success());
     assert_eq!(run(&[]).status.code(), Some(2));
 }
+
+#[test]
+fn points_of_a_file_become_a_surface_that_is_sampled() {
+    let [cloud, even, obj] = ["cloud.xyz", "even.ply", "box.obj"].map(file);
+    let path = |path: &PathBuf| path.to_str().expect("a plain path").to_owned();
+    sample(&["--surface", "torus", "--radius", "2%", "--out", &path(&cloud)]);
+    let again = sample(&["--points", &path(&cloud), "--radius", "2%", "--out", &path(&even)]);
+    let model = &again["model"];
+    assert_eq!((model["name"].as_str(), model["normals"].as_str()), (Some("cloud.xyz"), Some("given")));
+    assert_eq!((model["centres"].as_u64(), again["quality"]["euler"].as_i64()), (Some(200), Some(0)));
+    assert!(
+        model["residual_max"].as_f64() < Some(0.01) && model["condition"].as_f64() > Some(1e3),
+        "{model}"
+    );
+    assert!(again["seconds"]["points"].as_f64() > Some(0.0));
+    assert_eq!(again["surface"], Value::Null);
+
+    let more = sample(&["--points", &path(&even), "--centres", "300", "--radius", "2%", "--relax", "0"]);
+    assert_eq!((more["model"]["centres"].as_u64(), &more["model"]["points"]), (Some(300), &again["count"]));
+
+    // Without normals, and in words.
+    let text = std::fs::read_to_string(&cloud).expect("the file was written");
+    let bare: String =
+        text.lines().map(|line| line.split(' ').take(3).collect::<Vec<_>>().join(" ") + "\n").collect();
+    std::fs::write(&cloud, bare).expect("a file can be written");
+    let words = stdout(&run(&["sample", "--points", &path(&cloud), "--radius", "2%", "--relax", "0"]));
+    assert!(words.starts_with("points: cloud.xyz\na surface through 200 of "), "{words}");
+    assert!(
+        words.contains("normals estimated, condition ")
+            && words.contains("\nwarning: The file has no normals"),
+        "{words}"
+    );
+
+    std::fs::write(&obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").expect("a file can be written");
+    let message = fails(2, &["sample", "--points", &path(&obj)]);
+    assert!(
+        message.ends_with("box.obj: line 4: the face has vertex 4, and 3 stand before this line\n"),
+        "{message}"
+    );
+    let message = fails(1, &["sample", "--points", "no such file"]);
+    assert!(message.starts_with("error: no such file could not be read: "), "{message}");
+    for more in [["--surface", "torus"], ["--formula", "x"], ["--param", "a=2"]] {
+        let message = fails(2, &["sample", "--points", "a.ply", more[0], more[1]]);
+        assert!(message.contains("cannot be used with"), "{message}");
+    }
+    for centres in ["99", "801"] {
+        let message = fails(2, &["sample", "--points", "a.ply", "--centres", centres]);
+        assert!(message.contains("100..=800"), "{message}");
+    }
+}
+
+#[test]
+fn a_file_of_two_gigabytes_is_refused_before_it_is_read() {
+    let path = file("huge.ply");
+    // The file has a size and no content.
+    let huge = std::fs::File::create(&path).expect("a file can be created");
+    huge.set_len(2_000_000_000).expect("a size can be set");
+    let message = fails(2, &["sample", "--points", path.to_str().expect("a plain path")]);
+    std::fs::remove_file(&path).expect("the file can be removed");
+    assert!(message.contains("the file has 2000 MB, and up to 50 MB are read"), "{message}");
+}

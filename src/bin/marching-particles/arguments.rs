@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use marching_particles::math::Bounds;
+use marching_particles::points::job::{CENTRES, DEFAULT_CENTRES};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -58,7 +59,7 @@ pub(crate) enum Command {
 const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
-Name a surface or give a formula. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
+Name a surface, give a formula, or give a file of points, with or without normals. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
 their number. Without --out nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
@@ -71,12 +72,13 @@ Examples:
   marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
   marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
   marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 4 --radius 0.05
+  marching-particles sample --points scan.ply --centres 400 --out even.ply
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
 Exit codes:
   0  done
-  1  a file could not be written
-  2  the command, the formula or a setting cannot be understood
+  1  a file could not be read or written
+  2  the command, the formula, a setting or a file of points cannot be understood
   3  there is nothing to sample: no surface in the box, a constant or undefined formula
   4  more particles than the limit; what was placed before it was reached is written";
 
@@ -90,6 +92,18 @@ pub(crate) struct Sample {
     /// Formula of the surface; with --surface, in the place of its own
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
+
+    /// File of points or of a mesh: PLY, OBJ, STL or XYZ, up to 50 MB. A smooth surface goes through some of its points, as far
+    /// from each other as can be. Normals come from the file, else from its faces, else they are estimated
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
+    pub(crate) points: Option<PathBuf>,
+
+    /// Points of --points that the surface goes through, 100 to 800: more follow finer details and take longer
+    #[arg(
+        long, value_name = "N", requires = "points", default_value_t = DEFAULT_CENTRES, help_heading = "Surface",
+        value_parser = clap::value_parser!(u32).range(i64::from(*CENTRES.start())..=i64::from(*CENTRES.end()))
+    )]
+    pub(crate) centres: u32,
 
     /// Value of a parameter; once for each
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]

@@ -5,9 +5,9 @@ use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// A file could not be written.
+/// A file could not be read or written.
 pub(crate) const FILE: u8 = 1;
-/// The command, the formula or a setting cannot be understood. Also clap's code.
+/// The command, the formula, a setting or a file of points cannot be understood. Also clap's code.
 pub(crate) const USAGE: u8 = 2;
 /// There is nothing to sample.
 pub(crate) const NOTHING: u8 = 3;
@@ -25,6 +25,8 @@ pub(crate) enum Failure {
     Nothing(String),
     /// More particles than the limit would be placed.
     Limit(String),
+    /// A file could not be opened or read.
+    Unreadable { path: PathBuf, error: std::io::Error },
     /// A file could not be written.
     File { path: PathBuf, error: std::io::Error },
     /// Standard output is gone: whoever read it has read enough.
@@ -37,7 +39,7 @@ impl Failure {
             Self::Formula { .. } | Self::Usage(_) => USAGE,
             Self::Nothing(_) => NOTHING,
             Self::Limit(_) => LIMIT,
-            Self::File { .. } => FILE,
+            Self::File { .. } | Self::Unreadable { .. } => FILE,
             Self::Output => 0,
         })
     }
@@ -59,6 +61,9 @@ impl fmt::Display for Failure {
             Self::Formula { text, error } => formula(f, text, error),
             Self::Usage(message) | Self::Nothing(message) | Self::Limit(message) => {
                 write!(f, "error: {message}")
+            }
+            Self::Unreadable { path, error } => {
+                write!(f, "error: {} could not be read: {error}", path.display())
             }
             Self::File { path, error } => {
                 write!(f, "error: {} could not be written: {error}", path.display())

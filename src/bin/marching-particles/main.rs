@@ -2,6 +2,7 @@
 
 mod arguments;
 mod failure;
+mod points;
 mod sample;
 mod summary;
 mod surfaces;

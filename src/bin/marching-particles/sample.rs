@@ -2,14 +2,14 @@
 
 use crate::arguments::{Gaps, Law, Length, Placement as Placed, Sample};
 use crate::failure::{Failure, LIMIT};
-use crate::summary;
+use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
-use marching_particles::field::model::{self, Model, ModelInfo};
+use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::Bounds;
-use marching_particles::points::models;
+use marching_particles::points::fit::Fit;
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason,
 };
@@ -32,6 +32,8 @@ const ROOM: f64 = 1.1;
 /// Seconds of wall time by phase.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
+    /// Reading points and solving for the surface through them.
+    pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
     pub(crate) relaxation: f64,
@@ -64,10 +66,20 @@ pub(crate) struct Outcome {
 pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out)?;
     let mut session = Session::new();
-    let answer = set_field(&mut session, arguments)?;
+    let mut seconds = Seconds::default();
+    let clock = Clock::start();
+    let answer = match fit(arguments)? {
+        Some(fit) => {
+            seconds.points = clock.seconds();
+            let bounds = arguments.bounds.unwrap_or(fit.bounds);
+            session
+                .set_points(fit.data, fit.info, bounds)
+                .map_err(|error| Failure::Usage(error.to_string()))?
+        }
+        None => set_field(&mut session, arguments)?,
+    };
     let settings = settings(arguments, &answer.bounds);
 
-    let mut seconds = Seconds::default();
     let clock = Clock::start();
     let start = session.start(&settings).map_err(|error| Failure::Usage(error.to_string()))?;
     seconds.seeding += clock.seconds();
@@ -153,10 +165,26 @@ fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
         .collect()
 }
 
+/// The surface through the points of a file or of a built-in model, if that is what is asked for.
+fn fit(arguments: &Sample) -> Result<Option<Fit>, Failure> {
+    let model = arguments.surface.as_deref().and_then(model::find);
+    let bar = bar(arguments.quiet || arguments.points.is_none() && model.is_none());
+    let fit = match (&arguments.points, model) {
+        (Some(path), _) => Some(points::of_file(path, arguments.centres, &bar)?),
+        (None, Some(model)) if arguments.formula.is_some() || !arguments.parameters.is_empty() => {
+            return Err(Failure::Usage(format!(
+                "the model `{}` is made of points: it has no formula and no parameters",
+                model.id
+            )));
+        }
+        (None, Some(model)) => Some(points::of_model(model.id, &bar)?),
+        (None, None) => None,
+    };
+    bar.finish_and_clear();
+    Ok(fit)
+}
+
 fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, Failure> {
-    if let Some(model) = arguments.surface.as_deref().and_then(model::find) {
-        return set_model(session, model, arguments);
-    }
     let of_surface = arguments.surface.as_deref().and_then(gallery::find);
     // A formula of one's own is not the default surface's: neither are its parameters and its box.
     let declare = match of_surface {
@@ -188,20 +216,6 @@ fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, F
         }
     }
     Ok(answer)
-}
-
-/// A built-in model, which has neither formula nor parameters.
-fn set_model(session: &mut Session, model: &Model, arguments: &Sample) -> Result<FieldAnswer, Failure> {
-    if arguments.formula.is_some() || !arguments.parameters.is_empty() {
-        let id = model.id;
-        return Err(Failure::Usage(format!(
-            "the model `{id}` is made of points: it has no formula and no parameters"
-        )));
-    }
-    let fit = models::begin(model).finish().map_err(|error| Failure::Usage(error.to_string()))?;
-    session
-        .set_points(fit.data, fit.info, arguments.bounds.unwrap_or(fit.bounds))
-        .map_err(|error| Failure::Usage(error.to_string()))
 }
 
 fn unknown_surface(id: &str) -> String {

@@ -1,6 +1,7 @@
 //! A run's figures as text.
 
 use crate::sample::Outcome;
+use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
@@ -12,18 +13,9 @@ const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
-    let title = outcome.surface.as_deref().unwrap_or("formula");
     match &outcome.model {
-        None => writeln!(out, "{title}: {}", outcome.formula)?,
-        Some(model) => {
-            let credit = if model.credit.is_empty() { "" } else { ", " };
-            writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
-            writeln!(
-                out,
-                "{} points through {} centres, condition {:.0e}, residual mean {:.1e} and max {:.1e} of the diagonal",
-                model.points, model.centres, model.condition, model.residual_mean, model.residual_max
-            )?;
-        }
+        Some(model) => points(out, outcome.surface.as_deref().unwrap_or("points"), model)?,
+        None => writeln!(out, "{}: {}", outcome.surface.as_deref().unwrap_or("formula"), outcome.formula)?,
     }
     if !outcome.parameters.is_empty() {
         let values: Vec<String> =
@@ -38,6 +30,9 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         report.levels
     )?;
     let s = &outcome.seconds;
+    if outcome.model.is_some() {
+        write!(out, "points {}, ", time(s.points))?;
+    }
     writeln!(
         out,
         "seeding {}, generation {}, relaxation {}, quality {}",
@@ -52,13 +47,37 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     writeln!(out)?;
     table(out, outcome)?;
     writeln!(out, "\ndigest {}", report.digest)?;
-    for warning in &report.warnings {
+    let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
+    for warning in of_points.chain(&report.warnings) {
         writeln!(out, "warning: {warning}")?;
     }
     for file in &outcome.files {
         writeln!(out, "wrote {}", file.display())?;
     }
     Ok(())
+}
+
+/// What the surface through points is made of, and how well it meets them.
+fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()> {
+    let credit = if model.credit.is_empty() { "" } else { ", " };
+    writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
+    let normals = match model.normals {
+        NormalSource::Given => "given",
+        NormalSource::FromMesh => "from the faces",
+        NormalSource::Estimated => "estimated",
+    };
+    let [centres, points] = [model.centres, model.points].map(|count| grouped(count as usize));
+    writeln!(
+        out,
+        "a surface through {centres} of {points} points, normals {normals}, condition {:.0e}",
+        model.condition
+    )?;
+    writeln!(
+        out,
+        "distance of the points from it: mean {:.3} %, largest {:.3} % of their diagonal",
+        100.0 * model.residual_mean,
+        100.0 * model.residual_max
+    )
 }
 
 /// The rows of the report that are about quality, before and after the relaxation.

@@ -1,0 +1,53 @@
+//! Fields from points: a built-in model or a file.
+
+use crate::failure::Failure;
+use indicatif::ProgressBar;
+use marching_particles::points::fit::Fit;
+use marching_particles::points::job::{Job, JobError};
+use marching_particles::points::read::{MAX_BYTES, check_size};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Pieces of work between two updates of the bar.
+const BUDGET: u32 = 100;
+
+/// The field of a file.
+pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
+    let wrong = |error: JobError| Failure::Usage(format!("{}: {error}", path.display()));
+    let bytes = read(path).map_err(|error| Failure::Unreadable { path: path.to_owned(), error })?;
+    let bytes = bytes.map_err(wrong)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
+}
+
+/// The field of a built-in model.
+pub(crate) fn of_model(id: &str, bar: &ProgressBar) -> Result<Fit, Failure> {
+    solve(Job::model(id), bar).map_err(|error| Failure::Usage(error.to_string()))
+}
+
+/// The content of a file that is not too large; the size is asked first, where there is one.
+fn read(path: &Path) -> std::io::Result<Result<Vec<u8>, JobError>> {
+    let file = File::open(path)?;
+    let metadata = file.metadata()?;
+    if metadata.is_file()
+        && let Err(error) = check_size(metadata.len())
+    {
+        return Ok(Err(error.into()));
+    }
+    let mut bytes = Vec::new();
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    Ok(Ok(bytes))
+}
+
+fn solve(job: Result<Job, JobError>, bar: &ProgressBar) -> Result<Fit, JobError> {
+    let mut job = job?;
+    loop {
+        let progress = job.step(BUDGET)?;
+        bar.set_position((progress.fraction * 1000.0) as u64);
+        bar.set_message(progress.label);
+        if let Some(fit) = job.fit() {
+            return Ok(fit.clone());
+        }
+    }
+}
