@@ -6,7 +6,7 @@
 //! * The paper names no step lengths.
 //! * After the projection on the circle C(p, r_i + r_j) the radius is evaluated once more, on the surface.
 
-use super::{AdaptiveFront, MAX_CHILDREN, Occupant, Surface, What, initial_slots};
+use super::{AdaptiveFront, MAX_CHILDREN, Occupant, SLOTS, Surface, What, initial_slots};
 use crate::math::functions::{atan2, cos, sin};
 use crate::particles::{Particles, SlotFate};
 use crate::sampler::arcs::{Arc, Base, FIT, Room};
@@ -56,6 +56,10 @@ impl AdaptiveFront {
         let mut behind = ends.map(|(_, behind)| behind);
         let mut at = arc.start;
         for _ in 0..MAX_CHILDREN {
+            // Every child needs a slot to tell its fate in.
+            if self.born as usize + 1 >= SLOTS {
+                break;
+            }
             let child = self.pushed(surface, parent, base, last);
             let angle = child.angle();
             // Angles grow along the arc.

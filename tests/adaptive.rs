@@ -1,0 +1,403 @@
+//! The adaptive front of paper §5: children touch their parents, both placements cover, and nothing about a run depends on how
+//! it is cut into steps.
+
+use marching_particles::field::Field;
+use marching_particles::field::gallery;
+use marching_particles::particles::{Particles, SlotFate};
+use marching_particles::quality::{self, Figures, Sizes};
+use marching_particles::sampler::{
+    GapPolicy, LawKind, Phase, Placement, Sampler, Sampling, Settings, SizeMode, StopReason,
+};
+use marching_particles::spatial::CellGrid;
+use marching_particles::trace::{Event, Step};
+
+/// Smooth surfaces with their Euler numbers; positive, negative and mixed curvature.
+const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
+
+const PLACEMENTS: [Placement; 2] = [Placement::Direct, Placement::Faithful];
+
+/// About 4,000 particles, without relaxation.
+fn settings(placement: Placement) -> Settings {
+    Settings {
+        sampling: Sampling::Adaptive,
+        size_mode: SizeMode::Count,
+        count: 4_000,
+        placement,
+        relax_steps: 0,
+        ..Settings::default()
+    }
+}
+
+fn run(field: &mut dyn Field, surface: &gallery::Surface, settings: &Settings, budget: u32) -> Sampler {
+    let mut sampler = Sampler::new();
+    sampler.start(field, &surface.bounds, settings).expect("valid settings");
+    while sampler.step(field, budget).stop_reason.is_none() {}
+    sampler
+}
+
+fn sampled(surface: &str, settings: &Settings) -> Sampler {
+    let surface = gallery::find(surface).expect("a gallery surface");
+    run(&mut surface.field(), surface, settings, 5_000)
+}
+
+fn figures(surface: &str, particles: &Particles) -> Figures {
+    let surface = gallery::find(surface).expect("a gallery surface");
+    let mut field = surface.field();
+    let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..Default::default() };
+    quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
+        .figures
+}
+
+/// Largest circumradius of a triangle of neighbours, over that of three discs of their mean radius that touch.
+fn largest_hole(surface: &str, particles: &Particles) -> f32 {
+    let mut field = gallery::find(surface).expect("a gallery surface").field();
+    let mut largest = 0.0_f32;
+    for triangle in quality::triangles(&particles.position, &particles.normal, &mut field) {
+        let [a, b, c] = triangle.map(|i| particles.position[i as usize]);
+        let twice_area = (b - a).cross(c - a).length();
+        let around = (b - a).length() * (c - a).length() * (b - c).length() / (2.0 * twice_area);
+        let radius = triangle.iter().map(|&i| particles.radius[i as usize]).sum::<f32>() / 3.0;
+        largest = largest.max(around / (radius * 2.0 / 3.0_f32.sqrt()));
+    }
+    largest
+}
+
+/// Smallest distance over r_i + r_j between two particles of a sheet.
+fn closest(particles: &Particles) -> f32 {
+    let largest = particles.radius.iter().fold(0.0_f32, |a, &b| a.max(b));
+    let mut grid = CellGrid::new(3.0 * largest);
+    let mut found = Vec::new();
+    let mut least = f32::INFINITY;
+    for i in 0..particles.len() {
+        grid.gather(particles.position[i], particles.radius[i] + largest, &mut found);
+        for near in &found {
+            let j = near.index as usize;
+            if particles.normal[i].dot(particles.normal[j]) > 0.0 {
+                least = least.min(near.distance_sq.sqrt() / (particles.radius[i] + particles.radius[j]));
+            }
+        }
+        grid.insert(particles.position[i], i as u32);
+    }
+    least
+}
+
+/// Largest deviation of a child's distance from its parent from r_i + r_j, relative.
+fn untouched(particles: &Particles) -> f32 {
+    (0..particles.len()).filter(|&i| particles.parent[i] != Particles::NO_PARENT).fold(0.0, |most, i| {
+        let parent = particles.parent[i] as usize;
+        let distance = particles.position[i].distance(particles.position[parent]);
+        most.max((distance / (particles.radius[i] + particles.radius[parent]) - 1.0).abs())
+    })
+}
+
+#[test]
+fn children_touch_their_parents() {
+    for (surface, _) in SMOOTH {
+        let direct = sampled(surface, &settings(Placement::Direct));
+        assert!(untouched(direct.particles()) <= 2e-3, "{surface}: {}", untouched(direct.particles()));
+        // The radius of a child that was pushed is that at its place in the tangent plane until it is projected.
+        let faithful = sampled(surface, &settings(Placement::Faithful));
+        assert!(untouched(faithful.particles()) <= 0.1, "{surface}: {}", untouched(faithful.particles()));
+    }
+}
+
+#[test]
+fn both_placements_cover_and_crowd_nothing() {
+    for (surface, euler) in SMOOTH {
+        for placement in PLACEMENTS {
+            let sampler = sampled(surface, &settings(placement));
+            let particles = sampler.particles();
+            let figures = figures(surface, particles);
+            let context = format!("{surface}, {placement:?}, {} particles: {figures:?}", particles.len());
+            assert_eq!((figures.open, figures.components), (0, 1), "{context}");
+            assert!((figures.euler - euler).abs() <= 1, "{context}");
+            let hole = largest_hole(surface, particles);
+            assert!(hole <= 1.6, "{context}: a hole of {hole}");
+            // The match tolerance, given the rounding.
+            assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
+            assert!(figures.err_max <= 3e-4, "{context}");
+        }
+    }
+}
+
+#[test]
+fn ten_steps_even_the_sizes_out() {
+    for (surface, _) in SMOOTH {
+        for placement in PLACEMENTS {
+            let sampler = sampled(surface, &Settings { relax_steps: 10, ..settings(placement) });
+            let particles = sampler.particles();
+            let figures = figures(surface, particles);
+            let context = format!("{surface}, {placement:?}, {} particles: {figures:?}", particles.len());
+            assert!(figures.size_cv <= 0.12, "{context}");
+            assert!(
+                largest_hole(surface, particles) <= 1.6,
+                "{context}: {}",
+                largest_hole(surface, particles)
+            );
+            assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
+        }
+    }
+}
+
+#[test]
+fn direct_placement_is_better_for_a_third_of_the_evaluations() {
+    for (surface, _) in SMOOTH {
+        let [direct, faithful] = PLACEMENTS.map(|placement| {
+            // By radius, so that the work is one front and not the search for a count.
+            let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings(placement) };
+            let sampler = sampled(surface, &settings);
+            let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
+            let figures = figures(surface, sampler.particles());
+            (each, figures.size_cv, figures.six)
+        });
+        let context = format!("{surface}: evaluations, size_cv, six neighbours {direct:?} {faithful:?}");
+        assert!(direct.0 <= faithful.0 / 3.0, "{context}");
+        assert!(direct.0 <= 2.0, "{context}");
+        assert!(direct.1 <= faithful.1 && direct.2 >= faithful.2, "{context}");
+    }
+}
+
+#[test]
+fn how_a_run_is_cut_into_steps_does_not_change_it() {
+    for (surface, placement) in
+        [("ellipsoid", Placement::Direct), ("gyroid", Placement::Direct), ("torus", Placement::Faithful)]
+    {
+        let surface = gallery::find(surface).expect("a gallery surface");
+        let settings = Settings { count: 2_000, relax_steps: 3, ..settings(placement) };
+        let mut field = surface.field();
+        let whole = run(&mut field, surface, &settings, u32::MAX);
+        for budget in [1, 7, 1_000] {
+            let cut = run(&mut field, surface, &settings, budget);
+            assert_eq!(cut.particles().digest(), whole.particles().digest(), "{} by {budget}", surface.id);
+        }
+    }
+}
+
+#[test]
+fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
+    for (surface, _) in SMOOTH {
+        let equal = Settings {
+            size_mode: SizeMode::Radius,
+            radius_min_share: 0.006,
+            radius_max_share: 0.006,
+            ..settings(Placement::Direct)
+        };
+        let sampler = sampled(surface, &equal);
+        let radii = &sampler.particles().radius;
+        assert!(radii.iter().all(|r| (r / radii[0] - 1.0).abs() < 1e-5), "{surface}");
+        let uniform = sampled(surface, &Settings { sampling: Sampling::Uniform, ..equal });
+        let [adaptive, uniform] = [&sampler, &uniform].map(|s| figures(surface, s.particles()));
+        let context = format!("{surface}: {adaptive:?} {uniform:?}");
+        assert!(adaptive.six >= 0.85 && adaptive.size_cv <= 0.11, "{context}");
+        assert!(adaptive.size_cv <= uniform.size_cv, "{context}");
+    }
+}
+
+#[test]
+fn a_wanted_count_is_met() {
+    for (surface, radius_law, count) in [
+        ("ellipsoid", LawKind::ChordError, 3_000),
+        ("torus", LawKind::MaxCurvature, 12_000),
+        ("tanglecube", LawKind::SumOfCurvatures, 9_000),
+    ] {
+        let sampler = sampled(surface, &Settings { count, radius_law, ..settings(Placement::Direct) });
+        let miss = sampler.particles().len() as f64 / f64::from(count) - 1.0;
+        assert!(miss.abs() <= 0.03, "{surface}, {radius_law:?}: {} of {count}", sampler.particles().len());
+    }
+}
+
+#[test]
+fn radii_follow_the_curvature_and_neighbours_differ_little() {
+    let settings = settings(Placement::Direct);
+    let sampler = sampled("ellipsoid", &settings);
+    let particles = sampler.particles();
+    let (least, most) =
+        particles.radius.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &r| (a.min(r), b.max(r)));
+    // The curvature ranges from 1.4 to 4, and the radius goes with the square root.
+    assert!(most / least > 1.6, "{least} to {most}");
+    let ratio = ((1.0 + settings.grading) / (1.0 - settings.grading)) as f32;
+    for i in 1..particles.len() {
+        let (a, b) = (particles.radius[i], particles.radius[particles.parent[i] as usize]);
+        assert!(a / b < 1.02 * ratio && b / a < 1.02 * ratio, "{i}: {a} beside {b}");
+    }
+}
+
+#[test]
+fn the_limit_and_the_stop_button_leave_whole_particles() {
+    for placement in PLACEMENTS {
+        let capped = sampled(
+            "torus",
+            &Settings { size_mode: SizeMode::Radius, max_particles: 700, ..settings(placement) },
+        );
+        assert_eq!(capped.particles().len(), 700);
+        assert!(capped.counts().fates.capped > 0);
+
+        let surface = gallery::find("torus").expect("a gallery surface");
+        let mut field = surface.field();
+        let mut sampler = Sampler::new();
+        let settings = settings(placement);
+        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        let settled = loop {
+            let progress = sampler.step(&mut field, 37);
+            if progress.particles > 500 && progress.phase == Phase::Generation {
+                break progress.particles;
+            }
+        };
+        sampler.cancel();
+        let progress = sampler.step(&mut field, 1);
+        assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
+        assert_eq!((progress.particles, sampler.particles().len()), (settled, settled));
+    }
+}
+
+#[test]
+fn every_gallery_surface_comes_to_an_end_inside_its_box() {
+    for surface in gallery::SURFACES {
+        // Pushing is slow, and at its worst where the surface is singular.
+        let placements = if surface.smooth { &PLACEMENTS[..1] } else { &PLACEMENTS };
+        for &placement in placements {
+            let mut field = surface.field();
+            let settings = Settings { count: 1_500, relax_steps: 2, ..settings(placement) };
+            let sampler = run(&mut field, surface, &settings, 10_000);
+            let particles = sampler.particles();
+            let context = format!("{}, {placement:?}, {} particles", surface.id, particles.len());
+            assert!(particles.len() > 500, "{context}");
+            for i in 0..particles.len() {
+                assert!(surface.bounds.contains(particles.position[i]), "{context}: {i}");
+                assert!((particles.normal[i].length() - 1.0).abs() < 1e-5, "{context}: {i}");
+                assert!(particles.radius[i] > 0.0 && particles.radius[i].is_finite(), "{context}: {i}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_surface_cut_by_its_box_ends_there() {
+    let sampler = sampled("gyroid", &settings(Placement::Direct));
+    assert!(sampler.counts().fates.outside > 50, "{:?}", sampler.counts().fates);
+}
+
+#[test]
+fn slots_and_counts_tell_the_same() {
+    for surface in ["torus", "gyroid", "kummer"] {
+        for placement in PLACEMENTS {
+            let sampler = sampled(
+                surface,
+                &Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings(placement) },
+            );
+            let (particles, fates) = (sampler.particles(), sampler.counts().fates);
+            let count = |fate| {
+                let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
+                slots.filter(|&f| f == fate).count() as u64
+            };
+            let context = format!("{surface}, {placement:?}");
+            assert_eq!(count(SlotFate::Added), fates.added, "{context}");
+            assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
+            assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");
+            assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{context}");
+            let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
+            assert_eq!(fates.added + seeds, particles.len() as u64, "{context}");
+            assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{context}");
+        }
+    }
+}
+
+#[test]
+fn levels_are_rings_in_the_order_of_the_queue() {
+    for placement in PLACEMENTS {
+        let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings(placement) });
+        let particles = sampler.particles();
+        assert!(particles.level.is_sorted());
+        assert!(particles.parent[1..].is_sorted());
+    }
+}
+
+#[test]
+fn a_particles_children_can_be_replayed_from_the_log() {
+    let surface = gallery::find("ellipsoid").expect("a gallery surface");
+    for placement in PLACEMENTS {
+        let settings = Settings { size_mode: SizeMode::Radius, chord_error: 2e-4, ..settings(placement) };
+        let mut field = surface.field();
+        let silent = run(&mut field, surface, &settings, 10_000);
+        assert!(silent.trace().events().is_empty());
+        for followed in [0, 40, 333] {
+            let mut sampler = Sampler::new();
+            sampler.follow(Some(followed));
+            sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+            while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
+            let particles = sampler.particles();
+            assert_eq!(particles.digest(), silent.particles().digest(), "the log changes nothing");
+            replay(particles, followed, sampler.trace().events(), placement);
+        }
+    }
+}
+
+/// Walks through the events as Figures 7 and 8 do, and compares what comes out with the columns.
+fn replay(particles: &Particles, followed: u32, events: &[Event], placement: Placement) {
+    let i = followed as usize;
+    let Event::Parent { position, normal, radius, zero } = events[0] else { panic!("{:?}", events[0]) };
+    assert_eq!(position, particles.position[i]);
+    assert_eq!(radius, particles.radius[i]);
+    assert!(zero.dot(normal).abs() < 1e-5);
+    let neighbours = events.iter().filter(|event| matches!(event, Event::Neighbour { .. })).count();
+    assert_eq!(neighbours == 0, followed == 0, "only the first particle is alone");
+
+    let mut children: Vec<u32> = Vec::new();
+    let count = events.iter().filter(|e| matches!(e, Event::Child { step: Step::Start { .. }, .. })).count();
+    for number in 0..count as u32 {
+        let steps: Vec<Step> = events
+            .iter()
+            .filter_map(|event| match *event {
+                Event::Child { child, step } if child == number => Some(step),
+                _ => None,
+            })
+            .collect();
+        let Step::Start { position: start, .. } = steps[0] else { panic!("{steps:?}") };
+        let (mut at, mut size) = (start, 0.0);
+        let (mut pushes, mut fits, mut landed) = (0, false, None);
+        let mut overlap_before = f32::INFINITY;
+        for step in &steps[1..] {
+            match *step {
+                Step::Start { .. } => panic!("a child starts once: {steps:?}"),
+                Step::Push { position: p, radius: r } => {
+                    // Away from the parent, until they touch.
+                    assert!(at.distance(position) < radius + r);
+                    assert!(p.distance(position) > at.distance(position));
+                    (at, size, pushes) = (p, r, pushes + 1);
+                }
+                Step::PushOnCircle { position: p, radius: r, overlap } => {
+                    assert!((p.distance(position) / (radius + r) - 1.0).abs() < 1e-4);
+                    assert!(overlap < overlap_before);
+                    (at, size, overlap_before) = (p, r, overlap);
+                }
+                Step::Room { phi_rad, tau_rad } => fits = tau_rad >= 0.5 * phi_rad,
+                Step::Landed { position: p, normal, radius: r } => {
+                    assert!((normal.length() - 1.0).abs() < 1e-5);
+                    landed = Some((p, r));
+                }
+                Step::Fate { fate, particle } => {
+                    assert_eq!(fate == SlotFate::Added, particle != Particles::NO_PARENT);
+                    if fate == SlotFate::Added {
+                        let (p, r) = landed.expect("a child lands before it is added");
+                        let k = particle as usize;
+                        assert_eq!(
+                            (p, r, followed),
+                            (particles.position[k], particles.radius[k], particles.parent[k])
+                        );
+                        assert!(fits, "{steps:?}");
+                        children.push(particle);
+                    }
+                }
+            }
+        }
+        assert!(matches!(steps.last(), Some(Step::Fate { .. })), "{steps:?}");
+        if placement == Placement::Faithful {
+            assert!(pushes > 5 && at.distance(position) >= (radius + size) * (1.0 - 1e-4), "{steps:?}");
+        }
+    }
+    let mut columns: Vec<u32> =
+        (0..particles.len() as u32).filter(|&k| particles.parent[k as usize] == followed).collect();
+    children.sort_unstable();
+    columns.sort_unstable();
+    assert_eq!(children, columns, "{placement:?}: every child of {followed}, and no other");
+}
