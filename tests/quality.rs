@@ -450,6 +450,88 @@ fn edges_are_compared_with_the_wanted_radii() {
     close("size_cv", f.size_cv, f.edge_cv, 1e-6);
 }
 
+/// A hexagonal lattice in the logarithm: sizes grow in proportion to the distance from the origin, six neighbours each.
+/// Points in the square from 0.55 to 1.35, and half the distance of neighbours at each, to first order in `step`.
+fn growing_lattice(step: f64) -> (Vec<Vec3>, Vec<f32>) {
+    let (mut points, mut radii) = (Vec::new(), Vec::new());
+    let reach = (1.0 / step) as i64 + 2;
+    for row in -reach..=4 * reach {
+        for column in -3 * reach..=2 * reach {
+            let logarithm = step * (column as f64 + 0.5 * (row & 1) as f64);
+            let angle = step * 0.5 * 3.0_f64.sqrt() * row as f64;
+            let size = logarithm.exp();
+            let (x, y) = (size * angle.cos(), size * angle.sin());
+            if angle.abs() < 2.0 && x > 0.55 && x < 1.35 && y > 0.55 && y < 1.35 {
+                points.push(Vec3::new(x as f32, y as f32, 0.0));
+                radii.push((0.5 * step * size) as f32);
+            }
+        }
+    }
+    (points, radii)
+}
+
+#[test]
+fn smoothly_growing_particles_are_measured_against_their_own_size() {
+    let step = 0.02;
+    let (points, radii) = growing_lattice(step);
+    let bounds = Bounds { min: [0.55, 0.55, -0.5], max: [1.35, 1.35, 0.5] };
+    let options = Options { area: Some(0.64), sizes: Sizes::Given(&radii), ..Options::default() };
+    let f = measure(&points, &[], &mut plane(), Some(&bounds), &options).figures;
+    println!("{} points: {f:#?}", points.len());
+    // A neighbour at δ = step · exp(iθ) in the logarithm is 2 |sinh(δ/2)| / (step cosh(Re δ/2)) sums of radii away.
+    let ratios = [0.0, 60.0_f64, 120.0].map(|angle| {
+        let (re, im) = (0.5 * step * angle.to_radians().cos(), 0.5 * step * angle.to_radians().sin());
+        let sinh_sq = re.sinh() * re.sinh() + im.sin() * im.sin();
+        2.0 * sinh_sq.sqrt() / (step * re.cosh())
+    });
+    let mean = ratios.iter().sum::<f64>() / 3.0;
+    let variation = (ratios.iter().map(|r| (r - mean) * (r - mean)).sum::<f64>() / 3.0).sqrt() / mean;
+    close("size_cv", f.size_cv, variation, 1e-5);
+    close("overlap_min", f.overlap_min, ratios.into_iter().fold(1.0, f64::min), 1e-4);
+    // The cells fill the square but for the cut ones at its edge.
+    close("cover_local", f.cover_local, 1.0, 0.03);
+    assert!(f.edge_cv > 0.1 && f.cover > 1.2, "the sizes differ: {} {}", f.edge_cv, f.cover);
+    assert_eq!(f.six, 1.0);
+}
+
+#[test]
+fn a_missing_particle_is_a_hole_of_its_own_size() {
+    let step = 0.02;
+    let (points, radii) = growing_lattice(step);
+    let bounds = Bounds { min: [0.55, 0.55, -0.5], max: [1.35, 1.35, 0.5] };
+    let hole_at = |middle: Vec3| {
+        let nearest = |a: &&usize, b: &&usize| {
+            (points[**a] - middle).length().total_cmp(&(points[**b] - middle).length())
+        };
+        let all: Vec<usize> = (0..points.len()).collect();
+        let gone = *all.iter().min_by(nearest).expect("a point");
+        let kept = || all.iter().filter(|&&i| i != gone);
+        let position: Vec<Vec3> = kept().map(|&i| points[i]).collect();
+        let radius: Vec<f32> = kept().map(|&i| radii[i]).collect();
+        let options = Options { area: Some(0.64), sizes: Sizes::Given(&radius), ..Options::default() };
+        measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
+    };
+    // Without a point the six around it are a spacing away from its place: √3 times as far as from an ideal hole.
+    let root_3 = 3.0_f64.sqrt();
+    let small = hole_at(Vec3::new(0.72, 0.72, 0.0));
+    close("cover_local, small", small.cover_local, root_3, 0.05);
+    let large = hole_at(Vec3::new(1.15, 1.15, 0.0));
+    close("cover_local, large", large.cover_local, root_3, 0.05);
+    assert!(large.cover > 1.4 * small.cover, "{} {}", large.cover, small.cover);
+}
+
+#[test]
+fn equal_radii_make_the_local_hole_the_hole() {
+    let points = fibonacci(3000);
+    let radii = vec![0.7; points.len()];
+    let options = Options { sizes: Sizes::Given(&radii), ..Options::default() };
+    let f = measure(&points, &[], &mut sphere(), Some(&Bounds::cube(1.5)), &options).figures;
+    close("cover_local", f.cover_local, f.cover, 1e-5);
+    close("overlap_min", f.overlap_min, f.nn_min * f.d_hex / 1.4, 1e-5);
+    let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
+    assert!(f.cover_local.is_nan() && f.overlap_min.is_nan());
+}
+
 #[test]
 fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     let points = fibonacci(500);

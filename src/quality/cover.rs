@@ -48,76 +48,111 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     offset.is_finite().then(|| (a + offset, offset.length()))
 }
 
-/// Largest distance from a Voronoi corner of the surface (the projected circumcentre of a triangle) that passes `counts` to
-/// its nearest point.
-pub(super) fn largest_gap(
-    field: &mut dyn Field,
-    tree: &Tree,
-    triangles: &[[u32; 3]],
-    counts: &dyn Fn(Vec3) -> bool,
-) -> f64 {
-    let mut place = Vec::with_capacity(BATCH);
-    let mut leash = Vec::with_capacity(BATCH);
-    let mut largest_sq = 0.0_f32;
-    for chunk in triangles.chunks(BATCH) {
-        place.clear();
-        leash.clear();
+/// Where places are looked for, and which count.
+pub(super) struct Places<'a> {
+    pub(super) tree: &'a Tree,
+    pub(super) mesh: &'a [[u32; 3]],
+    /// Whether a place counts.
+    pub(super) counts: &'a dyn Fn(Vec3) -> bool,
+    /// Radius of an ideal hole between some points; NaN where there is no ideal.
+    pub(super) ideal: &'a dyn Fn(&[u32]) -> f32,
+}
+
+/// The largest holes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Holes {
+    /// Largest distance of a place to its nearest point.
+    pub(super) widest: f64,
+    /// Largest such distance over that in an ideal hole there.
+    pub(super) relative: f64,
+}
+
+impl Holes {
+    pub(super) fn or(self, other: Self) -> Self {
+        Self { widest: self.widest.max(other.widest), relative: self.relative.max(other.relative) }
+    }
+}
+
+/// Some places on their way to the surface.
+#[derive(Default)]
+struct Batch {
+    place: Vec<Vec3>,
+    leash: Vec<f32>,
+    ideal: Vec<f32>,
+}
+
+impl Batch {
+    fn clear(&mut self) {
+        self.place.clear();
+        self.leash.clear();
+        self.ideal.clear();
+    }
+
+    fn push(&mut self, place: Vec3, leash: f32, ideal: f32) {
+        self.place.push(place);
+        self.leash.push(leash);
+        self.ideal.push(ideal);
+    }
+
+    fn project(&mut self, field: &mut dyn Field) -> impl Iterator<Item = (Vec3, f32, f32)> {
+        project(field, &mut self.place, &self.leash);
+        self.place.iter().zip(&self.leash).zip(&self.ideal).map(|((&p, &leash), &ideal)| (p, leash, ideal))
+    }
+}
+
+/// Holes around the Voronoi corners of the surface, the projected circumcentres of the triangles.
+pub(super) fn largest_gap(field: &mut dyn Field, places: &Places) -> Holes {
+    let mut batch = Batch::default();
+    let (mut widest_sq, mut relative_sq) = (0.0_f32, 0.0_f32);
+    for chunk in places.mesh.chunks(BATCH) {
+        batch.clear();
         for &triangle in chunk {
-            if let Some((centre, radius)) = circumcentre(&tree.position, triangle) {
-                place.push(centre.as_vec3());
-                leash.push(radius as f32);
+            if let Some((centre, radius)) = circumcentre(&places.tree.position, triangle) {
+                batch.push(centre.as_vec3(), radius as f32, (places.ideal)(&triangle));
             }
         }
-        project(field, &mut place, &leash);
-        for (&p, &radius) in place.iter().zip(&leash) {
+        for (p, radius, ideal) in batch.project(field) {
             // A projected corner is about as far from its nearest point as the circumradius says; look no farther
-            // than twice that. Corners that cannot beat the largest gap so far are passed over.
-            if 4.0 * radius * radius > largest_sq {
-                let gap_sq = tree.nearest_sq(p, u32::MAX, 4.0 * radius * radius);
-                if gap_sq > largest_sq && counts(p) {
-                    largest_sq = gap_sq;
+            // than twice that. Corners that cannot beat the largest gaps so far are passed over.
+            let (bound_sq, ideal_sq) = (4.0 * radius * radius, ideal * ideal);
+            if bound_sq > widest_sq || bound_sq > relative_sq * ideal_sq {
+                let gap_sq = places.tree.nearest_sq(p, u32::MAX, bound_sq);
+                if (gap_sq > widest_sq || gap_sq > relative_sq * ideal_sq) && (places.counts)(p) {
+                    widest_sq = widest_sq.max(gap_sq);
+                    relative_sq = relative_sq.max(gap_sq / ideal_sq);
                 }
             }
         }
     }
-    f64::from(largest_sq).sqrt()
+    Holes { widest: f64::from(widest_sq).sqrt(), relative: f64::from(relative_sq).sqrt() }
 }
 
 /// Distances from random places of the surface to their nearest point.
 pub(super) struct Gaps {
-    /// Largest distance.
-    pub(super) largest: f64,
+    pub(super) holes: Holes,
     /// Mean squared distance; NaN without a place.
     pub(super) mean_sq: f64,
 }
 
-/// About `count` places, uniform over the area of the `triangles` (stratified: one in each equal share of it), projected
-/// to the surface; those that pass `counts`.
-pub(super) fn random_gaps(
-    field: &mut dyn Field,
-    tree: &Tree,
-    triangles: &[[u32; 3]],
-    counts: &dyn Fn(Vec3) -> bool,
-    count: usize,
-    seed: u64,
-) -> Gaps {
+/// About `count` places, uniform over the area of the triangles (stratified: one in each equal share of it), projected
+/// to the surface; those that count.
+pub(super) fn random_gaps(field: &mut dyn Field, places: &Places, count: usize, seed: u64) -> Gaps {
+    let (tree, triangles) = (places.tree, places.mesh);
     let total: f64 = triangles.iter().map(|&t| area_vector(&tree.position, t).length()).sum();
     let share = total / count as f64;
     let mut random = Pcg32::seed_from_u64(seed);
     let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
-    let mut place = Vec::with_capacity(BATCH);
-    let mut leash = Vec::with_capacity(BATCH);
-    let (mut seen, mut sum, mut largest_sq) = (0_usize, 0.0_f64, 0.0_f32);
-    let mut measure = |place: &mut Vec<Vec3>, leash: &mut Vec<f32>| {
-        project(field, place, leash);
-        for (&p, &leash) in place.iter().zip(leash.iter()).filter(|(p, _)| counts(**p)) {
+    let mut batch = Batch::default();
+    let (mut seen, mut sum, mut widest_sq, mut relative_sq) = (0_usize, 0.0_f64, 0.0_f32, 0.0_f32);
+    let mut measure = |batch: &mut Batch| {
+        for (p, leash, ideal) in batch.project(field).filter(|place| (places.counts)(place.0)) {
             let gap_sq = tree.nearest_sq(p, u32::MAX, 4.0 * leash * leash);
-            largest_sq = largest_sq.max(gap_sq);
+            widest_sq = widest_sq.max(gap_sq);
+            relative_sq = relative_sq.max(gap_sq / (ideal * ideal));
             sum += f64::from(gap_sq);
             seen += 1;
         }
-        place.clear();
-        leash.clear();
+        batch.clear();
     };
     let mut passed = 0.0;
     let mut next = share * unit();
@@ -129,17 +164,18 @@ pub(super) fn random_gaps(
             // Uniform in the triangle: the square root undoes the crowding towards `a`.
             let (s, t) = (unit().sqrt(), unit());
             let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
-            place.push(p.as_vec3());
             // The nearest point is no farther than the nearest corner; a projection moves less than that.
             let corner = (p - a).length().min((p - b).length()).min((p - c).length());
-            leash.push(corner.max((b - c).length() * 0.5) as f32);
-            if place.len() == BATCH {
-                measure(&mut place, &mut leash);
+            let leash = corner.max((b - c).length() * 0.5) as f32;
+            batch.push(p.as_vec3(), leash, (places.ideal)(&triangle));
+            if batch.place.len() == BATCH {
+                measure(&mut batch);
             }
             next = share * (stratum + unit());
             stratum += 1.0;
         }
     }
-    measure(&mut place, &mut leash);
-    Gaps { largest: f64::from(largest_sq).sqrt(), mean_sq: sum / seen as f64 }
+    measure(&mut batch);
+    let holes = Holes { widest: f64::from(widest_sq).sqrt(), relative: f64::from(relative_sq).sqrt() };
+    Gaps { holes, mean_sq: sum / seen as f64 }
 }

@@ -1,11 +1,11 @@
 //! The figures themselves.
 
 use super::border::Border;
-use super::components;
+use super::cover::{Holes, Places};
 use super::fans::unroll;
+use super::sizes::{Wanted, length, mutual};
 use super::triangles::{Triangles, area_vector, topology};
-use super::{Options, Scene, Sizes, cover, probe};
-use crate::differential::exact_curvature;
+use super::{Options, Scene, components, cover, probe};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
 use crate::spatial::tree::{key, unkey};
@@ -82,6 +82,13 @@ pub struct Figures {
     pub edge_cv: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
     pub size_cv: f64,
+    /// Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii there
+    /// (the mean of those of the points around the hole), all scaled by one factor so that the cells have the area. 1 is
+    /// ideal, and where all radii are equal this is `cover`.
+    pub cover_local: f64,
+    /// Smallest distance of natural neighbours over the sum of their wanted radii, in which a duplicate has 0. 1 where
+    /// particles just touch.
+    pub overlap_min: f64,
     /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
     pub dup: usize,
     /// Points with a non-finite coordinate; left out of everything.
@@ -129,6 +136,8 @@ impl Default for Figures {
             a_gt90: undefined,
             edge_cv: undefined,
             size_cv: undefined,
+            cover_local: undefined,
+            overlap_min: undefined,
             dup: 0,
             not_finite: 0,
             nrm_mean: undefined,
@@ -170,21 +179,21 @@ impl Histogram {
 
 /// Mean and spread of numbers that arrive one by one (Welford's update).
 #[derive(Clone, Copy, Debug, Default)]
-struct Moments {
+pub(super) struct Moments {
     count: f64,
     mean: f64,
     squares: f64,
 }
 
 impl Moments {
-    fn add(&mut self, value: f64) {
+    pub(super) fn add(&mut self, value: f64) {
         self.count += 1.0;
         let step = value - self.mean;
         self.mean += step / self.count;
         self.squares += step * (value - self.mean);
     }
 
-    fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         if self.count > 0.0 { self.mean } else { f64::NAN }
     }
 
@@ -193,7 +202,7 @@ impl Moments {
         (self.squares / self.count).sqrt()
     }
 
-    fn variation(&self) -> f64 {
+    pub(super) fn variation(&self) -> f64 {
         self.deviation() / self.mean()
     }
 }
@@ -239,7 +248,13 @@ pub(super) fn figures(
 
     spacing(scene, &inner, &mut figures);
     order(scene, &inner, &mut figures);
-    edges(scene, &inner, field, options.sizes, &mut figures);
+    edges(scene, &inner, &mut figures);
+    let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area);
+    if let Some(wanted) = &wanted {
+        let (variation, least) = wanted.edges(scene, &inner);
+        figures.size_cv = variation;
+        figures.overlap_min = if duplicates > 0 { 0.0 } else { least };
+    }
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
     shapes(scene, &kept, &mut figures);
@@ -256,12 +271,17 @@ pub(super) fn figures(
     };
     if !mesh.is_empty() {
         let samples = n.max(options.samples).min(MOST_SAMPLES);
-        let gaps = cover::random_gaps(field, &scene.tree, mesh, &is_inner, samples, options.seed);
-        let largest = gaps.largest.max(cover::largest_gap(field, &scene.tree, mesh, &is_inner));
-        let missed = bounds.map_or(Missed::default(), |bounds| {
-            missed(scene, field, bounds, options.seed, &is_inner, largest)
-        });
-        figures.cover = largest.max(missed.largest) / (figures.d_hex / SQRT_3);
+        let ideal = |points: &[u32]| wanted.as_ref().map_or(f32::NAN, |wanted| wanted.hole_between(points));
+        let place = Places { tree: &scene.tree, mesh, counts: &is_inner, ideal: &ideal };
+        let gaps = cover::random_gaps(field, &place, samples, options.seed);
+        let holes = gaps.holes.or(cover::largest_gap(field, &place));
+        let missed =
+            bounds.map_or(Missed::default(), |bounds| missed(&place, field, bounds, options.seed, holes));
+        let holes = holes.or(missed.holes);
+        figures.cover = holes.widest / (figures.d_hex / SQRT_3);
+        if wanted.is_some() {
+            figures.cover_local = holes.relative;
+        }
         let mean_sq = gaps.mean_sq * (1.0 - missed.share) + missed.sum_sq;
         figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
     }
@@ -275,31 +295,31 @@ struct Missed {
     share: f64,
     /// Sum of the squared distances of such places to the nearest particle, over the number of all places.
     sum_sq: f64,
-    /// Largest distance.
-    largest: f64,
+    holes: Holes,
 }
 
-fn missed(
-    scene: &Scene,
-    field: &mut dyn Field,
-    bounds: &Bounds,
-    seed: u64,
-    is_inner: &dyn Fn(Vec3) -> bool,
-    spanned: f64,
-) -> Missed {
+fn missed(place: &Places, field: &mut dyn Field, bounds: &Bounds, seed: u64, spanned: Holes) -> Missed {
     let mut missed = Missed::default();
     let (mut all, mut far) = (0.0, 0.0);
+    let mut nearest = Vec::new();
     for p in probe::crossings(field, bounds, seed) {
-        if !is_inner(p) {
+        if !(place.counts)(p) {
             continue;
         }
         all += 1.0;
-        let gap = f64::from(scene.tree.nearest_sq(p, u32::MAX, f32::INFINITY)).sqrt();
+        place.tree.nearest_many(p, 1, |_| true, &mut nearest);
+        let Some(&near) = nearest.first() else { continue };
+        let (gap_sq, index) = unkey(near);
+        let gap = f64::from(gap_sq).sqrt();
+        let relative = gap / f64::from((place.ideal)(&[index]));
         // A hundredth more for the rounding of the places.
-        if gap > 1.01 * spanned {
+        if gap > 1.01 * spanned.widest {
             far += 1.0;
             missed.sum_sq += gap * gap;
-            missed.largest = missed.largest.max(gap);
+            missed.holes.widest = missed.holes.widest.max(gap);
+        }
+        if relative > 1.01 * spanned.relative {
+            missed.holes.relative = missed.holes.relative.max(relative);
         }
     }
     if all > 0.0 {
@@ -385,51 +405,12 @@ fn order(scene: &Scene, inner: &[bool], figures: &mut Figures) {
     figures.psi6 = psi6.mean();
 }
 
-fn edges(scene: &Scene, inner: &[bool], field: &mut dyn Field, sizes: Sizes, figures: &mut Figures) {
-    let n = inner.len();
-    let mutual = |i: usize| {
-        scene.fans.of(i).filter(move |&j| j > i && inner[i] && inner[j] && scene.fans.adjacent(j, i))
-    };
-    let length =
-        |i: usize, j: usize| (scene.tree.position[i].as_dvec3() - scene.tree.position[j].as_dvec3()).length();
+fn edges(scene: &Scene, inner: &[bool], figures: &mut Figures) {
     let mut edge = Moments::default();
-    (0..n).for_each(|i| mutual(i).for_each(|j| edge.add(length(i, j))));
-    figures.edge_cv = edge.variation();
-    let radius: Vec<f64> = match sizes {
-        Sizes::None => return,
-        Sizes::Given(given) => scene
-            .tree
-            .origin
-            .iter()
-            .map(|&i| given.get(i as usize).map_or(f64::NAN, |&r| f64::from(r)))
-            .collect(),
-        Sizes::Local => {
-            let mut own = vec![Moments::default(); n];
-            for i in 0..n {
-                for j in mutual(i) {
-                    own[i].add(0.5 * length(i, j));
-                    own[j].add(0.5 * length(i, j));
-                }
-            }
-            own.iter().map(Moments::mean).collect()
-        }
-        Sizes::Curvature { lowest, highest } => scene
-            .tree
-            .position
-            .iter()
-            .map(|&p| 1.0 / exact_curvature(&field.jet(p.as_dvec3())).max_abs().max(lowest).min(highest))
-            .collect(),
-    };
-    let mut size = Moments::default();
-    for i in 0..n {
-        for j in mutual(i) {
-            let relative = length(i, j) / (radius[i] + radius[j]);
-            if relative.is_finite() {
-                size.add(relative);
-            }
-        }
+    for i in 0..inner.len() {
+        mutual(scene, inner, i).for_each(|j| edge.add(length(scene, i, j)));
     }
-    figures.size_cv = size.variation();
+    figures.edge_cv = edge.variation();
 }
 
 fn shapes(scene: &Scene, kept: &[[u32; 3]], figures: &mut Figures) {

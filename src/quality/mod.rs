@@ -19,6 +19,7 @@ mod cover;
 mod fans;
 mod figures;
 mod probe;
+mod sizes;
 mod triangles;
 
 pub use figures::{Figures, Histogram};
@@ -34,10 +35,10 @@ use triangles::Triangles;
 /// Points closer than this many d_hex to an earlier one are duplicates of it.
 const DUPLICATE: f64 = 1e-6;
 
-/// The wanted radius of each particle, for [`Figures::size_cv`].
+/// The wanted radius of each particle, for [`Figures::size_cv`], [`Figures::cover_local`] and [`Figures::overlap_min`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sizes<'a> {
-    /// No wanted size: `size_cv` is NaN.
+    /// No wanted size: those figures are NaN.
     #[default]
     None,
     /// One radius per particle; particles without one (a slice that is too short) are left out.
