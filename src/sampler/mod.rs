@@ -712,7 +712,7 @@ impl Sampler {
         }
         if self.front.fates().added == 0 && !self.front.capped() {
             self.finish(StopReason::OneParticle);
-        } else if self.settings.relax_steps == 0 {
+        } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
             self.finish(if self.front.capped() { StopReason::Cap } else { StopReason::Complete });
         } else {
             self.phase = Phase::Relaxation;

@@ -164,7 +164,7 @@ impl Relaxation {
         self.far.clear();
         self.all = false;
         if pairs.len() == particles && self.done == 0 {
-            self.begin_forces(particles);
+            self.after_lists(particles);
         } else {
             pairs.extend_to(particles);
             self.far.extend(0..particles as u32);
@@ -265,7 +265,7 @@ impl Relaxation {
                     if last == n {
                         self.far.clear();
                         self.all = false;
-                        self.begin_forces(particles.len());
+                        self.after_lists(particles.len());
                     }
                 }
                 Stage::Forces => {
@@ -329,6 +329,16 @@ impl Relaxation {
             }
         }
         (budget, moved)
+    }
+
+    /// Goes on to the forces, or, where no step is to be made, to what follows the last one.
+    fn after_lists(&mut self, n: usize) {
+        if self.target == 0 && matches!(self.law, Law::Overlap { .. }) {
+            self.lowered = false;
+            self.enter(Stage::Grade);
+        } else {
+            self.begin_forces(n);
+        }
     }
 
     fn begin_forces(&mut self, n: usize) {

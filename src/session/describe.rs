@@ -483,6 +483,20 @@ const REPORT: &[ReportRow] = &[
         "Standard deviation over mean of the distance between natural neighbours over the sum of their radii.",
     ),
     row(
+        "quality.cover_local",
+        "Largest hole for its size",
+        ("Spacing", "", 2),
+        ("1", LOWER),
+        "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it.",
+    ),
+    row(
+        "quality.overlap_min",
+        "Closest pair for its size",
+        ("Spacing", "", 3),
+        ("1", HIGHER),
+        "Smallest distance of two neighbours over the sum of their radii.",
+    ),
+    row(
         "quality.edge_cv",
         "Edge variation",
         ("Spacing", "%", 1),

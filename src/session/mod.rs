@@ -15,9 +15,9 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::quality::{self, Figures, Histogram};
+use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
-    FateCounts, Phase, Progress, Sampler, Search, Settings, SettingsError, Start, StopReason,
+    FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, Start, StopReason,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -182,10 +182,27 @@ pub struct Session {
     sampler: Sampler,
     warnings: Vec<String>,
     last: Option<Progress>,
-    /// Positions and normals after the front.
-    front: (Vec<Vec3>, Vec<Vec3>),
+    /// The particles after the front.
+    front: Kept,
     front_figures: Option<Figures>,
     measured: quality::Report,
+}
+
+/// What is kept of particles for a later look at them.
+#[derive(Default)]
+struct Kept {
+    position: Vec<Vec3>,
+    normal: Vec<Vec3>,
+    /// Empty where all are of one size.
+    radius: Vec<f32>,
+}
+
+impl Kept {
+    fn clear(&mut self) {
+        self.position.clear();
+        self.normal.clear();
+        self.radius.clear();
+    }
 }
 
 impl Default for Session {
@@ -207,7 +224,7 @@ impl Session {
             sampler: Sampler::new(),
             warnings: Vec::new(),
             last: None,
-            front: (Vec::new(), Vec::new()),
+            front: Kept::default(),
             front_figures: None,
             measured: quality::Report::default(),
         }
@@ -363,8 +380,7 @@ impl Session {
         let start = self.sampler.start(self.source.field(), &self.bounds, settings)?;
         self.warnings.clone_from(&start.warnings);
         self.last = None;
-        self.front.0.clear();
-        self.front.1.clear();
+        self.front.clear();
         self.front_figures = None;
         self.measured = quality::Report::default();
         Ok(start)
@@ -375,12 +391,16 @@ impl Session {
         let progress = self.sampler.step(self.source.field(), budget);
         let particles = self.sampler.particles();
         if progress.phase == Phase::Relaxation
-            && self.front.0.is_empty()
+            && self.front.position.is_empty()
             && progress.relax_step == 0
+            && progress.relax_steps > 0
             && progress.particles <= MAX_KEPT
         {
-            self.front.0.extend_from_slice(&particles.position);
-            self.front.1.extend_from_slice(&particles.normal);
+            self.front.position.extend_from_slice(&particles.position);
+            self.front.normal.extend_from_slice(&particles.normal);
+            if self.sampler.settings().sampling == Sampling::Adaptive {
+                self.front.radius.extend_from_slice(&particles.radius);
+            }
         }
         self.remember(progress)
     }
@@ -416,17 +436,22 @@ impl Session {
     /// Measures the particles: a few microseconds each. Call it when the run has ended.
     pub fn report(&mut self) -> Report {
         let particles = self.sampler.particles();
-        let options = quality::Options::default();
+        let adaptive = self.sampler.settings().sampling == Sampling::Adaptive;
+        let options = |radius| {
+            let sizes = if adaptive { Sizes::Given(radius) } else { Sizes::None };
+            quality::Options { sizes, ..quality::Options::default() }
+        };
         let count = particles.len();
         self.measured = quality::measure(
             &particles.position,
             &particles.normal,
             self.source.field(),
             Some(&self.bounds),
-            &options,
+            &options(&particles.radius),
         );
-        if self.front_figures.is_none() && !self.front.0.is_empty() {
-            let (position, normal) = &self.front;
+        if self.front_figures.is_none() && !self.front.position.is_empty() {
+            let Kept { position, normal, radius } = &self.front;
+            let options = options(radius);
             let before =
                 quality::measure(position, normal, self.source.field(), Some(&self.bounds), &options);
             self.front_figures = Some(before.figures);

@@ -1,0 +1,201 @@
+//! The sizes of adaptive particles (paper §5): they follow the law, grow no faster than the slope, and the relaxation
+//! evens them out.
+
+use marching_particles::differential::{Curvature, curvatures};
+use marching_particles::field::gallery::{self, SURFACES, Surface};
+use marching_particles::particles::Particles;
+use marching_particles::quality::{self, Figures, Options, Sizes};
+use marching_particles::sampler::{LawKind, Sampler, Sampling, Settings, SettingsError, SizeMode};
+use marching_particles::spatial::CellGrid;
+
+const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
+
+fn adaptive(count: u32, relax_steps: u32) -> Settings {
+    Settings {
+        sampling: Sampling::Adaptive,
+        size_mode: SizeMode::Count,
+        count,
+        relax_steps,
+        ..Settings::default()
+    }
+}
+
+fn sampled(surface: &Surface, settings: &Settings) -> Sampler {
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
+    while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
+    sampler
+}
+
+fn figures(surface: &Surface, particles: &Particles) -> Figures {
+    let options = Options { sizes: Sizes::Given(&particles.radius), ..Options::default() };
+    let (position, normal) = (&particles.position, &particles.normal);
+    quality::measure(position, normal, &mut surface.field(), Some(&surface.bounds), &options).figures
+}
+
+/// Pairs of one sheet nearer than `reach` times the sum of their radii.
+fn pairs(particles: &Particles, reach: f32) -> Vec<(usize, usize, f32)> {
+    let largest = particles.radius.iter().fold(0.0_f32, |a, &b| a.max(b));
+    let mut grid = CellGrid::new(largest);
+    for (i, &p) in particles.position.iter().enumerate() {
+        grid.insert(p, i as u32);
+    }
+    let (mut found, mut pairs) = (Vec::new(), Vec::new());
+    for i in 0..particles.len() {
+        // Of a pair, the larger particle finds the smaller one.
+        grid.gather(particles.position[i], 2.0 * reach * particles.radius[i], &mut found);
+        for near in &found {
+            let j = near.index as usize;
+            let (a, b) = (particles.radius[i], particles.radius[j]);
+            let distance = near.distance_sq.sqrt();
+            let once = b < a || b == a && j < i;
+            if once && distance <= reach * (a + b) && particles.normal[i].dot(particles.normal[j]) > 0.0 {
+                pairs.push((i, j, distance));
+            }
+        }
+    }
+    pairs
+}
+
+#[test]
+fn neighbours_never_differ_by_more_than_the_grading_allows() {
+    for surface in SURFACES.iter().filter(|surface| surface.smooth) {
+        for (radius_law, grading, relax_steps) in
+            [(LAWS[0], 0.2, 10), (LAWS[1], 0.1, 3), (LAWS[2], 0.2, 3), (LAWS[0], 0.1, 0)]
+        {
+            let settings = Settings { radius_law, grading, ..adaptive(4_000, relax_steps) };
+            let sampler = sampled(surface, &settings);
+            let particles = sampler.particles();
+            let neighbours = pairs(particles, 1.15);
+            assert!(neighbours.len() > particles.len(), "{} has neighbours", surface.id);
+            for (i, j, distance) in neighbours {
+                let (a, b) = (particles.radius[i], particles.radius[j]);
+                let rise = grading as f32 * distance;
+                assert!(
+                    (a - b).abs() <= 1.000_01 * rise,
+                    "{} {radius_law:?}: radii {a} and {b} at {distance}, slope {}",
+                    surface.id,
+                    (a - b).abs() / distance,
+                );
+                // What touches obeys the documented ratio.
+                if distance <= a + b {
+                    let most = (1.0 + grading as f32) / (1.0 - grading as f32);
+                    assert!(a.max(b) / a.min(b) <= 1.000_1 * most, "{}: {a} beside {b}", surface.id);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_particle_is_larger_than_its_law_and_most_are_as_large() {
+    for id in ["ellipsoid", "torus", "tanglecube", "gyroid"] {
+        let surface = gallery::find(id).expect("in the gallery");
+        let settings = Settings {
+            sampling: Sampling::Adaptive,
+            chord_error: 4e-4,
+            radius_min_share: 0.002,
+            ..Settings::default()
+        };
+        let sampler = sampled(surface, &settings);
+        let particles = sampler.particles();
+        let mut curvature = vec![Curvature::default(); particles.len()];
+        curvatures(&mut surface.field(), &particles.position, &mut curvature);
+        let diagonal = surface.bounds.diagonal();
+        let (error, least) = (settings.chord_error * diagonal, settings.radius_min_share * diagonal);
+        let greatest = settings.radius_max_share * diagonal;
+        let mut as_large = 0;
+        for (k, &radius) in curvature.iter().zip(&particles.radius) {
+            let bend = 1.0 / f64::from(k.max_abs());
+            let law = 0.5 * (6.0 * error * bend - 3.0 * error * error).max(0.0).sqrt();
+            let share = f64::from(radius) / law.clamp(least, greatest);
+            assert!(share < 1.01, "{id}: {share} of the law");
+            as_large += usize::from(share > 0.99);
+        }
+        let share = as_large as f64 / particles.len() as f64;
+        assert!(share > 0.7, "{id}: {share} of the particles are as large as the law lets them");
+    }
+}
+
+#[test]
+fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface() {
+    for surface in SURFACES.iter().filter(|surface| surface.smooth) {
+        for radius_law in LAWS {
+            let settings = Settings { radius_law, ..adaptive(4_000, 10) };
+            let sampler = sampled(surface, &settings);
+            let energy = sampler.energy();
+            assert_eq!(energy.len(), 11, "{} {radius_law:?}", surface.id);
+            assert!(energy.is_sorted_by(|a, b| a > b), "{} {radius_law:?}: {energy:?}", surface.id);
+        }
+    }
+}
+
+#[test]
+fn the_reported_energy_is_that_of_all_overlaps() {
+    // A surface whose law needs no grading: that comes last and lowers radii.
+    let surface = gallery::find("ellipsoid").expect("in the gallery");
+    for steps in [1, 10] {
+        let sampler = sampled(surface, &adaptive(4_000, steps));
+        let particles = sampler.particles();
+        let mut sum = 0.0;
+        for (i, j, distance) in pairs(particles, 1.15) {
+            let mean = 0.5 * f64::from(particles.radius[i] + particles.radius[j]);
+            sum += (2.3 - f64::from(distance) / mean).powi(2);
+        }
+        let exact = sum / particles.len() as f64;
+        let reported = *sampler.energy().last().expect("an energy");
+        assert!((reported / exact - 1.0).abs() < 1e-3, "{reported} reported, {exact} summed");
+    }
+}
+
+#[test]
+fn ten_steps_fit_the_particles_to_their_sizes() {
+    for id in ["ellipsoid", "torus", "tanglecube", "dupin-cyclide"] {
+        let surface = gallery::find(id).expect("in the gallery");
+        let front = figures(surface, sampled(surface, &adaptive(14_000, 0)).particles());
+        let relaxed = figures(surface, sampled(surface, &adaptive(14_000, 10)).particles());
+        println!("{id}: {front:#?} {relaxed:#?}");
+        for f in [&front, &relaxed] {
+            assert!(f.size_cv <= 0.12, "{id}: size_cv {}", f.size_cv);
+            assert!(f.cover_local <= 1.6, "{id}: hole {}", f.cover_local);
+            assert!(f.overlap_min >= 0.6, "{id}: pair {}", f.overlap_min);
+        }
+        assert!(relaxed.size_cv <= 0.08, "{id}: size_cv {}", relaxed.size_cv);
+        assert!(relaxed.size_cv < 0.85 * front.size_cv, "{id}: {} from {}", relaxed.size_cv, front.size_cv);
+        assert!(relaxed.cover_local < front.cover_local, "{id}");
+    }
+}
+
+#[test]
+fn more_steps_can_follow_and_a_run_cut_into_pieces_is_the_same_run() {
+    let surface = gallery::find("ellipsoid").expect("in the gallery");
+    let whole = sampled(surface, &adaptive(2_000, 6));
+    let mut field = surface.field();
+    let mut pieces = Sampler::new();
+    pieces.start(&mut field, &surface.bounds, &adaptive(2_000, 6)).expect("valid settings");
+    while pieces.step(&mut field, 17).stop_reason.is_none() {}
+    assert_eq!(pieces.particles().digest(), whole.particles().digest());
+    let before = *pieces.energy().last().expect("an energy");
+    pieces.relax(4);
+    while pieces.step(&mut field, 1_000).stop_reason.is_none() {}
+    assert_eq!(pieces.energy().len(), 11);
+    assert!(*pieces.energy().last().expect("an energy") < before);
+}
+
+#[test]
+fn settings_out_of_range_are_refused_by_name() {
+    let bad = |settings: Settings| match settings.validate() {
+        Err(SettingsError::OutOfRange { name, .. }) => name,
+        other => panic!("{other:?}"),
+    };
+    let default = Settings::default();
+    assert_eq!(bad(Settings { chord_error: 0.0, ..default }), "chord_error");
+    assert_eq!(bad(Settings { curvature_scale: f64::NAN, ..default }), "curvature_scale");
+    assert_eq!(bad(Settings { grading: 1.0, ..default }), "grading");
+    assert_eq!(bad(Settings { radius_max_share: 1.0, ..default }), "radius_max_share");
+    assert_eq!(
+        bad(Settings { radius_min_share: 0.1, radius_max_share: 0.05, ..default }),
+        "radius_min_share"
+    );
+}
