@@ -99,3 +99,44 @@ export async function expectCanvasShown(page) {
   }, shot.toString('base64'));
   expect(colours).toBeGreaterThan(40);
 }
+
+/**
+ * The separate spots in the picture, their areas in pixels and how far their middles lie from the picture's, largest first; and how
+ * many pixels are nearly black and nearly white.
+ * @param {Page} page
+ * @param {number} [width] @param {number} [height]
+ */
+export function spots(page, width = 600, height = 450) {
+  return page.evaluate(async ([w, h]) => {
+    const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
+    const [r0, g0, b0] = pixels;
+    const drawn = new Uint8Array(pw * ph);
+    let [black, white] = [0, 0];
+    for (let i = 0; i < drawn.length; i += 1) {
+      const [r, g, b] = pixels.subarray(4 * i, 4 * i + 3);
+      drawn[i] = Number(Math.abs(r - r0) + Math.abs(g - g0) + Math.abs(b - b0) > 60);
+      black += Number(Math.max(r, g, b) < 40);
+      white += Number(Math.min(r, g, b) > 215);
+    }
+    const found = [];
+    for (let start = 0; start < drawn.length; start += 1) {
+      if (!drawn[start]) continue;
+      const open = [start];
+      drawn[start] = 0;
+      let [area, sum_x, sum_y] = [0, 0, 0];
+      for (let at = open.pop(); at !== undefined; at = open.pop()) {
+        area += 1;
+        const x = at % pw;
+        sum_x += x;
+        sum_y += Math.floor(at / pw);
+        for (const [next, inside] of /** @type {[number, boolean][]} */ ([[at - 1, x > 0], [at + 1, x < pw - 1], [at - pw, at >= pw], [at + pw, at < pw * (ph - 1)]])) {
+          if (!inside || !drawn[next]) continue;
+          drawn[next] = 0;
+          open.push(next);
+        }
+      }
+      found.push({ area, off: Math.hypot(sum_x / area - pw / 2, sum_y / area - ph / 2) });
+    }
+    return { found: found.sort((p, q) => q.area - p.area), black, white };
+  }, [width, height]);
+}

@@ -23,6 +23,33 @@ function sphere(n) {
 }
 
 describe('columns', () => {
+  test('take the curvature of particles in order, as far as it is known, until another run begins', () => {
+    const columns = sphere(100);
+    const values = (/** @type {number} */ from, /** @type {number} */ to) => Float32Array.from({ length: 2 * (to - from) }, (_, i) => 2 * from + i);
+    columns.writeCurvature(0, values(0, 60));
+    expect(columns.curved).toBe(60);
+    // A gap, and more than there are particles, are not taken.
+    columns.writeCurvature(70, values(70, 100));
+    columns.writeCurvature(60, values(60, 101));
+    expect(columns.curved).toBe(60);
+    columns.writeCurvature(60, values(60, 100));
+    expect(columns.curved).toBe(100);
+    expect(columns.curvature.subarray(0, 200)).toEqual(values(0, 100));
+    columns.valence = new Uint8Array(100);
+    columns.component = new Uint32Array(100);
+    columns.clear(true);
+    expect(columns).toMatchObject({ count: 0, curved: 0, adaptive: true, valence: null, component: null });
+  });
+
+  test('of no particle leave the figures of the report alone', () => {
+    const columns = sphere(10);
+    columns.valence = new Uint8Array(10);
+    columns.write({
+      first: 10, total: 10, positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0),
+    });
+    expect(columns.valence).not.toBe(null);
+  });
+
   test('grow piece by piece and are overwritten in place', () => {
     const whole = sphere(5000);
     const columns = new Columns();

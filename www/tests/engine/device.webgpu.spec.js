@@ -1,6 +1,6 @@
 /** The page in a browser with WebGPU (in software). */
 import { expect, test } from '@playwright/test';
-import { counts, expectSurface, open, picture, status } from './browser.js';
+import { counts, expectSurface, open, picture, spots, status } from './browser.js';
 
 test('WebGPU draws the surface', async ({ page }) => {
   const { errors } = await open(page);
@@ -37,4 +37,12 @@ test('without navigator.gpu WebGL2 draws', async ({ page }) => {
   await open(page);
   expect((await status(page)).backend).toBe('webgl2');
   await expectSurface(page);
+});
+
+test('WebGPU draws the points of a model', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ surface: 'bunny', settings: { radius_share: 0.015 }, view: { colour: 'plain' } }));
+  const dotted = await spots(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ points: false }));
+  expect(dotted.black).toBeGreaterThan((await spots(page)).black + 100);
 });

@@ -1,6 +1,6 @@
 /** The page in a browser without any graphics API: dots on a 2-D canvas; everything else works as ever. */
 import { expect, test } from '@playwright/test';
-import { expectCanvasShown, expectSurface, open, status } from './browser.js';
+import { expectCanvasShown, expectSurface, open, spots, status } from './browser.js';
 
 test('the surface is painted without a graphics card', async ({ page }) => {
   const { errors } = await open(page);
@@ -29,4 +29,12 @@ test('figures and files are there as well', async ({ page }) => {
   expect(out.ply).toBeGreaterThan(30_000);
   expect(out.png).toBe('image/png');
   expect(out.picked).not.toBe(null);
+});
+
+test('the points of a model are painted, too', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ surface: 'bunny', settings: { radius_share: 0.015 }, view: { colour: 'plain' } }));
+  const dotted = await spots(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ points: false }));
+  expect(dotted.black).toBeGreaterThan((await spots(page)).black + 100);
 });

@@ -29,7 +29,7 @@ function fakePoints() {
     },
     step: () => {
       steps += 1;
-      if (broken) return '{"ok":false,"error":{"kind":"format","message":"line 17: a number is missing"}}';
+      if (broken) return '{"ok":false,"error":{"kind":"format","message":"line 17: a number is missing","line":17}}';
       return JSON.stringify({ ok: true, stage: ['reading', 'thinning', 'solving'][steps - 1] ?? 'solving', label: 'x', fraction: steps / 4, done: steps === 4 });
     },
     field: () => Uint8Array.of(1, 2, 3),
@@ -55,7 +55,7 @@ describe('solving', () => {
   test('of what is no model, no file or broken is refused in the core’s words', async () => {
     expect((await answers({ model: 'cow' })).at(-1)).toMatchObject({ type: 'refused', kind: 'unknown' });
     const file = (/** @type {string} */ name, read = async () => new ArrayBuffer(8)) => /** @type {File} */ (/** @type {unknown} */ ({ name, size: 8, arrayBuffer: read }));
-    expect((await answers({ file: file('broken.ply') })).at(-1)).toMatchObject({ type: 'refused', message: 'line 17: a number is missing' });
+    expect((await answers({ file: file('broken.ply') })).at(-1)).toMatchObject({ type: 'refused', message: 'line 17: a number is missing', line: 17 });
     expect((await answers({ file: file('gone.ply', async () => { throw new Error('NotFound'); }) })).at(-1)).toMatchObject({ type: 'refused', kind: 'unreadable' });
   });
 });
@@ -123,13 +123,6 @@ describe('the client', () => {
     workers[2].onerror({ message: '404' });
     expect(await missing).toMatchObject({ refusal: { kind: 'bundle', message: '404' } });
     expect(client.get('a')).toBe(undefined);
-  });
-
-  test('finds the line in the words where it is not given', async () => {
-    const { workers, client } = make();
-    const loading = client.load('a', { model: 'a' });
-    workers[0].say({ type: 'refused', kind: 'format', message: 'line 17: a number is missing', line: null });
-    expect(await loading).toMatchObject({ refusal: { line: 17 } });
   });
 });
 

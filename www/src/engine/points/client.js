@@ -69,7 +69,7 @@ export class PointsClient {
         resolve(outcome);
       };
       const refuse = (/** @type {string} */ kind, /** @type {string} */ message, /** @type {string} */ details = '', /** @type {number | null} */ line = null) =>
-        end({ refusal: { kind, message, details, line: line ?? (Number(/\bline (\d+)/.exec(message)?.[1]) || null) } });
+        end({ refusal: { kind, message, details, line } });
       const listen = () => {
         this.clock.clearTimeout(timer);
         timer = this.clock.setTimeout(() => refuse('silent', 'the solver fell silent and was stopped'), SILENCE_MS);

@@ -3,6 +3,8 @@
  *
  * @module
  */
+import init, { Points } from '../../wasm/points/points.js';
+import wasmUrl from '../../wasm/points/points_bg.wasm?url';
 import { loadModule, words } from '../sampling/load.js';
 import { solve } from './solve.js';
 
@@ -22,18 +24,11 @@ console.error = (...parts) => {
   say(...parts);
 };
 
-const scripts = import.meta.glob('../../wasm/points/points.js');
-const modules = import.meta.glob('../../wasm/points/points_bg.wasm', { query: '?url', import: 'default' });
-
 self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
   post({ type: 'progress', stage: 'starting', label: 'Starting', fraction: 0 });
   let points;
   try {
-    const [script] = Object.values(scripts);
-    const [url] = Object.values(modules);
-    if (!script || !url) throw new Error('The solver for points is not part of this build.');
-    const { default: init, Points } = /** @type {typeof import('../../wasm/points/points.js')} */ (await script());
-    await init({ module_or_path: await loadModule(/** @type {string} */ (await url()), 'solver for points') });
+    await init({ module_or_path: await loadModule(wasmUrl, 'solver for points') });
     points = new Points();
   } catch (error) {
     post({ type: 'failed', message: words(error) });

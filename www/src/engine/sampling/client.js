@@ -201,7 +201,7 @@ export class SamplingClient {
     const { store } = this;
     if (message.type === 'ready') {
       const first = store.description.value === null;
-      store.description.value = { ...message.description, models: message.description.models ?? [] };
+      store.description.value = message.description;
       this.supervisor.setBusy(this.current !== null && !this.current.ended);
       if (this.curvature) this.supervisor.post({ type: 'curvature', on: true });
       if (first) this.onReady();
