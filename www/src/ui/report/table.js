@@ -60,8 +60,17 @@ function createRow(report, row) {
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
   });
   const paired = isPaired(row);
-  const line = h('tr', null, h('th', { scope: 'row', colspan: paired ? null : 2 }, term), paired ? before : null, now);
-  effect(() => { line.hidden = !isTold(report.value, row.key); });
+  const head = h('th', { scope: 'row' }, term);
+  const line = h('tr', null, head, paired ? before : null, now);
+  effect(() => {
+    const current = report.value;
+    line.hidden = !isTold(current, row.key);
+    if (paired) return;
+    // A range or a word needs the room of two figures.
+    const wide = row.to || (current && typeof figuresOf(current, row.key).now === 'string');
+    head.colSpan = wide ? 1 : 2;
+    now.colSpan = wide ? 2 : 1;
+  });
   return line;
 }
 
