@@ -34,7 +34,7 @@ export async function settled(page) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
-    return !engine.busy.value && engine.reveal.value === null && engine.progress.value.phase === 'done' && (engine.report.value !== null || engine.empty.value);
+    return !engine.busy.value && engine.loading.value === null && engine.reveal.value === null && engine.progress.value.phase === 'done' && (engine.report.value !== null || engine.empty.value);
   });
 }
 

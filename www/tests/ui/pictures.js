@@ -1,8 +1,9 @@
 /**
- * Draws the pictures of the gallery and the poster with the program itself, from the built site: `npm run pictures`.
+ * Draws the pictures of the gallery and the poster with the program itself, from the built site:
+ * `npm run pictures [-- address [surface …]]`; with surfaces only theirs.
  *
- * Writes public/gallery/*.webp (one per surface, transparent) and public/poster.svg (the default surface as dots, what
- * the page shows while it loads).
+ * Writes public/gallery/*.webp (one per surface and model, transparent) and public/poster.svg (the default surface as dots,
+ * what the page shows while it loads).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -18,7 +19,7 @@ const POSTER_PX = 720;
 /** Dots of the poster: its radius as a share of the box's diagonal. */
 const POSTER_SHARE = 0.008;
 
-const base = process.argv[2] ?? 'http://localhost:4517/';
+const [base = 'http://localhost:4517/', ...wanted] = process.argv.slice(2);
 const folder = fileURLToPath(new URL('../../public/', import.meta.url));
 await mkdir(`${folder}gallery`, { recursive: true });
 
@@ -29,11 +30,15 @@ await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
 
 const initial = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.view.camera);
 /** @type {string[]} */
-const ids = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.surfaces.map((/** @type {{ id: string }} */ { id }) => id));
+const ids = await page.evaluate(() => {
+  const { surfaces, models } = /** @type {any} */ (window).marchingParticles.engine.description.value;
+  return [...surfaces, ...models].map((/** @type {{ id: string }} */ { id }) => id);
+});
 for (const id of ids) {
+  if (wanted.length > 0 && !wanted.includes(id)) continue;
   const bytes = await page.evaluate(async ({ id, drawn, size, view_rad, initial, rounds }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
-    await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02, camera: initial } });
+    await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02, points: false, camera: initial } });
     mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
     // The fit leaves room to turn; a still picture can fill its frame.
     const { positions, count } = mp.particles();
@@ -60,6 +65,11 @@ for (const id of ids) {
   }, { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS });
   await writeFile(`${folder}gallery/${id}.webp`, new Uint8Array(bytes));
   console.log(`${id} ${bytes.length} bytes`);
+}
+
+if (wanted.length > 0) {
+  await browser.close();
+  process.exit();
 }
 
 const dots = await page.evaluate(async ({ share, size, view_rad, initial }) => {

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, report, scan } from './helpers.js';
+import { open, report, scan, settled, state } from './helpers.js';
 
 /** @typedef {import('@playwright/test').Page} Page */
 
@@ -13,6 +13,19 @@ const drag = (page, type, file) => page.evaluate(({ type, file }) => {
   target.dispatchEvent(event);
   return event.defaultPrevented;
 }, { type, file });
+
+/** Points on a sphere, with their normals, as an ASCII PLY file. @param {number} count */
+function spherePly(count) {
+  const golden = Math.PI * (3 - Math.sqrt(5));
+  const rows = Array.from({ length: count }, (_, i) => {
+    const z = 1 - (2 * i + 1) / count;
+    const [x, y] = [Math.cos(golden * i), Math.sin(golden * i)].map((v) => v * Math.sqrt(1 - z * z));
+    const normal = [x, y, z].map((v) => v.toFixed(6));
+    return [...normal, ...normal].join(' ');
+  });
+  const properties = ['x', 'y', 'z', 'nx', 'ny', 'nz'].map((name) => `property float ${name}`).join('\n');
+  return `ply\nformat ascii 1.0\nelement vertex ${count}\n${properties}\nend_header\n${rows.join('\n')}\n`;
+}
 
 const dropped = async (/** @type {Page} */ page, /** @type {{ name: string, text?: string, bytes?: number }} */ file) => {
   await drag(page, 'dragover', file);
@@ -77,4 +90,65 @@ test('what is on its way shows its stage and can be given up', async ({ page }) 
   await expect(page.getByRole('button', { name: 'Cancel' })).toBeVisible();
   expect((await scan(page)).violations).toEqual([]);
   await clean();
+});
+
+for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) {
+  test(`a model is sampled, tells of its points, and one press leads back to the formula, at ${width} by ${height}`, async ({ page }) => {
+    await page.emulateMedia({ reducedMotion: 'reduce', colorScheme: width < 720 ? 'dark' : 'light' });
+    const { clean } = await open(page, { width, height });
+    const { formula } = await state(page);
+    const [model] = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.models);
+    await page.locator(`.tile[data-surface="${model.id}"]`).click();
+    await expect(page.locator('.story')).toContainText(model.name);
+    await settled(page);
+    expect((await report(page)).count).toBeGreaterThan(1000);
+    await expect(page.locator('.story')).toContainText(model.credit);
+    await expect(page.locator('.story')).toContainText(`${model.points} points`);
+    const facts = page.locator('.facts');
+    for (const word of ['Points', 'Normals', 'Condition number', 'Mean distance', 'Largest distance']) await expect(facts).toContainText(word);
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toBeHidden();
+    const points = page.getByRole('button', { name: 'Show points' });
+    await expect(points).toHaveAttribute('aria-pressed', 'true');
+    await points.click();
+    expect((await state(page)).view.points).toBe(false);
+    expect((await scan(page)).violations).toEqual([]);
+    await page.getByRole('button', { name: 'Back to the formula' }).click();
+    await settled(page);
+    expect((await state(page)).formula).toBe(formula);
+    await expect(points).toBeHidden();
+    await page.getByRole('button', { name: 'Undo', exact: true }).click();
+    await expect(page.locator('.story')).toContainText(model.name);
+    await settled(page);
+    await clean();
+  });
+}
+
+test('a dropped file becomes the surface, keeps a tile of its own, and is there again in one press', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await dropped(page, { name: 'ball.ply', text: spherePly(300) });
+  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+  await settled(page);
+  const { quality } = await report(page);
+  expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
+  await expect(page.locator('.facts')).toContainText('given');
+  await page.locator('.tile[data-surface="torus"]').click();
+  await settled(page);
+  await page.locator('.tile[data-surface="file"]').click();
+  await settled(page);
+  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+  await clean();
+});
+
+test('a fault in a file is told with its line, in the open and to a screen reader', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  const lines = spherePly(300).split('\n');
+  lines[20] = '0.1 nan 0.3 0 0 1';
+  await dropped(page, { name: 'ball.ply', text: lines.join('\n') });
+  const box = page.locator('.refused');
+  await expect(box).toContainText(/line 21/i);
+  await expect(box).toContainText('The surface before it stays');
+  await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: 'Sampling' }).click();
+  await dropped(page, { name: 'empty.ply', text: '' });
+  // The panel that would say it is not in sight: a notice does.
+  await expect(page.locator('.toast')).toContainText('empty.ply');
 });
