@@ -133,6 +133,8 @@ proptest! {
         exponent in 0..12_i32,
         a in -2.0..2.0_f64,
     ) {
+        // A sum is its own only part.
+        let text = format!("({text}) + x^2 + 0.5");
         let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
         for name in field.auto().to_vec() {
             field.set_parameter(&name, a).unwrap();
@@ -142,7 +144,7 @@ proptest! {
         let at = |k: usize| lo + size * DVec3::new(places[k], places[k + 1], places[k + 2]);
         let (p, q) = (at(0), at(3));
         let mut out = [Enclosure::UNKNOWN];
-        field.enclose(&[[lo, lo + size]], &mut out);
+        field.enclose(0, &[[lo, lo + size]], &mut out);
         let known = out[0];
         if !(known.defined && known.continuous) {
             return Ok(());
@@ -155,6 +157,12 @@ proptest! {
                 !gradient[axis].is_finite() || lo <= gradient[axis] && gradient[axis] <= hi,
                 "{text}: {gradient} at {p}, not in {known:?}"
             );
+        }
+        let mut second = [[[0.0; 2]; 6]];
+        field.enclose_second(0, &[[lo, lo + size]], &mut second);
+        let h = field.transformed_jet(p).hessian;
+        for ([lo, hi], exact) in second[0].into_iter().zip([h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]) {
+            prop_assert!(!exact.is_finite() || lo <= exact && exact <= hi, "{text}: {h:?} at {p}, not in {second:?}");
         }
         // f(q) − f(p) is a slope of the box times q − p, also across kinks.
         let (from, to) = (field.jet(p).value, field.jet(q).value);

@@ -97,9 +97,31 @@ pub trait Field {
     /// no point of the surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
 
-    /// Bounds of f and ∇f over each box, given by its smallest and largest corner; `out[i]` belongs to `boxes[i]`. By
+    /// Number of functions whose zeros together are those of f, for [`Field::enclose`]: the factors of a product, else 1.
+    fn parts(&mut self) -> usize {
+        1
+    }
+
+    /// Bounds of one of the functions that f falls into, and of its gradient, over each box, given by its smallest and
+    /// largest corner; `out[i]` belongs to `boxes[i]`. What it says about being defined and continuous holds for f too. By
     /// default nothing is known.
-    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    ///
+    /// # Panics
+    ///
+    /// If `part` is not below [`Field::parts`], or `out` is shorter than `boxes`.
+    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        let _ = part;
         out[..boxes.len()].fill(Enclosure::UNKNOWN);
+    }
+
+    /// Bounds of the second derivatives of the same function over each box, in the order xx, xy, xz, yy, yz, zz; they hold
+    /// where f is defined and continuous and have no meaning elsewhere. By default nothing is known.
+    ///
+    /// # Panics
+    ///
+    /// As [`Field::enclose`].
+    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        let _ = part;
+        out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]);
     }
 }

@@ -106,13 +106,27 @@ impl Field for Scaled<'_> {
         Interval { lo: range.lo * factor, hi: range.hi * factor, ..range }
     }
 
-    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    fn parts(&mut self) -> usize {
+        self.field.parts()
+    }
+
+    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         let factor = f64::from(self.factor);
-        self.field.enclose(boxes, out);
+        self.field.enclose(part, boxes, out);
         if factor != 1.0 {
             for known in &mut out[..boxes.len()] {
                 known.value = known.value.map(|bound| bound * factor);
                 known.gradient = known.gradient.map(|bounds| bounds.map(|bound| bound * factor));
+            }
+        }
+    }
+
+    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        let factor = f64::from(self.factor);
+        self.field.enclose_second(part, boxes, out);
+        if factor != 1.0 {
+            for known in &mut out[..boxes.len()] {
+                *known = known.map(|bounds| bounds.map(|bound| bound * factor));
             }
         }
     }

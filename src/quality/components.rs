@@ -1,40 +1,53 @@
 //! Which connected piece of the surface each point is on, as far as the points tell.
 
+use super::Scene;
 use super::triangles::find;
-use super::{Scene, Sizes};
+use crate::math::sort_few;
 
-/// A point in no triangle belongs to the piece of a natural neighbour nearer than this many d_hex, or, where the radii are
-/// known, nearer than this many times the sum of the two.
-const NEAR: f64 = 2.0;
+/// Two points that a triangle joins, or natural neighbours one of which is in no triangle, are on one piece if they are nearer
+/// than this many times the spacing at either: across the gaps that a clip box cuts, triangles join what is not.
+const NEAR: f32 = 2.0;
+
+/// Which of a point's natural neighbours, in the order of their distance, tells the spacing there, unless it is farther than
+/// [`FARTHEST`] times the first.
+const TELLING: usize = 3;
+const FARTHEST: f32 = 3.0;
 
 /// Label of a point that belongs to no piece: a non-finite position.
 pub(super) const NO_LABEL: u32 = u32::MAX;
 
 /// The piece of every point, in tree order: 0 for the one with most points, ties in the order of the points given; and the
 /// number of pieces.
-///
-/// Points joined by a triangle are on one piece; `root` names one point for each set of points so joined. A point in no
-/// triangle joins its natural neighbours if they are near, and is a piece of its own if none is.
-pub(super) fn label(scene: &Scene, mut root: Vec<u32>, sizes: Sizes, d_hex: f64) -> (Vec<u32>, usize) {
+pub(super) fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
-    let mut size = vec![0_u32; n];
-    root.iter().for_each(|&r| size[r as usize] += 1);
-    let radius = |k: usize| match sizes {
-        Sizes::Given(given) => given.get(scene.tree.origin[k] as usize).map(|&r| f64::from(r)),
-        _ => None,
-    };
-    let alone: Vec<usize> = (0..n).filter(|&i| size[root[i] as usize] == 1).collect();
-    for i in alone {
-        for j in scene.fans.of(i) {
-            let reach = match (radius(i), radius(j)) {
-                (Some(a), Some(b)) => NEAR * (a + b),
-                _ => NEAR * d_hex,
-            };
-            if f64::from(scene.tree.position[i].distance(scene.tree.position[j])) < reach {
-                let (a, b) = (find(&mut root, i as u32), find(&mut root, j as u32));
-                root[a.max(b) as usize] = a.min(b);
-            }
+    let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
+    let mut lengths = Vec::new();
+    let spacing: Vec<f32> = (0..n)
+        .map(|i| {
+            lengths.clear();
+            lengths.extend(scene.fans.of(i).map(|j| distance(i, j)));
+            sort_few(&mut lengths, |a, b| a < b);
+            let nearest = lengths.first().copied().unwrap_or(0.0);
+            lengths.get(TELLING - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
+        })
+        .collect();
+    let mut root: Vec<u32> = (0..n as u32).collect();
+    let mut is_used = vec![false; n];
+    let mut join = |i: usize, j: usize| {
+        if distance(i, j) <= NEAR * spacing[i].min(spacing[j]) {
+            let (a, b) = (find(&mut root, i as u32), find(&mut root, j as u32));
+            root[a.max(b) as usize] = a.min(b);
         }
+    };
+    for triangle in mesh {
+        let [a, b, c] = triangle.map(|i| i as usize);
+        for (i, j) in [(a, b), (b, c), (c, a)] {
+            join(i, j);
+            is_used[i] = true;
+        }
+    }
+    for i in (0..n).filter(|&i| !is_used[i]) {
+        scene.fans.of(i).for_each(|j| join(i, j));
     }
     let root: Vec<u32> = (0..n as u32).map(|i| find(&mut root, i)).collect();
 

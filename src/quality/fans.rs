@@ -11,6 +11,9 @@ const TRIES: [usize; 3] = [24, 64, 200];
 /// Radius of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
 /// so the ball reaches about 2.5 d: 22 points of a perfect lattice.
 const BALL: f32 = 0.6;
+/// Largest mean of rise and sinking, over the distance, of two points of one sheet. It is of the second order in the distance
+/// over the radius of curvature: 1/12 where the curvature changes by its own size between the two.
+const MAX_LIFT: f32 = 0.2;
 /// Marks, in [`Fans::neighbour`], that the corner between this neighbour and the next one is proven.
 const PROVEN: u32 = 1 << 31;
 
@@ -57,7 +60,7 @@ impl Fans {
                 for (&j, &d) in candidates.iter().zip(&distance_sq) {
                     if d < reach_sq && j as usize != i {
                         nearest_sq = nearest_sq.min(d);
-                        if normal[i].dot(normal[j as usize]) > 0.0 {
+                        if is_one_sheet(tree, normal, i, j as usize, d) {
                             keys.push(key(d, j));
                         }
                     }
@@ -74,7 +77,10 @@ impl Fans {
                     if closed || count <= keys.len() {
                         continue;
                     }
-                    let accept = |j: u32| j as usize != i && normal[i].dot(normal[j as usize]) > 0.0;
+                    let accept = |j: u32| {
+                        let distance_sq = (tree.position[j as usize] - p).length_squared();
+                        j as usize != i && is_one_sheet(tree, normal, i, j as usize, distance_sq)
+                    };
                     tree.nearest_many(p, count, accept, &mut keys);
                     known_sq = match keys.last() {
                         Some(&last) if keys.len() == count => f64::from(unkey(last).0),
@@ -129,6 +135,14 @@ impl Fans {
     pub(super) fn adjacent(&self, i: usize, j: usize) -> bool {
         self.of(i).any(|other| other == j)
     }
+}
+
+/// Whether two points at the given distance count as being on one sheet: their normals are within 90°, and the line that joins
+/// them rises from one tangent plane about as much as it sinks below the other.
+#[inline]
+fn is_one_sheet(tree: &Tree, normal: &[Vec3], i: usize, j: usize, distance_sq: f32) -> bool {
+    let rise = (tree.position[j] - tree.position[i]).dot(normal[i] + normal[j]);
+    normal[i].dot(normal[j]) > 0.0 && rise * rise <= (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT) * distance_sq
 }
 
 /// The place of `q - p` in the tangent plane spanned by `u` and `v`, at its true distance from the origin.

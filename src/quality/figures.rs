@@ -258,9 +258,8 @@ pub(super) fn figures(
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
     shapes(scene, &kept, &mut figures);
-    let (euler, root) = topology(n, mesh);
-    figures.euler = euler;
-    let (component, count) = components::label(scene, root, options.sizes, figures.d_hex);
+    figures.euler = topology(n, mesh);
+    let (component, count) = components::label(scene, mesh);
     figures.components = count;
     let unanimous = triangles.kept[..triangles.unanimous].iter().filter(away).count();
     figures.agree = share(unanimous, kept.len() + triangles.single.iter().filter(away).count());

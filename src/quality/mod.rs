@@ -4,7 +4,8 @@
 //! be compared. Lengths are in units of d_hex = √(2A / (√3 N)), the spacing of a perfect hexagonal lattice of N
 //! points on the area A, unless said otherwise.
 //!
-//! Natural neighbours: the points of the same sheet (normals within 90°) are unrolled to the tangent plane of a point,
+//! Natural neighbours: the points of the same sheet (normals within 90°, and the line between two points leaves one tangent
+//! plane about as it arrives at the other: sheets that face the same way are told apart) are unrolled to the tangent plane of a point,
 //! keeping their true distance; its neighbours are those of its Voronoi cell there. That cell is clipped by the
 //! nearest points until no farther one can matter. This gives the same neighbours as the convex hull of the inverted
 //! points q/|q|², without a hull.

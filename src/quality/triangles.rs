@@ -133,9 +133,8 @@ pub(super) fn area_vector(position: &[Vec3], [a, b, c]: [u32; 3]) -> DVec3 {
     (position[b as usize].as_dvec3() - a).cross(position[c as usize].as_dvec3() - a)
 }
 
-/// Euler number of a set of triangles over `points` points, and for each point a point of its connected component, the
-/// same for all of it; points in no triangle do not count for the number, and stand for themselves.
-pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, Vec<u32>) {
+/// Euler number of a set of triangles over `points` points; points in no triangle do not count.
+pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> i64 {
     // Each edge is written once, by its smaller end; the lists are short, so a linear look is enough.
     let mut start = vec![0_u32; points + 1];
     for triangle in triangles {
@@ -149,7 +148,6 @@ pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, Vec<u32>)
     let mut fill: Vec<u32> = start[..points].to_vec();
     let mut other = vec![0_u32; 3 * triangles.len()];
     let mut edges = 0_i64;
-    let mut root: Vec<u32> = (0..points as u32).collect();
     let mut used = vec![false; points];
     for triangle in triangles {
         for k in 0..3 {
@@ -163,15 +161,10 @@ pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> (i64, Vec<u32>)
             }
             used[a as usize] = true;
             used[b as usize] = true;
-            let (a, b) = (find(&mut root, a), find(&mut root, b));
-            root[a.max(b) as usize] = a.min(b);
         }
     }
     let vertices = used.iter().filter(|&&used| used).count();
-    for i in 0..points as u32 {
-        root[i as usize] = find(&mut root, i);
-    }
-    (vertices as i64 - edges + triangles.len() as i64, root)
+    vertices as i64 - edges + triangles.len() as i64
 }
 
 /// Representative of `i`, halving the path to it.

@@ -20,6 +20,7 @@ use super::project::{BATCH, Circle, Landing, Projector, tolerance};
 use super::relax::SKIN;
 use super::repulsion::{Overlap, Repulsion};
 use super::settings::{Placement as Method, Settings};
+use super::sheets::is_near_own;
 use super::sizing::Sizing;
 use super::uniform::FateCounts;
 use crate::differential::Curvature;
@@ -262,13 +263,15 @@ impl AdaptiveFront {
     /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
     pub(super) fn is_covered(
         &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
         particles: &Particles,
-        position: Vec3,
-        normal: Vec3,
+        (position, normal): (Vec3, Vec3),
         share: f32,
     ) -> bool {
         self.gather_cover(particles, position, normal, share);
-        !self.found.is_empty()
+        let spacing = |j: usize| 2.0 * particles.radius[j];
+        is_near_own(field, projector, particles, (position, normal), &self.found, spacing)
     }
 
     /// Those particles, nearest first, in `near`.

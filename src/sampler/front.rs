@@ -3,10 +3,11 @@
 use super::adaptive::{AdaptiveFront, Surface};
 use super::gaps::{Gaps, Ground};
 use super::pairs::Pairs;
-use super::project::tolerance;
+use super::project::{Projector, tolerance};
 use super::settings::{Sampling, Settings};
 use super::survey::Survey;
 use super::uniform::{FateCounts, UniformFront};
+use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::spatial::CellGrid;
@@ -89,12 +90,18 @@ impl Front {
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is so near that no front need start there.
-    pub(super) fn is_covered(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
+    pub(super) fn is_covered(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        point: (Vec3, Vec3),
+    ) -> bool {
         match self.sampling {
             Sampling::Uniform => {
-                self.uniform.is_covered(particles, position, normal, UNCOVERED * self.radius)
+                self.uniform.is_covered(field, projector, particles, point, UNCOVERED * self.radius)
             }
-            Sampling::Adaptive => self.adaptive.is_covered(particles, position, normal, UNCOVERED),
+            Sampling::Adaptive => self.adaptive.is_covered(field, projector, particles, point, UNCOVERED),
         }
     }
 

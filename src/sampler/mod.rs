@@ -326,7 +326,8 @@ impl Sampler {
         self.factor = comfortable_factor(field, spread(bounds));
         self.survey = survey(&mut Scaled::new(field, self.factor), bounds, &mut self.projector);
         self.seeds.begin(field, bounds);
-        if self.survey.position.is_empty() {
+        self.seeds.expect(0.0);
+        if self.survey.area == 0.0 {
             self.search_all(field);
         }
         self.counts.seeding_evaluations = self.projector.evaluations;
@@ -363,6 +364,7 @@ impl Sampler {
             SizeMode::Radius => (per_radius_sq / (self.radius * self.radius)).round(),
             SizeMode::Count => f64::from(settings.count),
         };
+        self.seeds.expect(predicted.min(f64::from(settings.max_particles)));
         let mut warnings = Vec::new();
         if predicted > f64::from(settings.max_particles) {
             warnings.push(format!(
@@ -400,7 +402,7 @@ impl Sampler {
         let field = &mut Scaled::new(field, self.factor);
         let tolerance = self.survey.tolerance();
         while self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, u32::MAX) == 0 {}
-        let found = self.seeds.points().iter().copied();
+        let found = self.seeds.points().iter().map(|seed| (seed.position, seed.normal));
         self.survey.adopt(field, found, &self.bounds, self.seeds.verdict());
     }
 
@@ -615,7 +617,11 @@ impl Sampler {
             };
             self.next_seed += 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
-            if !self.front.is_covered(&self.particles, position, normal) {
+            let start = self.projector.evaluations;
+            let covered =
+                self.front.is_covered(field, &mut self.projector, &self.particles, (position, normal));
+            self.counts.seeding_evaluations += self.projector.evaluations - start;
+            if !covered {
                 let start = self.projector.evaluations;
                 let is_zero = self.survey.is_zero(field, &mut self.projector, i);
                 self.counts.seeding_evaluations += self.projector.evaluations - start;
@@ -636,7 +642,7 @@ impl Sampler {
         while budget > 0 {
             let (witness, left) = self.seeds.next(budget);
             budget = left;
-            let Some((position, normal)) = witness else {
+            let Some(seed) = witness else {
                 if self.settings.gaps == GapPolicy::Fill && self.front.fill() {
                     self.phase = Phase::Generation;
                 } else {
@@ -645,13 +651,12 @@ impl Sampler {
                 return budget;
             };
             let mut near = self.seeds.take_near();
-            self.front.near(&self.particles, position, normal, &mut near);
+            self.front.near(&self.particles, seed.position, seed.normal, &mut near);
             let start = self.projector.evaluations;
-            let witness = (position, normal);
             let place =
-                self.seeds.place(field, &mut self.projector, &self.particles, witness, near, self.tolerance);
+                self.seeds.place(field, &mut self.projector, &self.particles, seed, near, self.tolerance);
             self.counts.seeding_evaluations += self.projector.evaluations - start;
-            if place == Place::Bare && self.begin_front(field, position, normal) {
+            if place == Place::Bare && self.begin_front(field, seed.position, seed.normal) {
                 return budget;
             }
         }

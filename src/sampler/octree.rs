@@ -17,12 +17,17 @@
 //! up, not only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface through any point of
 //! C cannot leave it over that footprint: by the mean value theorem it rises or falls by no more than
 //! t = Σ max|∂f/∂side| · width / min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole
-//! footprint, connected, and meets the line through its middle in one point, the *witness*; or C holds no point of it. (Snyder,
+//! footprint, connected, and meets the line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder,
 //! "Interval analysis for computer graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
 //! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that
 //! meets the surface, and obtain its topology; one point on each piece is cheaper.) If the highest point of a piece lies in C, the
 //! witness lies on that piece: along the graph it never leaves through the top of the box, because nothing of the piece is
 //! higher, and a graph that might leave through the bottom is not accepted.
+//!
+//! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value forms:
+//! g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the derivatives (with bounds of the second derivatives) and for f itself.
+//! Their excess falls with the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
+//! one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
 //!
 //! What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
 //! where the gradient vanishes on the surface no interval decides.
@@ -42,8 +47,10 @@ use glam::DVec3;
 const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined: such cells line up along curves and faces.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Most cells looked at. Surfaces without singular curves take a few hundred to ten thousand.
-const MOST_CELLS: usize = 40_000;
+/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a
+/// quarter of a particle. Most smooth surfaces take a few hundred to ten thousand.
+const MOST_CELLS: usize = 16_384;
+const CELLS_PER_PARTICLE: f64 = 0.25;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
 const CHUNK: usize = 32;
 /// The box is enlarged by this share of its longest side.
@@ -56,6 +63,11 @@ const LEAST_RISE: f64 = 0.02;
 const MOST_RISE: f64 = 2.0;
 /// Halved are the sides longer than this share of the longest.
 const LONG: f64 = 0.7;
+/// Where they are cut, and where the footprint of a decided cell is probed, not quite in the middle: the highest points of
+/// symmetric surfaces, and the places where they cross themselves, lie there.
+const CUT: f64 = 0.4709;
+/// Most that the surface is above or below a witness, in what it rises over the footprint.
+const BESIDE: f64 = 1.0 - CUT;
 
 /// A part of a stratum: sides of length 0 are those that a face or an edge of the box pins.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +78,11 @@ struct Cell {
 }
 
 impl Cell {
+    /// The place at which a decided cell is probed along up.
+    fn probe(&self) -> DVec3 {
+        self.lo + CUT * (self.hi - self.lo)
+    }
+
     /// The free axes but up, then up.
     fn axes(&self) -> ([Option<usize>; 2], usize) {
         let free = |axis: usize| (self.lo[axis] < self.hi[axis]).then_some(axis);
@@ -77,6 +94,9 @@ impl Cell {
     }
 }
 
+/// Bounds of second derivatives that say nothing.
+const UNBOUNDED: [[f64; 2]; 6] = [[f64::NEG_INFINITY, f64::INFINITY]; 6];
+
 /// How far a search has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum State {
@@ -87,6 +107,13 @@ enum State {
     Done,
 }
 
+/// A point of the surface, and of which of its parts it is a zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Witness {
+    pub(super) position: DVec3,
+    pub(super) part: usize,
+}
+
 /// A search for witnesses.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Octree {
@@ -94,17 +121,30 @@ pub(super) struct Octree {
     margin: f64,
     lo: DVec3,
     hi: DVec3,
+    /// The part under way, and how many there are.
+    part: usize,
+    parts: usize,
     /// Cells of the level under way, and how many have been looked at.
     level: Vec<Cell>,
     next: usize,
     /// Cells of the level after it.
     halves: Vec<Cell>,
+    /// Cells of the part looked at, and how many it may take.
     cells: usize,
+    most: usize,
     boxes: Vec<[DVec3; 2]>,
     known: Vec<Enclosure>,
+    second: Vec<[[f64; 2]; 6]>,
+    /// Cells whose fate the bounds of the expressions leave open.
+    open: Vec<Cell>,
+    /// Cells to be made taller, and by how much each way.
     tall: Vec<(Cell, f64)>,
-    /// Points of the surface, at least one on every piece.
-    pub(super) witnesses: Vec<DVec3>,
+    /// Most that the surface rises over the footprint of each; none where it may not be a graph.
+    rises: Vec<Option<f64>>,
+    /// Lines that meet the surface: index of the tall cell, lower and upper end, the place under way.
+    lines: Vec<(usize, f64, f64, f64)>,
+    /// At least one on every piece of the surface.
+    pub(super) witnesses: Vec<Witness>,
     /// Smallest and largest corners of the cells left undecided.
     pub(super) undecided: Vec<[DVec3; 2]>,
 }
@@ -129,17 +169,23 @@ impl Octree {
     pub(super) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
         self.witnesses.clear();
         self.undecided.clear();
-        self.level.clear();
         self.halves.clear();
-        (self.next, self.cells) = (0, 0);
         self.margin = MARGIN * (bounds.hi() - bounds.lo()).max_element();
         let margin = DVec3::splat(self.margin);
         (self.lo, self.hi) = (bounds.lo() - margin, bounds.hi() + margin);
-        if !has_bounds(field, bounds) {
+        self.parts = field.parts();
+        if has_bounds(field, bounds) {
+            self.state = State::Running;
+            self.begin_part(0);
+        } else {
             self.state = State::Unavailable;
-            return;
         }
-        self.state = State::Running;
+    }
+
+    fn begin_part(&mut self, part: usize) {
+        self.part = part;
+        (self.next, self.cells) = (0, 0);
+        self.level.clear();
         // Each axis free, or pinned to either end.
         for stratum in 0..27 {
             let (mut lo, mut hi) = (self.lo, self.hi);
@@ -162,6 +208,11 @@ impl Octree {
     /// What the box is enlarged by.
     pub(super) fn margin(&self) -> f64 {
         self.margin
+    }
+
+    /// Says how many particles the run will have, which decides how many cells are looked at.
+    pub(super) fn expect(&mut self, particles: f64) {
+        self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
     }
 
     /// Whether the field can be searched by bounds.
@@ -187,12 +238,15 @@ impl Octree {
                 core::mem::swap(&mut self.level, &mut self.halves);
                 self.next = 0;
             }
-            if self.level.is_empty() || self.cells >= MOST_CELLS {
+            if self.level.is_empty() || self.cells >= self.most / self.parts {
                 let open = self.level[self.next..].iter().chain(&self.halves);
                 self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
-                self.level.clear();
                 self.halves.clear();
-                self.state = State::Done;
+                if self.part + 1 < self.parts {
+                    self.begin_part(self.part + 1);
+                } else {
+                    self.state = State::Done;
+                }
             }
         }
         budget
@@ -202,20 +256,28 @@ impl Octree {
         self.boxes.clear();
         self.boxes.extend(self.level[range.clone()].iter().map(|cell| [cell.lo, cell.hi]));
         self.enclose(field);
-        self.tall.clear();
+        self.open.clear();
         for (k, at) in range.enumerate() {
             let (cell, known) = (self.level[at], self.known[k]);
-            let (sides, up) = cell.axes();
             if !known.may_vanish {
                 continue;
             }
             if !(known.defined && known.continuous) {
                 self.halve(cell, IRREGULAR_DEPTH);
+            } else if !is_discarded(&cell, &known) {
+                self.open.push(cell);
+            }
+        }
+        self.boxes.clear();
+        self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.refine(field);
+        self.tall.clear();
+        for k in 0..self.open.len() {
+            let (cell, known) = (self.open[k], self.known[k]);
+            if is_discarded(&cell, &known) {
                 continue;
             }
-            if sides.into_iter().flatten().any(|side| away_from_zero(known.gradient[side]).is_some()) {
-                continue;
-            }
+            let (_, up) = cell.axes();
             let height = cell.hi[up] - cell.lo[up];
             match rise(&cell, &known) {
                 Some(t) if t <= MOST_RISE * height => {
@@ -224,52 +286,137 @@ impl Octree {
                 _ => self.halve(cell, DEPTH),
             }
         }
-        self.decide(field);
+        if !self.tall.is_empty() {
+            self.decide(field);
+        }
     }
 
     /// Decides the cells in `tall`, or halves them.
     fn decide(&mut self, field: &mut dyn Field) {
-        // For each the taller cell, and the lower and upper end of the line through its middle.
-        self.boxes.clear();
-        for &(cell, room) in &self.tall {
+        let taller = |&(cell, room): &(Cell, f64)| {
             let (_, up) = cell.axes();
             let (mut lo, mut hi) = (cell.lo, cell.hi);
             (lo[up], hi[up]) = (lo[up] - room, hi[up] + room);
-            let (mut bottom, mut top) = (0.5 * (lo + hi), 0.5 * (lo + hi));
-            (bottom[up], top[up]) = (lo[up], hi[up]);
-            self.boxes.extend([[lo, hi], [bottom, bottom], [top, top]]);
+            [lo, hi]
+        };
+        self.boxes.clear();
+        self.boxes.extend(self.tall.iter().map(taller));
+        self.refine(field);
+        // The most that the surface rises, where it is a graph over the whole footprint.
+        self.rises.clear();
+        self.rises.extend(self.tall.iter().zip(&self.known).map(|((cell, room), known)| {
+            let regular = known.defined && known.continuous;
+            if regular { rise(cell, known).filter(|t| t <= room) } else { None }
+        }));
+        // Both ends of a line through each.
+        self.boxes.clear();
+        for tall in &self.tall {
+            let (cell, _) = tall;
+            let (_, up) = cell.axes();
+            self.boxes.extend(taller(tall).map(|end| {
+                let mut p = cell.probe();
+                p[up] = end[up];
+                [p, p]
+            }));
         }
         self.enclose(field);
+        self.lines.clear();
         for k in 0..self.tall.len() {
-            let (cell, room) = self.tall[k];
-            let [known, bottom, top] = [0, 1, 2].map(|part| self.known[3 * k + part]);
-            let t = if known.defined && known.continuous { rise(&cell, &known) } else { None };
-            let graph = t.filter(|&t| t <= room);
-            let ends = away_from_zero(bottom.value).and(away_from_zero(top.value));
-            let (Some(t), Some(_)) = (graph, ends) else {
+            let (cell, _) = self.tall[k];
+            let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.known[end].value);
+            let known = away_from_zero(bottom).and(away_from_zero(top)).is_some();
+            if self.rises[k].is_none() || !known {
                 self.halve(cell, DEPTH);
-                continue;
-            };
-            if (bottom.value[0] > 0.0) == (top.value[0] > 0.0) {
+            } else if (bottom[0] > 0.0) != (top[0] > 0.0) {
+                let (_, up) = cell.axes();
+                let (lo, hi) = (self.boxes[2 * k][0][up], self.boxes[2 * k + 1][0][up]);
+                self.lines.push((k, lo, hi, 0.5 * (lo + hi)));
+            }
+        }
+        self.find_roots(field);
+        for line in 0..self.lines.len() {
+            let (k, _, _, height) = self.lines[line];
+            let (cell, _) = self.tall[k];
+            let (sides, up) = cell.axes();
+            let beside = BESIDE * self.rises[k].unwrap_or(0.0);
+            if height + beside < self.lo[up] || height > self.hi[up] && height - beside >= self.lo[up] {
                 continue;
             }
-            let (_, up) = cell.axes();
-            let witness = root(field, up, self.boxes[3 * k + 1][0], self.boxes[3 * k + 2][0]);
-            let height = witness[up];
-            if height + 0.5 * t < self.lo[up] || height > self.hi[up] && height - 0.5 * t >= self.lo[up] {
-                continue;
-            }
-            if height - 0.5 * t >= self.lo[up] || pinned_below(&cell, up, self.lo[up], t) {
-                self.witnesses.push(witness);
+            // Over a single point there is nothing to leave by.
+            if height - beside >= self.lo[up] || sides == [None; 2] {
+                let mut position = cell.probe();
+                position[up] = height;
+                self.witnesses.push(Witness { position, part: self.part });
             } else {
                 self.halve(cell, DEPTH);
             }
         }
     }
 
+    /// The zero of f on each of the `lines`, at whose ends it has different signs: Newton's method, kept between the ends by
+    /// bisection.
+    fn find_roots(&mut self, field: &mut dyn Field) {
+        /// Bisection alone would exhaust the digits of a number.
+        const MOST_STEPS: u32 = 60;
+        let mut settled = self.lines.is_empty();
+        for _ in 0..MOST_STEPS {
+            if settled {
+                break;
+            }
+            self.boxes.clear();
+            for &(k, _, _, height) in &self.lines {
+                let (cell, _) = self.tall[k];
+                let mut p = cell.probe();
+                p[cell.axes().1] = height;
+                self.boxes.push([p, p]);
+            }
+            self.enclose(field);
+            settled = true;
+            for (line, known) in self.lines.iter_mut().zip(&self.known) {
+                let (k, lo, hi, height) = *line;
+                let [least, most] = known.value;
+                if away_from_zero(known.value).is_none() {
+                    continue;
+                }
+                let slope = known.gradient[self.tall[k].0.axes().1];
+                let rising = slope[0] > 0.0;
+                let (lo, hi) = if (least > 0.0) == rising { (lo, height) } else { (height, hi) };
+                let newton = height - (least + most) / (slope[0] + slope[1]);
+                let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
+                settled &= (next - height).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
+                *line = (k, lo, hi, next);
+            }
+        }
+    }
+
     fn enclose(&mut self, field: &mut dyn Field) {
-        self.known.resize(self.boxes.len().max(self.known.len()), Enclosure::UNKNOWN);
-        field.enclose(&self.boxes, &mut self.known[..self.boxes.len()]);
+        let n = self.boxes.len();
+        self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
+        field.enclose(self.part, &self.boxes, &mut self.known[..n]);
+    }
+
+    /// Bounds over the boxes, the mean value forms included.
+    fn refine(&mut self, field: &mut dyn Field) {
+        let n = self.boxes.len();
+        if n == 0 {
+            return;
+        }
+        for k in 0..n {
+            let [lo, hi] = self.boxes[k];
+            let middle = 0.5 * (lo + hi);
+            self.boxes.push([middle, middle]);
+        }
+        self.enclose(field);
+        self.boxes.truncate(n);
+        self.second.resize(n.max(self.second.len()), UNBOUNDED);
+        field.enclose_second(self.part, &self.boxes, &mut self.second[..n]);
+        for k in 0..n {
+            let [lo, hi] = self.boxes[k];
+            let middle = self.known[n + k];
+            if self.known[k].defined && self.known[k].continuous {
+                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * (hi - lo));
+            }
+        }
     }
 
     /// Halves a cell along its longer sides, unless it has been halved `depth` times.
@@ -279,7 +426,7 @@ impl Octree {
             return;
         }
         let size = cell.hi - cell.lo;
-        let middle = 0.5 * (cell.lo + cell.hi);
+        let middle = cell.lo + CUT * size;
         let long = LONG * size.max_element();
         let parts = |axis: usize| if size[axis] > long { 2 } else { 1 };
         for z in 0..parts(2) {
@@ -299,9 +446,12 @@ impl Octree {
     }
 }
 
-/// A single point on an edge of the box, which has no footprint to leave.
-fn pinned_below(cell: &Cell, up: usize, lowest: f64, t: f64) -> bool {
-    t == 0.0 && cell.lo[up] == lowest
+/// Whether no highest point lies in a cell on which f is defined and continuous.
+fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
+    let (sides, _) = cell.axes();
+    !known.may_vanish
+        || away_from_zero(known.value).is_some()
+        || sides.into_iter().flatten().any(|side| away_from_zero(known.gradient[side]).is_some())
 }
 
 /// Most that the surface rises or falls over the footprint of the cell, by the bounds of the gradient; none where f is
@@ -317,6 +467,33 @@ fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
     t.is_finite().then_some(t)
 }
 
+/// Intersects bounds over a box with the mean value forms around its middle; `half` is half its size.
+fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &[[f64; 2]; 6], half: DVec3) {
+    /// Entries of a row of second derivatives.
+    const ROWS: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+    for (axis, row) in ROWS.into_iter().enumerate() {
+        let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(second[row[k]]) * half[k]).sum();
+        narrow(&mut known.gradient[axis], middle.gradient[axis], swing);
+    }
+    let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(known.gradient[k]) * half[k]).sum();
+    narrow(&mut known.value, middle.value, swing);
+}
+
+/// Intersects bounds with those around a middle.
+fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
+    /// What the few operations that lead here may have been rounded by.
+    const ROUNDING: f64 = 16.0 * f64::EPSILON;
+    let slack = ROUNDING * (swing + middle[0].abs() + middle[1].abs());
+    let (lo, hi) = (middle[0] - swing - slack, middle[1] + swing + slack);
+    // False for NaN, where nothing is known.
+    if lo > bounds[0] {
+        bounds[0] = lo;
+    }
+    if hi < bounds[1] {
+        bounds[1] = hi;
+    }
+}
+
 /// Whether the field bounds its values at all: asked of small boxes here and there.
 fn has_bounds(field: &mut dyn Field, bounds: &Bounds) -> bool {
     const SIDE: usize = 3;
@@ -327,34 +504,6 @@ fn has_bounds(field: &mut dyn Field, bounds: &Bounds) -> bool {
         [corner, corner + MARGIN * size]
     });
     let mut known = [Enclosure::UNKNOWN; SIDE * SIDE * SIDE];
-    field.enclose(&boxes, &mut known);
+    field.enclose(0, &boxes, &mut known);
     known.iter().any(|known| known.value != Enclosure::UNKNOWN.value)
-}
-
-/// The zero of f on the line along `up` between two points where it has different signs: Newton's method, kept between
-/// the ends by bisection.
-fn root(field: &mut dyn Field, up: usize, bottom: DVec3, top: DVec3) -> DVec3 {
-    /// Bisection alone would exhaust the digits of a number.
-    const MOST_STEPS: u32 = 60;
-    let (mut a, mut b) = (bottom[up], top[up]);
-    let below = field.jet(bottom).value > 0.0;
-    let settled = 1e-14 * (a.abs() + b.abs());
-    let mut p = bottom;
-    p[up] = 0.5 * (a + b);
-    for _ in 0..MOST_STEPS {
-        let jet = field.jet(p);
-        if (jet.value > 0.0) == below {
-            a = p[up];
-        } else {
-            b = p[up];
-        }
-        let newton = p[up] - jet.value / jet.gradient[up];
-        let next = if newton > a && newton < b { newton } else { 0.5 * (a + b) };
-        let moved = (next - p[up]).abs();
-        p[up] = next;
-        if moved <= settled || jet.value == 0.0 {
-            break;
-        }
-    }
-    p
 }

@@ -1,13 +1,13 @@
 //! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
 
-use super::octree::Octree;
+use super::octree::{Octree, Witness};
 use super::project::{BATCH, Descent, Projector, Tolerance};
 use super::search::Search;
-use super::sheets::{are_connected, is_one_sheet, lift, middle};
+use super::sheets::{are_connected, is_one_sheet};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Units of work that a witness is charged for.
 const UNITS: u32 = 16;
@@ -15,22 +15,30 @@ const UNITS: u32 = 16;
 const MOST_TRIED: usize = 6;
 /// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
 const MAX_STEPS: u32 = 12;
-/// Witnesses outside the box are moved this much farther in than they are out, in margins of the search.
-const INWARD: f64 = 2.0;
+/// Most steps that bring a witness in the margin outside the box to its piece within.
+const MOST_INWARD: u32 = 32;
 
 /// What is left to be tried as the beginning of a front when the points of the survey are covered.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Seeds {
     octree: Octree,
-    /// Witnesses on the surface as single precision sees it, with their normals.
-    points: Vec<(Vec3, Vec3)>,
+    points: Vec<Seed>,
     is_projected: bool,
     next: usize,
     /// Witnesses of which it is not proven that they lie on the piece of the particles around them.
     unproven: u64,
-    /// Witnesses that single precision does not find. Those in the margin outside the box are not missed.
+    /// Witnesses that single precision does not find.
     lost: u64,
     near: Vec<u32>,
+}
+
+/// A witness on the surface as single precision sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seed {
+    pub(super) position: Vec3,
+    pub(super) normal: Vec3,
+    /// Of which part of the field it is a zero.
+    part: usize,
 }
 
 /// Where a witness lies.
@@ -50,6 +58,11 @@ impl Seeds {
         self.lost = 0;
         self.is_projected = false;
         self.restart();
+    }
+
+    /// Says how many particles the run will have.
+    pub(super) fn expect(&mut self, particles: f64) {
+        self.octree.expect(particles);
     }
 
     /// Begins again with the first witness.
@@ -84,16 +97,26 @@ impl Seeds {
         tolerance: Tolerance,
     ) {
         let margin = self.octree.margin();
-        let inner = |p: glam::DVec3| {
-            let inward = glam::DVec3::splat(INWARD * margin);
-            let clamped = p.clamp(bounds.lo(), bounds.hi());
-            if clamped == p { p } else { p.clamp(bounds.lo() + inward, bounds.hi() - inward) }
-        };
+        let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
+        // Those that belong to nothing but the margin are no loss.
+        let starts: Vec<(Vec3, usize)> = self
+            .octree
+            .witnesses
+            .iter()
+            .filter_map(|&Witness { position, part }| {
+                let start = if inside(position) {
+                    Some(position)
+                } else {
+                    moved_inside(field, position, bounds, margin)
+                };
+                start.map(|p| (p.as_vec3(), part))
+            })
+            .collect();
         let mut normal = [Vec3::ZERO; BATCH];
         let mut ok = [false; BATCH];
-        for chunk in self.octree.witnesses.chunks(BATCH) {
-            let mut points: Vec<Vec3> = chunk.iter().map(|&p| inner(p).as_vec3()).collect();
-            let reach = (16.0 * margin) as f32 + 16.0 * tolerance.residual;
+        for starts in starts.chunks(BATCH) {
+            let mut points: Vec<Vec3> = starts.iter().map(|start| start.0).collect();
+            let reach = margin as f32 + 16.0 * tolerance.residual;
             projector.land_along_gradient(
                 field,
                 &mut points,
@@ -103,10 +126,10 @@ impl Seeds {
                 &mut Descent { residual: tolerance.residual, reach, trust: 0.0 },
                 MAX_STEPS,
             );
-            for (k, &p) in points.iter().enumerate() {
-                if ok[k] && bounds.contains(p) {
-                    self.points.push((p, normal[k]));
-                } else if !ok[k] || chunk[k] == inner(chunk[k]) {
+            for (k, &position) in points.iter().enumerate() {
+                if ok[k] && bounds.contains(position) {
+                    self.points.push(Seed { position, normal: normal[k], part: starts[k].1 });
+                } else {
                     self.lost += 1;
                 }
             }
@@ -114,14 +137,14 @@ impl Seeds {
     }
 
     /// The next witness, if there is one, and what is left of the budget.
-    pub(super) fn next(&mut self, budget: u32) -> (Option<(Vec3, Vec3)>, u32) {
+    pub(super) fn next(&mut self, budget: u32) -> (Option<Seed>, u32) {
         let witness = self.points.get(self.next).copied();
         self.next += 1;
         (witness, budget.saturating_sub(UNITS))
     }
 
     /// All witnesses.
-    pub(super) fn points(&self) -> &[(Vec3, Vec3)] {
+    pub(super) fn points(&self) -> &[Seed] {
         &self.points
     }
 
@@ -130,32 +153,29 @@ impl Seeds {
         core::mem::take(&mut self.near)
     }
 
-    /// Whether the witness at `position` lies on the piece of one of the particles `near` it, the nearest first. By proof; or,
+    /// Whether the witness lies on the piece of one of the particles `near` it, the nearest first. By proof; or,
     /// where the bounds are too wide for one, by the field at a point between the two, which is counted.
     pub(super) fn place(
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
         particles: &Particles,
-        (position, normal): (Vec3, Vec3),
+        seed: Seed,
         near: Vec<u32>,
         tolerance: Tolerance,
     ) -> Place {
+        let Seed { position, normal, part } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let (from, along) = (position.as_dvec3(), normal.as_dvec3());
         let mut place = Place::Bare;
-        if near
-            .iter()
-            .take(MOST_TRIED)
-            .any(|&j| are_connected(field, from, particles.position[j as usize].as_dvec3(), along, slack))
-        {
+        if near.iter().take(MOST_TRIED).any(|&j| {
+            are_connected(field, part, from, particles.position[j as usize].as_dvec3(), along, slack)
+        }) {
             place = Place::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {
             let j = j as usize;
-            let (offset, other) = (particles.position[j] - position, particles.normal[j]);
-            let between = middle(position, offset, normal, other);
-            let (value, gradient) = projector.evaluate(field, between);
-            is_one_sheet(value, gradient, normal + other, offset.length(), lift(offset, normal, other))
+            let offset = particles.position[j] - position;
+            is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
         }) {
             self.unproven += 1;
             place = Place::Covered;
@@ -179,4 +199,20 @@ impl Seeds {
         (self.octree.is_available() && self.octree.is_done())
             .then_some(self.octree.undecided.len() as u64 + self.unproven + self.lost)
     }
+}
+
+/// A point of the surface a margin inside the box, near `p` in the margin outside: by turns to the nearest point of the smaller
+/// box and, along the gradient, to the surface. None where the surface does not reach into the box there.
+fn moved_inside(field: &mut dyn Field, mut p: DVec3, bounds: &Bounds, margin: f64) -> Option<DVec3> {
+    let (lo, hi) = (bounds.lo() + margin, bounds.hi() - margin);
+    for _ in 0..MOST_INWARD {
+        p = p.clamp(lo, hi);
+        let jet = field.jet(p);
+        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        if !step.is_finite() || step.length_squared() < 1e-6 * margin * margin {
+            break;
+        }
+        p -= step;
+    }
+    (p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all()).then_some(p)
 }

@@ -4,7 +4,10 @@
 //! one end's tangent plane as much as it sinks below the other's, up to the change of the curvature: the *lift*, half the sum
 //! of the two, is of third order in the distance. Between sheets at a distance g it is about g.
 
+use super::project::Projector;
 use crate::field::{Enclosure, Field};
+use crate::particles::Particles;
+use crate::spatial::Neighbour;
 use glam::{DVec3, Vec3};
 
 /// Half the sum of what the chord rises from the tangent plane at its beginning and at its end.
@@ -13,21 +16,61 @@ pub(super) fn lift(offset: Vec3, normal: Vec3, other: Vec3) -> f32 {
     (0.5 * offset.dot(normal + other)).abs()
 }
 
-/// The middle of the cubic curve that leaves `position` and arrives at `offset` from it in the tangent planes there: on one
-/// sheet it misses the surface by the fourth order of the distance.
-pub(super) fn middle(position: Vec3, offset: Vec3, normal: Vec3, other: Vec3) -> Vec3 {
-    let length = offset.length();
-    let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
-    position + offset * 0.5 + (along(normal) - along(other)) * 0.125
+/// Lift, in spacings, above which two particles a spacing apart are looked at more closely: they are on two sheets that far from
+/// each other, or where the curvature changes by 12 times as much over a spacing, in units of its inverse.
+pub(super) const MAX_LIFT: f32 = 0.02;
+
+/// Whether a particle at `offset` with the normal `other` may belong to another sheet than a point with the unit normal
+/// `normal`, although both normals point the same way: the lift is more than the change of the curvature over that distance
+/// would make it.
+#[inline(always)]
+pub(super) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
+    let lift = lift(offset, normal, other);
+    // The lift grows with the third power of the distance.
+    let share = offset.length_squared() / (spacing * spacing);
+    lift * lift > (MAX_LIFT * spacing) * (MAX_LIFT * spacing) * (share * share * share).max(1.0)
 }
 
-/// Whether the field at the [`middle`] is that of one sheet with both ends: the surface is far nearer than half the lift, and
-/// faces the same way. Between two sheets the middle is half the lift away from both, and beyond the third sheet.
-pub(super) fn is_one_sheet(value: f32, gradient: Vec3, normals: Vec3, length: f32, lift: f32) -> bool {
+/// Whether one of the particles `near` a point, all with normals like that of the point, belongs to its sheet; `spacing`
+/// is the usual distance between particles at each.
+pub(super) fn is_near_own(
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    particles: &Particles,
+    (position, normal): (Vec3, Vec3),
+    near: &[Neighbour],
+    spacing: impl Fn(usize) -> f32,
+) -> bool {
+    let other = |near: &Neighbour| particles.normal[near.index as usize];
+    near.iter().any(|near| !is_doubtful(near.offset, normal, other(near), spacing(near.index as usize)))
+        || near
+            .iter()
+            .any(|near| is_one_sheet(field, projector, (position, normal), near.offset, other(near)))
+}
+
+/// Whether a point of the surface with the unit normal `normal` and another one at `offset` from it, with the unit normal
+/// `other`, seem to be on one sheet, by the field at one place between them.
+///
+/// The cubic curve that leaves and arrives in the two tangent planes misses one sheet by the fourth order of the distance in
+/// its middle: the surface is far nearer there than half the lift, and faces the same way. Between two sheets that middle is
+/// half the lift away from both, and beyond the sheet between them.
+pub(super) fn is_one_sheet(
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    (position, normal): (Vec3, Vec3),
+    offset: Vec3,
+    other: Vec3,
+) -> bool {
     /// Least share of the length that the lift is taken for.
-    const ROUNDING: f32 = 0.02;
-    let slope = gradient.length();
-    gradient.dot(normals) > 0.0 && value.abs() <= 0.25 * lift.max(ROUNDING * length) * slope
+    const ROUNDING: f32 = 0.01;
+    /// Share of the lift within which the surface has to be.
+    const NEAR: f32 = 0.25;
+    let length = offset.length();
+    let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
+    let middle = position + offset * 0.5 + (along(normal) - along(other)) * 0.125;
+    let (value, gradient) = projector.evaluate(field, middle);
+    let reach = NEAR * lift(offset, normal, other).max(ROUNDING * length);
+    gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
 }
 
 /// Whether the bounds of the gradient prove that the surface connects `a` and `b`, points of it with about the unit normal
@@ -36,7 +79,14 @@ pub(super) fn is_one_sheet(value: f32, gradient: Vec3, normals: Vec3, length: f3
 /// The proof is that of the [octree](super::octree) on a box around both: f is monotone along the axis of the normal, and the
 /// surface through `a` cannot leave the box over the rectangle between the two, so that it is the graph of a function there,
 /// which meets the line through `b` in one point. Where one box is too large for that, the way is cut into pieces.
-pub(super) fn are_connected(field: &mut dyn Field, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
+pub(super) fn are_connected(
+    field: &mut dyn Field,
+    part: usize,
+    a: DVec3,
+    b: DVec3,
+    normal: DVec3,
+    slack: f64,
+) -> bool {
     /// Pieces tried.
     const PIECES: [u32; 3] = [1, 4, 16];
     PIECES.into_iter().any(|pieces| {
@@ -52,7 +102,7 @@ pub(super) fn are_connected(field: &mut dyn Field, a: DVec3, b: DVec3, normal: D
                     None => return false,
                 }
             };
-            let connected = is_graph(field, from, to, along, slack);
+            let connected = is_graph(field, part, from, to, along, slack);
             (from, along) = (to, normal);
             connected
         })
@@ -95,16 +145,15 @@ fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usiz
     ([lo, hi], up, room)
 }
 
-fn is_graph(field: &mut dyn Field, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
+fn is_graph(field: &mut dyn Field, part: usize, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
     let (around, up, room) = graph_box(a, b, normal, slack);
-    let mut known = [Enclosure::UNKNOWN];
-    field.enclose(&[around], &mut known);
+    let mut known = [Enclosure::UNKNOWN; 3];
+    field.enclose(part, &[around, [a, a], [b, b]], &mut known);
+    let [known, ends @ ..] = known;
+    let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
     // Ends that are not quite on the surface have it within 2 slacks above or below.
-    proves_graph(&known[0], around, up, room - 4.0 * slack)
-        && [a, b].iter().all(|&p| {
-            let least = known[0].gradient[up][0].abs().min(known[0].gradient[up][1].abs());
-            field.jet(p).value.abs() <= 2.0 * slack * least
-        })
+    proves_graph(&known, around, up, room - 4.0 * slack)
+        && ends.iter().all(|end| end.value[1].max(-end.value[0]) <= 2.0 * slack * least)
 }
 
 /// Whether the surface through any point of a box, `room` away from its lower and upper face, is a graph over all of it.

@@ -251,7 +251,8 @@ impl Survey {
                 / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
             let sphere = 4.0 * core::f64::consts::PI * size;
             let most = bounds.diagonal() * bounds.diagonal();
-            self.area = self.area.max(if sphere < most { sphere } else { 0.0 });
+            // Found from above and from below.
+            self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
             self.position.push(position);
             self.normal.push(normal);
             self.weight.push(0.0);

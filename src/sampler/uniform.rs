@@ -15,6 +15,7 @@ use super::gaps::SEAM;
 use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
+use super::sheets::{MAX_LIFT, is_doubtful, is_near_own, is_one_sheet, lift};
 use crate::field::Field;
 use crate::math::{Bounds, LANES, Lanes, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
@@ -239,13 +240,16 @@ impl UniformFront {
     /// Whether a particle of the sheet of (`position`, `normal`) is within `distance` of it.
     pub(super) fn is_covered(
         &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
         particles: &Particles,
-        position: Vec3,
-        normal: Vec3,
+        (position, normal): (Vec3, Vec3),
         distance: f32,
     ) -> bool {
         self.grid.gather(position, distance, &mut self.found);
-        self.found.iter().any(|near| particles.normal[near.index as usize].dot(normal) > 0.0)
+        self.found.retain(|near| particles.normal[near.index as usize].dot(normal) > 0.0);
+        let spacing = 2.0 * self.radius;
+        is_near_own(field, projector, particles, (position, normal), &self.found, |_| spacing)
     }
 
     /// Particles within `distance` of `position` whose normals are within 90° of `normal`, nearest first, in `near`.
@@ -309,7 +313,7 @@ impl UniformFront {
             match self.stage {
                 Stage::Place => {
                     if self.next < self.level.end {
-                        self.place_children(field, pairs, particles, self.next);
+                        self.place_children(field, projector, pairs, particles, self.next);
                         self.next += 1;
                         budget -= 1;
                     } else {
@@ -330,7 +334,7 @@ impl UniformFront {
                 }
                 Stage::Settle => {
                     if self.next < self.children.len() {
-                        self.settle_child(particles, self.next);
+                        self.settle_child(field, projector, particles, self.next);
                         self.next += 1;
                         budget -= 1;
                     } else {
@@ -359,6 +363,7 @@ impl UniformFront {
     fn place_children(
         &mut self,
         field: &mut dyn Field,
+        projector: &mut Projector,
         pairs: &mut Pairs,
         particles: &mut Particles,
         parent: usize,
@@ -367,7 +372,12 @@ impl UniformFront {
         let reach = self.reach();
         let mut found = core::mem::take(&mut self.found);
         self.grid.gather(p, reach, &mut found);
-        self.read_surroundings(&found, pairs, particles, parent);
+        let wary = self.read_surroundings(&found, pairs, particles, parent);
+        if wary {
+            self.drop_strangers(field, projector, particles, parent, &mut found);
+            pairs.truncate(parent);
+            self.read_surroundings(&found, pairs, particles, parent);
+        }
 
         let grandparent = particles.parent[parent];
         let is_seed = grandparent == Particles::NO_PARENT;
@@ -427,7 +437,8 @@ impl UniformFront {
                 },
                 slot: k as u32,
                 place: self.grid.insert(position, index),
-                clearance: any_sq.sqrt().min(self.looked_at()),
+                // Strangers have not been looked at.
+                clearance: if wary { 0.0 } else { any_sq.sqrt().min(self.looked_at()) },
             });
             self.around.push(offset, normal);
         }
@@ -439,17 +450,19 @@ impl UniformFront {
     }
 
     /// Reads what was gathered around `parent`: what its children may collide with, and, into `pairs`, the particles
-    /// before it that repel it. All of those are final, so the list is complete.
+    /// before it that repel it. All of those are final, so the list is complete. Says whether some may be on another sheet
+    /// that faces the same way.
     fn read_surroundings(
         &mut self,
         found: &[Neighbour],
         pairs: &mut Pairs,
         particles: &Particles,
         parent: usize,
-    ) {
+    ) -> bool {
         let collision = 2.0 * self.radius + self.looked_at();
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
+        let mut doubtful = false;
         self.around.len = 0;
         pairs.push(found.iter().filter_map(|near| {
             let j = near.index as usize;
@@ -457,9 +470,35 @@ impl UniformFront {
             if near.distance_sq <= collision * collision {
                 self.around.push(near.offset, other);
             }
-            let repels = near.distance_sq <= repulsion * repulsion && other.dot(normal) > 0.0;
+            let faces = other.dot(normal) > 0.0;
+            // The normals of children under way are only predicted, but they belong to this front.
+            doubtful |=
+                faces && j < self.settled && is_doubtful(near.offset, normal, other, 2.0 * self.radius);
+            let repels = near.distance_sq <= repulsion * repulsion && faces;
             (j < parent && repels).then_some(near.index)
         }));
+        doubtful
+    }
+
+    /// Takes the particles out of `found` that face the way of `parent` but are on another sheet.
+    fn drop_strangers(
+        &self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        parent: usize,
+        found: &mut Vec<Neighbour>,
+    ) {
+        let (p, n) = (particles.position[parent], particles.normal[parent]);
+        // Where there is another sheet, its particles far away to the side are as suspicious as those near by.
+        let suspicious = 0.5 * MAX_LIFT * 2.0 * self.radius;
+        found.retain(|near| {
+            let other = particles.normal[near.index as usize];
+            near.index as usize >= self.settled
+                || other.dot(n) <= 0.0
+                || lift(near.offset, n, other) <= suspicious
+                || is_one_sheet(field, projector, (p, n), near.offset, other)
+        });
     }
 
     /// Least-squares fit of the second fundamental form to the normals of the settled particles around `parent`.
@@ -471,6 +510,7 @@ impl UniformFront {
         u: Vec3,
         w: Vec3,
     ) -> Shape {
+        let n = particles.normal[parent];
         // Summed in the order of the indices, so that the result does not depend on how the grid is made.
         let mut ring = [(u32::MAX, 0_u32); RING_CAPACITY];
         let mut count = 0;
@@ -478,6 +518,10 @@ impl UniformFront {
         for (m, near) in found.iter().enumerate() {
             let j = near.index;
             if near.distance_sq <= reach_sq && (j as usize) < self.settled && j as usize != parent {
+                // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
+                if (particles.normal[j as usize] - n).length_squared() > 1.0 {
+                    continue;
+                }
                 let mut at = count.min(RING_CAPACITY - 1);
                 if count == RING_CAPACITY && ring[at].0 < j {
                     continue;
@@ -490,16 +534,11 @@ impl UniformFront {
                 count = (count + 1).min(RING_CAPACITY);
             }
         }
-        let n = particles.normal[parent];
         let (mut xx, mut xy, mut yy) = (0.0_f32, 0.0, 0.0);
         let (mut xp, mut yp, mut xq, mut yq) = (0.0_f32, 0.0, 0.0, 0.0);
         for &(j, m) in &ring[..count] {
             let offset = found[m as usize].offset;
             let turn = particles.normal[j as usize] - n;
-            // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
-            if turn.length_squared() > 1.0 {
-                continue;
-            }
             let (x, y, p, q) = (offset.dot(u), offset.dot(w), turn.dot(u), turn.dot(w));
             xx += x * x;
             xy += x * y;
@@ -539,18 +578,36 @@ impl UniformFront {
     ) {
         self.circles.clear();
         self.circles.extend(self.children[self.next..self.next + count].iter().map(|child| child.circle));
-        projector.land_on_circles(field, &self.circles, self.tolerance, &mut self.batch);
-        for (k, landing) in self.batch.iter().enumerate() {
-            if let Landing::On { position, .. } = landing {
+        let mut batch = core::mem::take(&mut self.batch);
+        projector.land_on_circles(field, &self.circles, self.tolerance, &mut batch);
+        for (k, landing) in batch.iter_mut().enumerate() {
+            if let Landing::On { position, normal } = *landing {
+                let Circle { centre, normal: above, .. } = self.circles[k];
+                let offset = position - centre;
+                // Round a rim or a thin sheet's edge: the other side is not a child's place.
+                let is_stranger = normal.dot(above) <= 0.0
+                    || is_doubtful(offset, above, normal, 2.0 * self.radius)
+                        && !is_one_sheet(field, projector, (centre, above), offset, normal);
+                if is_stranger {
+                    *landing = Landing::NotConverged;
+                    continue;
+                }
                 let provisional = particles.position[self.settled + self.next + k];
-                self.drift = self.drift.max((*position - provisional).length());
+                self.drift = self.drift.max((position - provisional).length());
             }
         }
-        self.landings.extend_from_slice(&self.batch);
+        self.landings.extend_from_slice(&batch);
+        self.batch = batch;
     }
 
     /// Final fate of child `k` of the level, in queue order: paper §4.4, Algorithm 2.
-    fn settle_child(&mut self, particles: &mut Particles, k: usize) {
+    fn settle_child(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &mut Particles,
+        k: usize,
+    ) {
         let child = self.children[k];
         // Settled children close up over those that were not added.
         let provisional = self.level.end + k;
@@ -564,7 +621,7 @@ impl UniformFront {
                 // Nothing can be nearer than the clearance less what both have moved. The clearance is from all sheets:
                 // the final normal may be that of another sheet than the provisional one.
                 let safe = child.clearance - moved - self.drift > self.match_radius;
-                if !safe && self.collides(particles, position, normal) {
+                if !safe && self.collides(field, projector, particles, (position, normal)) {
                     SlotFate::Matched
                 } else {
                     let index = self.settled;
@@ -596,13 +653,23 @@ impl UniformFront {
     }
 
     /// Whether a settled particle of the same sheet is within the match radius.
-    fn collides(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> bool {
+    fn collides(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        (position, normal): (Vec3, Vec3),
+    ) -> bool {
         self.grid.gather(position, self.match_radius, &mut self.found);
-        let settled = self.settled;
-        self.found.iter().any(|near| {
+        let mut near = core::mem::take(&mut self.found);
+        near.retain(|near| {
             let j = near.index as usize;
-            j < settled && self.same_sheet(near.offset, normal, particles.normal[j])
-        })
+            j < self.settled && self.same_sheet(near.offset, normal, particles.normal[j])
+        });
+        let spacing = 2.0 * self.radius;
+        let collides = is_near_own(field, projector, particles, (position, normal), &near, |_| spacing);
+        self.found = near;
+        collides
     }
 }
 

@@ -119,7 +119,7 @@ pub struct FormulaField {
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
     /// Compiled when first asked for.
-    box_program: Option<interval::BoxProgram>,
+    parts: Vec<interval::Part>,
 }
 
 impl FormulaField {
@@ -172,7 +172,7 @@ impl FormulaField {
             hessian: [root; 6],
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
-            box_program: None,
+            parts: Vec::new(),
         };
         field.update();
         Ok(field)
@@ -269,8 +269,18 @@ impl FormulaField {
         if let Some(program) = &mut self.hessian_program {
             program.set_parameters(&self.values);
         }
-        if let Some(program) = &mut self.box_program {
-            program.set_parameters(&self.values);
+        for part in &mut self.parts {
+            part.first.set_parameters(&self.values);
+            if let Some(program) = &mut part.second {
+                program.set_parameters(&self.values);
+            }
+        }
+    }
+
+    fn compile_parts(&mut self) {
+        if self.parts.is_empty() {
+            self.parts = interval::parts(&mut self.graph, self.root, self.gradient);
+            self.update();
         }
     }
 
@@ -430,18 +440,25 @@ impl Field for FormulaField {
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        let mut out = [Enclosure::UNKNOWN];
-        self.enclose(&[[lo, hi]], &mut out);
-        Interval { lo: out[0].value[0], hi: out[0].value[1], defined: out[0].defined }
+        self.compile_parts();
+        self.parts[0].first.whole([lo, hi])
     }
 
-    fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        let program = self.box_program.get_or_insert_with(|| {
-            let [x, y, z] = self.gradient;
-            let mut program = interval::BoxProgram::compile(&self.graph, [self.root, x, y, z]);
-            program.set_parameters(&self.values);
-            program
-        });
-        program.run(boxes, &mut out[..boxes.len()]);
+    fn parts(&mut self) -> usize {
+        self.compile_parts();
+        self.parts.len()
+    }
+
+    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        self.compile_parts();
+        self.parts[part].first.enclose(boxes, out);
+    }
+
+    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        self.compile_parts();
+        match &mut self.parts[part].second {
+            Some(program) => program.enclose_second(boxes, out),
+            None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
+        }
     }
 }

@@ -12,7 +12,7 @@ mod rows;
 
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
-use crate::field::Enclosure;
+use crate::field::{Enclosure, Interval};
 use glam::DVec3;
 use range::Range;
 use rows::{BOXES, Row};
@@ -47,15 +47,15 @@ pub(super) struct BoxProgram {
     /// Its present bounds: a little wider than one number where the arithmetic rounds.
     uniforms: Vec<Range>,
     steps: Vec<Step>,
-    /// Rows of f and its three derivatives.
-    outputs: [u32; 4],
+    /// Rows of the results.
+    outputs: Vec<u32>,
     /// The first three are the coordinates.
     rows: Vec<Row>,
 }
 
 impl BoxProgram {
-    pub(super) fn compile(graph: &Graph, outputs: [Id; 4]) -> Self {
-        let live = graph.live(&outputs);
+    pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
+        let live = graph.live(outputs);
         let mut program = Self::default();
         let mut uniform = vec![0_u32; graph.len()];
         // Virtual rows, one per value, to begin with.
@@ -99,7 +99,10 @@ impl BoxProgram {
             program.steps.push(Step { op, out: next, operands });
             next += 1;
         }
-        program.outputs = outputs.map(|id| program.row_of(graph, id, &uniform, &mut row, &mut next));
+        for &id in outputs {
+            let output = program.row_of(graph, id, &uniform, &mut row, &mut next);
+            program.outputs.push(output);
+        }
         program.allocate(next);
         program
     }
@@ -120,7 +123,7 @@ impl BoxProgram {
         for (at, step) in self.steps.iter().enumerate() {
             step.rows().for_each(|row| last[row as usize] = at);
         }
-        for kept in self.outputs.into_iter().chain(0..3) {
+        for kept in self.outputs.iter().copied().chain(0..3) {
             last[kept as usize] = usize::MAX;
         }
         let mut real: Vec<u32> = (0..count).collect();
@@ -152,7 +155,7 @@ impl BoxProgram {
                 }
             }
         }
-        self.outputs = self.outputs.map(|row| real[row as usize]);
+        self.outputs.iter_mut().for_each(|row| *row = real[*row as usize]);
         self.rows = vec![Row::ZERO; rows as usize];
     }
 
@@ -179,9 +182,14 @@ impl BoxProgram {
         }
     }
 
-    /// Bounds over each of the boxes.
-    pub(super) fn run(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        for (boxes, out) in boxes.chunks(BOXES).zip(out.chunks_mut(BOXES)) {
+    /// Operations of the program.
+    pub(super) fn operations(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Hands the bounds over box `i` to `take` as (i, bounds of result `n` as a function of n).
+    fn run(&mut self, boxes: &[[DVec3; 2]], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
+        for (first, boxes) in (0..).step_by(BOXES).zip(boxes.chunks(BOXES)) {
             let n = boxes.len();
             for axis in 0..3 {
                 let row = &mut self.rows[axis];
@@ -195,11 +203,29 @@ impl BoxProgram {
                 let step = self.steps[at];
                 self.rows[step.out as usize] = self.execute(&step, n);
             }
-            let [f, x, y, z] = self.outputs.map(|row| &self.rows[row as usize]);
-            for (k, out) in out.iter_mut().enumerate() {
-                *out = enclosure(f.at(k), [x.at(k), y.at(k), z.at(k)]);
+            for k in 0..n {
+                take(first + k, &|output| self.rows[self.outputs[output] as usize].at(k));
             }
         }
+    }
+
+    /// Bounds of the first four results, a function and its gradient; the fifth tells where the whole field is defined and
+    /// continuous.
+    pub(super) fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
+    }
+
+    /// Bounds of the fifth result, the whole field, over one box.
+    pub(super) fn whole(&mut self, corners: [DVec3; 2]) -> Interval {
+        let mut out = Range::exactly(f64::NAN);
+        self.run(&[corners], |_, result| out = result(4));
+        let [lo, hi] = if out.is_empty() { Enclosure::NOWHERE.value } else { [out.lo, out.hi] };
+        Interval { lo, hi, defined: out.flags & flags::DEFINED != 0 }
+    }
+
+    /// Bounds of six results, the second derivatives.
+    pub(super) fn enclose_second(&mut self, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        self.run(boxes, |i, result| out[i] = [0, 1, 2, 3, 4, 5].map(|output| slope(result(output))));
     }
 
     fn execute(&self, step: &Step, n: usize) -> Row {
@@ -261,18 +287,79 @@ impl Step {
     }
 }
 
-fn enclosure(f: Range, gradient: [Range; 3]) -> Enclosure {
-    if f.is_empty() {
+/// The bounds of a derivative; where it is defined nowhere, nothing is known of it.
+fn slope(range: Range) -> [f64; 2] {
+    if range.is_empty() { [f64::NEG_INFINITY, f64::INFINITY] } else { [range.lo, range.hi] }
+}
+
+fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
+    if f.is_empty() || whole.is_empty() {
         return Enclosure::NOWHERE;
     }
-    let slope = |range: Range| {
-        if range.is_empty() { [f64::NEG_INFINITY, f64::INFINITY] } else { [range.lo, range.hi] }
-    };
+    let flags = f.flags & whole.flags;
     Enclosure {
         value: [f.lo, f.hi],
-        gradient: gradient.map(slope),
-        defined: f.flags & flags::DEFINED != 0,
-        continuous: f.flags & flags::CONTINUOUS != 0,
+        gradient: [x, y, z].map(slope),
+        defined: flags & flags::DEFINED != 0,
+        continuous: flags & flags::CONTINUOUS != 0,
         may_vanish: !f.is_nonzero(),
     }
+}
+
+/// A function among whose zeros are those of the field, with what bounds it.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    pub(super) first: BoxProgram,
+    /// Without it where the second derivatives are too long.
+    pub(super) second: Option<BoxProgram>,
+}
+
+/// Most operations of a program for the second derivatives.
+const MOST_SECOND: usize = 8_192;
+
+/// Most factors that are looked at one by one.
+const MOST_PARTS: usize = 16;
+
+/// The functions whose zeros are those of `root`: of a product the factors, of a power its base, of a function that vanishes
+/// at 0 only its argument. Each is simpler than the product, and has a gradient where two of them vanish together.
+pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part> {
+    let mut factors = Vec::new();
+    let mut open = vec![root];
+    while let Some(id) = open.pop() {
+        match graph.node(id) {
+            _ if graph.is_uniform(id) => {}
+            Node::Binary(Binary::Mul, a, b) => open.extend([b, a]),
+            Node::Binary(Binary::Div, a, _) => open.push(a),
+            Node::Power(a, n) if n > 0 => open.push(a),
+            Node::Power(_, _) => {}
+            Node::Unary(
+                Unary::Neg
+                | Unary::Square
+                | Unary::Sqrt
+                | Unary::Cbrt
+                | Unary::Abs
+                | Unary::Atan
+                | Unary::Sinh
+                | Unary::Tanh,
+                a,
+            ) => open.push(a),
+            _ if factors.contains(&id) => {}
+            _ => factors.push(id),
+        }
+    }
+    if factors.is_empty() || factors.len() > MOST_PARTS {
+        factors = vec![root];
+    }
+    factors
+        .into_iter()
+        .map(|f| {
+            let [x, y, z] = if f == root { gradient } else { super::cheaper_gradient(graph, f) };
+            let first = BoxProgram::compile(graph, &[f, x, y, z, root]);
+            let second = (first.operations() <= MOST_SECOND)
+                .then(|| super::cheaper_hessian(graph, [x, y, z]))
+                .map(|second| BoxProgram::compile(graph, &second))
+                .filter(|second| second.operations() <= MOST_SECOND);
+            Part { first, second }
+        })
+        .collect()
 }

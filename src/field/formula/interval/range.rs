@@ -155,12 +155,13 @@ impl Range {
         let size = self.lo.abs().max(self.hi.abs());
         let slack = 1e-15 * size + 1e-15;
         let (lo, hi) = (self.lo / core::f64::consts::PI, self.hi / core::f64::consts::PI);
-        let pole = !(size <= TRUSTED_ANGLE) || libm::floor(hi + 0.5 + slack) > libm::floor(lo + 0.5 - slack);
+        let trusted = size <= TRUSTED_ANGLE;
+        let pole = !trusted || libm::floor(hi + 0.5 + slack) > libm::floor(lo + 0.5 - slack);
         if !pole {
             return self.increasing(libm::tan);
         }
         // Zeros are at whole multiples of π.
-        let zero = !(size <= TRUSTED_ANGLE) || libm::floor(hi + slack) > libm::floor(lo - slack);
+        let zero = !trusted || libm::floor(hi + slack) > libm::floor(lo - slack);
         let everything = Self::everything(self.flags);
         Self { flags: everything.flags | if zero { 0 } else { NONZERO }, ..everything }
     }

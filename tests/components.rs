@@ -1,0 +1,329 @@
+//! Every connected piece of the surface gets particles, however small or near another one, and the report says how sure
+//! that is.
+
+use glam::Vec3;
+use marching_particles::math::Bounds;
+use marching_particles::particles::Particles;
+use marching_particles::sampler::{Search, Settings, StopReason};
+use marching_particles::session::{FieldRequest, Report, Session};
+
+fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Report) {
+    let mut session = Session::new();
+    let request =
+        FieldRequest { formula: Some(formula.into()), bounds: Some(bounds), ..FieldRequest::default() };
+    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    while session.step(5_000).stop_reason.is_none() {}
+    let report = session.report();
+    (session, report)
+}
+
+/// Samples in the cube of half-width `half` with a radius of `share` of its diagonal.
+fn sampled(formula: &str, half: f64, share: f64) -> (Session, Report) {
+    session(formula, Bounds::cube(half), &Settings { radius_share: share, ..Settings::default() })
+}
+
+fn is_proven(report: &Report, context: &str) {
+    assert_eq!(report.search, Search::Proven, "{context}: {:?} undecided", report.undecided_cells);
+    assert_eq!(report.undecided_cells, Some(0), "{context}");
+}
+
+/// f = the product of the balls, each given by its centre and its radius.
+fn balls(balls: &[([f64; 3], f64)]) -> String {
+    let factors: Vec<String> = balls
+        .iter()
+        .map(|([x, y, z], r)| format!("((x - ({x}))^2 + (y - ({y}))^2 + (z - ({z}))^2 - ({r})^2)"))
+        .collect();
+    factors.join("*")
+}
+
+/// Share of the particles that a hexagonal cover of the area would have.
+fn cover(report: &Report, area: f64) -> f64 {
+    report.count as f64 * 2.0 * 3.0_f64.sqrt() * report.radius * report.radius / area
+}
+
+/// The union of two things given by their functions.
+fn least(parts: &[String]) -> String {
+    parts.iter().skip(1).fold(parts[0].clone(), |all, part| format!("min({all}, {part})"))
+}
+
+#[test]
+fn two_spheres_a_thousandth_apart_are_two_pieces() {
+    let pair = [([-0.4005, 0.013, 0.021], 0.4), ([0.4005, 0.013, 0.021], 0.4)];
+    for formula in [balls(&pair), least(&pair.map(|ball| balls(&[ball])))] {
+        let (session, report) = sampled(&formula, 1.0, 0.01);
+        is_proven(&report, &formula);
+        assert_eq!(report.components, 2, "{formula}");
+        assert_eq!(report.quality.map(|q| q.euler), Some(4), "{formula}");
+        // Labels tell the two apart.
+        let component = &session.measured().component;
+        for (p, &label) in session.particles().position.iter().zip(component) {
+            let left = session.particles().position.iter().zip(component).find(|(q, _)| q.x < 0.0);
+            let same = left.is_some_and(|(_, &other)| other == label);
+            assert_eq!(p.x < 0.0, same, "{formula}: {p} has the label {label}");
+        }
+    }
+}
+
+#[test]
+fn two_spheres_ten_diameters_apart_are_two_pieces() {
+    let formula = balls(&[([-0.9, 0.1, 0.0], 0.09), ([0.9, -0.1, 0.05], 0.09)]);
+    let (_, report) = sampled(&formula, 1.0, 0.004);
+    is_proven(&report, &formula);
+    assert_eq!((report.components, report.components_seeded), (2, 2));
+}
+
+#[test]
+fn nested_spheres_are_as_many_pieces_as_there_are() {
+    let formula = balls(&[([0.0; 3], 0.9), ([0.0; 3], 0.88), ([0.0; 3], 0.5), ([0.02, 0.0, 0.0], 0.3)]);
+    let (session, report) = sampled(&formula, 1.0, 0.01);
+    is_proven(&report, &formula);
+    assert_eq!(report.components, 4);
+    // Labels go by size.
+    let mut counts = [0_usize; 4];
+    session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
+    assert!(counts.is_sorted_by(|a, b| a >= b) && counts[3] > 0, "{counts:?}");
+}
+
+/// Ten bells of density on a ring.
+fn metaballs(level: f64) -> String {
+    let bells: Vec<String> = (0..10)
+        .map(|k| {
+            let angle = f64::from(k) * core::f64::consts::TAU / 10.0;
+            let (x, y) = (libm::cos(angle), libm::sin(angle));
+            format!("exp(-16*((x - ({x}))^2 + (y - ({y}))^2 + z^2))")
+        })
+        .collect();
+    format!("{level} = {}", bells.join(" + "))
+}
+
+#[test]
+fn ten_metaballs_are_ten_pieces_or_two() {
+    let (_, apart) = sampled(&metaballs(0.7), 1.5, 0.006);
+    is_proven(&apart, "apart");
+    assert_eq!((apart.components, apart.quality.map(|q| q.euler)), (10, Some(20)));
+    let (_, merged) = sampled(&metaballs(0.3), 1.5, 0.006);
+    is_proven(&merged, "merged");
+    assert_eq!((merged.components, merged.quality.map(|q| q.euler)), (1, Some(0)));
+}
+
+#[test]
+fn a_chain_of_linked_tori_is_as_many_pieces_as_it_has_links() {
+    let torus = |centre: f64, flat: bool| {
+        let (y, z) = if flat { ("y", "z") } else { ("z", "y") };
+        format!("hypot(hypot(x - ({centre}), {y}) - 0.4, {z}) - 0.07")
+    };
+    let chain: Vec<String> = (0..4).map(|k| torus(-0.9 + 0.6 * f64::from(k), k % 2 == 0)).collect();
+    let (_, report) = sampled(&least(&chain), 1.5, 0.007);
+    assert_eq!((report.components, report.quality.map(|q| q.euler)), (4, Some(0)));
+    is_proven(&report, "chain");
+}
+
+#[test]
+fn a_sphere_of_two_radii_in_a_large_box_is_found() {
+    // Between the nodes of any grid of 32 cells a side: they are 0.0625 apart.
+    let radius = 0.004;
+    for centre in [[0.03, 0.03, 0.03], [-0.41, 0.72, 0.345], [0.97, -0.97, 0.03]] {
+        let settings = Settings { radius_share: 0.5 * radius / 12.0_f64.sqrt(), ..Settings::default() };
+        let (session, report) = session(&balls(&[(centre, radius)]), Bounds::cube(1.0), &settings);
+        is_proven(&report, "tiny");
+        assert_eq!((report.stop_reason, report.components), (Some(StopReason::Complete), 1), "{centre:?}");
+        let cover = cover(&report, 4.0 * core::f64::consts::PI * radius * radius);
+        assert!((0.7..1.5).contains(&cover), "{centre:?}: {} particles are {cover} of a cover", report.count);
+        for p in &session.particles().position {
+            let d = p.as_dvec3() - glam::DVec3::from_array(centre);
+            assert!((d.length() - radius).abs() < 1e-3 * radius, "{centre:?}: {p}");
+        }
+    }
+}
+
+#[test]
+fn a_piece_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
+    let formula = least(&[
+        balls(&[([-0.3, 0.0, 0.0], 0.5)]),
+        format!("({}) / 0.05", balls(&[([0.53, 0.53, 0.53], 0.025)])),
+    ]);
+    let (session, report) = sampled(&formula, 1.0, 0.002);
+    is_proven(&report, &formula);
+    assert_eq!(report.components, 2);
+    let small = session.measured().component.iter().filter(|&&label| label == 1).count();
+    assert!(small > 20, "{small} particles on the small sphere");
+}
+
+#[test]
+fn a_count_is_met_on_a_piece_that_the_survey_does_not_see() {
+    let settings = Settings {
+        size_mode: marching_particles::sampler::SizeMode::Count,
+        count: 1_000,
+        ..Settings::default()
+    };
+    let (_, report) = session(&balls(&[([0.03; 3], 0.01)]), Bounds::cube(1.0), &settings);
+    assert!((970..=1_030).contains(&report.count), "{}", report.count);
+}
+
+#[test]
+fn a_clipped_gyroid_is_proven_to_be_found_whole() {
+    let formula = "sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x)";
+    let (_, report) = sampled(formula, 6.3, 0.006);
+    is_proven(&report, formula);
+    assert!((1..=report.components_seeded as usize).contains(&report.components), "{report:?}");
+}
+
+#[test]
+fn a_surface_that_touches_its_box_is_proven_to_be_found() {
+    // From inside on all faces, on one face only, and cut by one.
+    for (centre, pieces) in [([0.0; 3], 1), ([0.0, 0.0, 1e-9], 1), ([0.3, 0.0, 0.0], 1)] {
+        let formula = balls(&[(centre, 1.0)]);
+        let (_, report) = sampled(&formula, 1.0, 0.01);
+        is_proven(&report, &formula);
+        assert_eq!(report.components, pieces, "{formula}");
+    }
+    // A plane that is a face of the box.
+    let bounds = Bounds { min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 1.0] };
+    let (_, report) = session("z", bounds, &Settings { radius_share: 0.01, ..Settings::default() });
+    is_proven(&report, "z");
+    assert_eq!(report.components, 1);
+}
+
+#[test]
+fn caps_that_the_box_cuts_off_are_pieces_of_their_own() {
+    // A sphere larger than the box: eight corners are left of it. And one that pokes through a face, a hundredth deep.
+    let (_, report) = sampled("x^2 + y^2 + z^2 - 2.5", 1.0, 0.008);
+    is_proven(&report, "corners");
+    assert_eq!(report.components, 8);
+    for axis in 0..3 {
+        let mut centre = [0.013, -0.021, 0.017];
+        centre[axis] = 1.09;
+        let formula = balls(&[(centre, 0.1)]);
+        let (_, report) = sampled(&formula, 1.0, 0.002);
+        is_proven(&report, &formula);
+        assert_eq!(report.components, 1, "{formula}");
+    }
+}
+
+#[test]
+fn a_piece_that_is_not_there_is_proven_absent() {
+    for (formula, half) in [
+        ("x^2 + y^2 + z^2 + 0.0001", 1.0),
+        ("sin(x) + sin(y) + sin(z) - 3.01", 6.0),
+        ("(x - 3)^2 + y^2 + z^2 - 0.9", 2.0),
+        ("1/(x^2 + y^2 + z^2 - 0.5)", 1.0),
+        ("x^4 + y^4 + z^4 - 2x^2 - 2y^2 - 2z^2 + 3.01", 2.0),
+    ] {
+        let mut session = Session::new();
+        let request = FieldRequest {
+            formula: Some(formula.into()),
+            bounds: Some(Bounds::cube(half)),
+            ..FieldRequest::default()
+        };
+        session.set_field(&request).unwrap();
+        session.start(&Settings::default()).unwrap();
+        let progress = session.step(1_000);
+        assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
+        assert!(progress.message.is_some_and(|m| m.contains("proven")), "{formula}");
+        is_proven(&session.report(), formula);
+    }
+}
+
+#[test]
+fn singular_surfaces_end_the_search_and_say_what_is_open() {
+    for (formula, half) in [
+        ("x^2 + y^2 - z^2", 1.0),
+        ("y^2 - x^3", 1.0),
+        ("max(x^2 + y^2 + z^2 - 0.5, 0)", 1.0),
+        ("x^2 + y^2 + z^2 - 0.6 + 0*ln(x)", 1.0),
+        ("floor(5x)/5 - y", 1.0),
+    ] {
+        let (_, report) = sampled(formula, half, 0.02);
+        let open = report.undecided_cells.expect("a formula is searched by proof");
+        assert_eq!(report.search, Search::Searched, "{formula}");
+        assert!(open > 0 && open < 200_000, "{formula}: {open}");
+        assert!(report.stop_reason.is_some(), "{formula}");
+    }
+}
+
+#[test]
+fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
+    // A plate, a flat ellipsoid, and shells within shells: sheets a tenth and a third of a spacing apart.
+    let shells = balls(&[([0.0; 3], 0.7), ([0.0; 3], 0.69), ([0.0; 3], 0.66), ([0.0; 3], 0.65)]);
+    let sheet = |p: Vec3| -> u32 {
+        let d = p.length();
+        [0.7_f32, 0.69, 0.66, 0.65].iter().position(|r| (d - r).abs() < 2e-3).expect("on a shell") as u32
+    };
+    let share = 0.05 / 12.0_f64.sqrt();
+    let (nested, report) = sampled(&shells, 1.0, share);
+    assert_eq!(report.components, 4, "{report:?}");
+    check(nested.particles(), &sheet, "shells");
+    let labels = &nested.measured().component;
+    for (p, &label) in nested.particles().position.iter().zip(labels) {
+        let other = nested.particles().position.iter().zip(labels).find(|(q, _)| sheet(**q) == sheet(*p));
+        assert_eq!(other.map(|(_, &label)| label), Some(label));
+    }
+    let cover = cover(&report, 4.0 * core::f64::consts::PI * (0.49 + 0.4761 + 0.4356 + 0.4225));
+    assert!((0.9..1.2).contains(&cover), "{cover}");
+
+    let as_placed = Settings { radius_share: share, relax_steps: 0, ..Settings::default() };
+    let (session, _) = session("(x^2 + y^2)/0.81 + z^2/0.0001 - 1", Bounds::cube(1.0), &as_placed);
+    // Round the rim the two sheets are one.
+    check(
+        session.particles(),
+        &|p| if p.truncate().length() > 0.85 { 2 } else { u32::from(p.z > 0.0) },
+        "ellipsoid",
+    );
+    let (planes, report) = sampled("z^2 - 0.000025", 1.0, share);
+    check(planes.particles(), &|p| u32::from(p.z > 0.0), "planes");
+    assert_eq!(report.components, 2);
+}
+
+#[test]
+fn factors_are_searched_one_by_one() {
+    // Where planes cross, their product has no gradient; each of them has one.
+    for (formula, pieces) in
+        [("x y z", 8), ("(x - 0.1)(x + 0.1)(x^2 + y^2 + z^2 - 4)", 2), ("-3 x / (y - 2)", 1)]
+    {
+        let (_, report) = sampled(formula, 1.0, 0.02);
+        is_proven(&report, formula);
+        assert_eq!(report.components, pieces, "{formula}");
+    }
+}
+
+/// No child is on another sheet than its parent.
+fn check(particles: &Particles, sheet: &dyn Fn(Vec3) -> u32, context: &str) {
+    assert!(particles.len() > 200, "{context}: {} particles", particles.len());
+    for i in 0..particles.len() {
+        let parent = particles.parent[i];
+        if parent != Particles::NO_PARENT {
+            let (p, q) = (particles.position[i], particles.position[parent as usize]);
+            let facing = particles.normal[i].dot(particles.normal[parent as usize]);
+            assert!(facing > 0.0, "{context}: {p} is a child of {q}, which faces the other way");
+            let sheets = (sheet(p), sheet(q));
+            assert!(
+                sheets.0 == sheets.1 || sheets.0.max(sheets.1) > 1 && context == "ellipsoid",
+                "{context}: {p} is a child of {q}"
+            );
+        }
+    }
+}
+
+#[test]
+fn how_the_run_is_cut_into_steps_changes_nothing() {
+    let formula = least(&[
+        balls(&[([-0.3, 0.0, 0.0], 0.5)]),
+        format!("({}) / 0.05", balls(&[([0.53, 0.53, 0.53], 0.025)])),
+    ]);
+    let run = |budget: u32| {
+        let mut session = Session::new();
+        let request = FieldRequest {
+            formula: Some(formula.clone()),
+            bounds: Some(Bounds::cube(1.0)),
+            ..FieldRequest::default()
+        };
+        session.set_field(&request).unwrap();
+        session.start(&Settings { radius_share: 0.005, ..Settings::default() }).unwrap();
+        while session.step(budget).stop_reason.is_none() {}
+        (session.particles().digest(), session.report().undecided_cells)
+    };
+    let whole = run(u32::MAX);
+    assert_eq!(run(1), whole);
+    assert_eq!(run(77), whole);
+}
