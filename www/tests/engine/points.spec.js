@@ -143,6 +143,34 @@ test('the sampler replaced in the middle of a model samples it again', async ({ 
   expect((await status(page)).model).not.toBe(null);
 });
 
+test('a stop in the slowest run there is keeps what there is, and nobody takes it for a hang', async ({ page }) => {
+  await open(page);
+  await set(page, bunny);
+  const out = /** @type {any} */ (await page.evaluate(async () => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    void p.set({ settings: { sampling: 'adaptive', placement: 'faithful', chord_error: 2e-5 } });
+    await new Promise((resolve) => {
+      const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
+        if (v.phase === 'generation' && v.particles > 200) setTimeout(() => resolve(off()));
+      });
+    });
+    const asked = performance.now();
+    p.engine.stop();
+    await new Promise((resolve) => {
+      const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
+        if (!busy) setTimeout(() => resolve(off()));
+      });
+    });
+    return { ms: performance.now() - asked, partial: p.engine.partial.value, reason: p.engine.progress.value.stop_reason, count: p.particles().count };
+  }));
+  test.info().annotations.push({ type: 'stopped after', description: `${Math.round(out.ms)} ms` });
+  expect(out).toMatchObject({ partial: true, reason: 'cancelled' });
+  expect(out.count).toBeGreaterThan(200);
+  // 50 ms on a machine that is not shared; drawing in software and a busy host stand in between here.
+  expect(out.ms).toBeLessThan(1500);
+  expect((await counts(page)).restarts).toBe(0);
+});
+
 test.describe('a file', () => {
   test('of points is sampled where they are', async ({ page }) => {
     await open(page);

@@ -48,15 +48,22 @@ import { PROGRESS_MS } from './protocol.js';
 
 /** A step of the loop should take about this long: short enough for a Stop, long enough that its overhead is lost in it. */
 const STEP_MS = 6;
-/** The first budget of a job, in work units; the pace then follows the machine. */
-const FIRST_BUDGET = 2048;
+/**
+ * The first budget of a phase, in work units; the pace then follows the machine. A unit of the slowest sampling, the paper's own
+ * placement on a model, takes a third of a millisecond: a Stop is heard within 100 ms also then.
+ */
+const FIRST_BUDGET = 256;
 const LARGEST_BUDGET = 1 << 22;
 /** One picture at 60 Hz. */
 const PICTURE_MS = 15;
 /** A report is begun only after this much quiet, so that a drag that follows at once does not wait for it. */
 const QUIET_MS = 40;
-/** Generous bound on the time of a report: a few µs per particle on a fast machine, ten times that on a slow one. */
-const REPORT_MS_PER_PARTICLE = 0.2;
+/**
+ * Generous bounds on the time of a report. On a fast machine it takes 0.4 s for any model, for the places at which it looks, and
+ * 10 to 25 µs per particle; a slow one takes ten times that.
+ */
+const REPORT_MS = 6000;
+const REPORT_MS_PER_PARTICLE = 0.3;
 
 /** Which of the four clocks a phase of the core runs on. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
@@ -234,7 +241,7 @@ export async function runJob(core, job, env, memory) {
     await env.pause();
     if (env.interrupt() === 'replace') return;
   }
-  env.post({ type: 'beat', allow_ms: 2000 + core.count() * REPORT_MS_PER_PARTICLE });
+  env.post({ type: 'beat', allow_ms: REPORT_MS + core.count() * REPORT_MS_PER_PARTICLE });
   const before = env.now_ms();
   const report = JSON.parse(core.report());
   seconds.quality = (env.now_ms() - before) / 1000;
