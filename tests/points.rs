@@ -61,7 +61,7 @@ fn torus(count: usize) -> (Vec<DVec3>, Vec<DVec3>) {
 
 #[test]
 fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
-    for (count, worst_deg, mean_deg) in [(1000, 14.0, 4.0), (5_000, 10.0, 2.0), (20_000, 3.0, 0.6)] {
+    for (count, worst_deg, mean_deg) in [(1000, 14.0, 4.0), (5_000, 10.0, 2.0), (20_000, 3.0, 0.8)] {
         let on_sphere = sphere(count);
         let shapes = [("sphere", on_sphere.clone(), on_sphere), {
             let (position, normal) = torus(count);
@@ -91,6 +91,24 @@ fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
                 assert!(worst < worst_deg && mean < mean_deg, "{name}, {count}: {worst}°, {mean}°");
             }
         }
+    }
+}
+
+#[test]
+fn estimated_normals_of_thin_shapes_point_outward() {
+    // A leaf, a twentieth as thick as long, and a needle. At the rim of the leaf the curvature is finer than the points.
+    for axes in [DVec3::new(1.0, 0.7, 0.05), DVec3::new(1.0, 0.05, 0.05)] {
+        let position: Vec<DVec3> = sphere(5000).iter().map(|p| *p * axes).collect();
+        let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
+        estimate(&mut cloud);
+        let inward = cloud
+            .normal
+            .iter()
+            .zip(&cloud.position)
+            .filter(|(n, p)| n.dot(**p / (axes * axes)) < 0.0)
+            .count();
+        println!("{axes}: {inward} of 5000 point inward");
+        assert!(inward <= 100, "{axes}: {inward} of 5000 point inward");
     }
 }
 

@@ -26,23 +26,29 @@ fn hash(p: DVec3) -> u64 {
 }
 
 impl Table {
-    /// The index in `points` of the one equal to `p`, which is appended if there is none. `points` must be the same column in
-    /// every call. None if there is no memory for it.
-    pub(super) fn find_or_add(&mut self, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
+    /// The index in `points` of the one equal to `p`; if there is none, that index is `fresh`, and `p` must stand there before
+    /// the next call. `points` must be the same column in every call. None if there is no memory for it.
+    pub(super) fn index_of(&mut self, p: DVec3, fresh: usize, points: &[DVec3]) -> Option<u32> {
         if 2 * (self.used + 1) > self.places.len() {
             self.grow(points)?;
         }
         let place = self.place(p, points);
-        if self.places[place] != 0 {
-            return Some(self.places[place] - 1);
+        if self.places[place] == 0 {
+            self.places[place] = u32::try_from(fresh + 1).ok()?;
+            self.used += 1;
         }
-        let index = u32::try_from(points.len()).ok()?;
+        Some(self.places[place] - 1)
+    }
+
+    /// The index in `points` of the one equal to `p`, which is appended if there is none; otherwise as [`Table::index_of`].
+    pub(super) fn find_or_add(&mut self, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
         if points.len() == points.capacity() {
             points.try_reserve_exact((points.len() / 2).max(FIRST)).ok()?;
         }
-        points.push(p);
-        self.places[place] = index + 1;
-        self.used += 1;
+        let index = self.index_of(p, points.len(), points)?;
+        if index as usize == points.len() {
+            points.push(p);
+        }
         Some(index)
     }
 

@@ -26,18 +26,18 @@ pub(super) fn corners(points: &[DVec3]) -> (DVec3, DVec3) {
 /// differently.
 #[derive(Debug)]
 pub struct Merger {
+    /// Each place once up to `kept`, and the points that are not looked at from `next` on.
     cloud: Cloud,
+    kept: usize,
     next: usize,
     table: Table,
-    position: Vec<DVec3>,
-    normal: Vec<DVec3>,
 }
 
 impl Merger {
     /// Begins with `cloud`.
     #[must_use]
     pub fn new(cloud: Cloud) -> Self {
-        Self { cloud, next: 0, table: Table::default(), position: Vec::new(), normal: Vec::new() }
+        Self { cloud, kept: 0, next: 0, table: Table::default() }
     }
 
     /// Looks at up to `budget` more points; true when all are looked at.
@@ -46,26 +46,24 @@ impl Merger {
     ///
     /// If there is not enough memory.
     pub fn step(&mut self, budget: u32) -> Result<bool, CloudError> {
-        let end = self.cloud.len().min(self.next + budget as usize);
+        let Cloud { position, normal, .. } = &mut self.cloud;
+        let end = position.len().min(self.next + budget as usize);
         for i in self.next..end {
-            let at = self
-                .table
-                .find_or_add(self.cloud.position[i], &mut self.position)
-                .ok_or(CloudError::Memory)?;
-            let Some(&normal) = self.cloud.normal.get(i) else { continue };
-            match self.normal.get_mut(at as usize) {
-                Some(sum) => *sum += normal,
-                None => {
-                    if self.normal.len() == self.normal.capacity() {
-                        let more = self.position.capacity() - self.normal.len();
-                        self.normal.try_reserve_exact(more).map_err(|_| CloudError::Memory)?;
-                    }
-                    self.normal.push(normal);
-                }
+            let p = position[i];
+            let at = self.table.index_of(p, self.kept, position).ok_or(CloudError::Memory)? as usize;
+            let fresh = at == self.kept;
+            if fresh {
+                position[at] = p;
+                self.kept += 1;
+            }
+            match normal.get(i).copied() {
+                Some(n) if fresh => normal[at] = n,
+                Some(n) => normal[at] += n,
+                None => {}
             }
         }
         self.next = end;
-        Ok(end == self.cloud.len())
+        Ok(end == position.len())
     }
 
     /// Share of the points that are looked at.
@@ -76,18 +74,20 @@ impl Merger {
 
     /// Each place once, and how many points that joined. Points whose normals cancel are left out.
     #[must_use]
-    pub fn finish(self) -> (Cloud, usize) {
-        let joined = self.cloud.len() - self.position.len();
-        let (mut position, mut normal) = (self.position, self.normal);
+    pub fn finish(mut self) -> (Cloud, usize) {
+        let joined = self.cloud.len() - self.kept;
+        let Cloud { position, normal, .. } = &mut self.cloud;
+        position.truncate(self.kept);
+        normal.truncate(self.kept);
         if joined > 0 && !normal.is_empty() {
-            for normal in &mut normal {
+            for normal in normal.iter_mut() {
                 *normal = normal.normalize_or_zero();
             }
             let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
             position.retain(|_| stays.next().unwrap_or(false));
             normal.retain(|normal| *normal != DVec3::ZERO);
         }
-        (Cloud { position, normal, source: self.cloud.source }, joined)
+        (self.cloud, joined)
     }
 }
 

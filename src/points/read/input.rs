@@ -39,6 +39,11 @@ impl Input {
         self.line
     }
 
+    /// Ends of lines that are left, and one more.
+    pub(super) fn count_lines(&self) -> usize {
+        self.bytes[self.at..].iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1
+    }
+
     /// The next line without its end, which is a line feed, a carriage return or both.
     pub(super) fn line(&mut self) -> Option<Range<usize>> {
         if self.at == self.bytes.len() {

@@ -163,7 +163,7 @@ impl Reader {
             Format::Obj => Box::new(obj::Obj::default()),
             Format::StlText => Box::new(stl::Text::default()),
             Format::StlBinary => Box::new(stl::Binary::new(&mut input)?),
-            Format::Xyz => Box::new(xyz::Xyz::default()),
+            Format::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
         };
         if let Some(ending) = format.other_ending(name) {
             mesh.warnings.push(format!(

@@ -50,6 +50,28 @@ pub(super) struct Xyz {
     unit: usize,
 }
 
+impl Xyz {
+    /// Takes room for as many points as there are lines, where there is so much: a column that grows takes twice its room.
+    pub(super) fn new(input: &Input, mesh: &mut Mesh) -> Self {
+        /// Bytes of the shortest line with a point.
+        const SHORTEST: usize = 6;
+        let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.left() / SHORTEST + 1));
+        Self::default()
+    }
+
+    /// Columns without names can be colours as well as normals.
+    fn finish(&self, mesh: &mut Mesh) {
+        let named = self.columns.as_ref().is_some_and(|columns| columns.named);
+        if !named && (self.unit as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
+            mesh.normal = Vec::new();
+            mesh.warnings.push(
+                "Columns 4 to 6 are not of unit length, so they are no normals (colours?) and were left out."
+                    .into(),
+            );
+        }
+    }
+}
+
 /// Words of a line, between white space, commas and semicolons.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| byte.is_ascii_whitespace() || matches!(byte, b',' | b';'))
@@ -128,19 +150,5 @@ impl Rows for Xyz {
             push(&mut mesh.normal, normal)?;
         }
         Ok(true)
-    }
-}
-
-impl Xyz {
-    /// Columns without names can be colours as well as normals.
-    fn finish(&self, mesh: &mut Mesh) {
-        let named = self.columns.as_ref().is_some_and(|columns| columns.named);
-        if !named && (self.unit as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
-            mesh.normal = Vec::new();
-            mesh.warnings.push(
-                "Columns 4 to 6 are not of unit length, so they are no normals (colours?) and were left out."
-                    .into(),
-            );
-        }
     }
 }
