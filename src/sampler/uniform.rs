@@ -218,7 +218,12 @@ impl UniformFront {
 
     /// Everything that a child can collide with, and every neighbour that repels a particle, is within this distance.
     fn reach(&self) -> f32 {
-        (2.0 * self.radius + self.looked_at()).max((CUT_OFF + SKIN) * self.radius)
+        self.collision_reach().max((CUT_OFF + SKIN) * self.radius)
+    }
+
+    /// Everything that a child can collide with is within this distance of its parent.
+    fn collision_reach(&self) -> f32 {
+        2.0 * self.radius + self.looked_at()
     }
 
     /// Distance around a provisional place within which every particle is looked at: the match radius, and what a child
@@ -375,8 +380,6 @@ impl UniformFront {
         let wary = self.read_surroundings(&found, pairs, particles, parent);
         if wary {
             self.drop_strangers(field, projector, particles, parent, &mut found);
-            pairs.truncate(parent);
-            self.read_surroundings(&found, pairs, particles, parent);
         }
 
         let grandparent = particles.parent[parent];
@@ -459,7 +462,7 @@ impl UniformFront {
         particles: &Particles,
         parent: usize,
     ) -> bool {
-        let collision = 2.0 * self.radius + self.looked_at();
+        let collision = self.collision_reach();
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
         let mut doubtful = false;
@@ -480,9 +483,10 @@ impl UniformFront {
         doubtful
     }
 
-    /// Takes the particles out of `found` that face the way of `parent` but are on another sheet.
+    /// Takes the particles out of `found`, and of what children may collide with, that face the way of `parent` but are on
+    /// another sheet. They stay in the lists of the relaxation, which knows no sheets beyond the normals.
     fn drop_strangers(
-        &self,
+        &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
         particles: &Particles,
@@ -499,6 +503,11 @@ impl UniformFront {
                 || lift(near.offset, n, other) <= suspicious
                 || is_one_sheet(field, projector, (p, n), near.offset, other)
         });
+        let collision = self.collision_reach();
+        self.around.len = 0;
+        for near in found.iter().filter(|near| near.distance_sq <= collision * collision) {
+            self.around.push(near.offset, particles.normal[near.index as usize]);
+        }
     }
 
     /// Least-squares fit of the second fundamental form to the normals of the settled particles around `parent`.
