@@ -1,7 +1,7 @@
 /** The page as a visitor meets it in a browser with WebGL2 only: first load, links, faults, files. */
 import { readFileSync } from 'node:fs';
 import { expect, test } from '@playwright/test';
-import { coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
+import { atRest, coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
 
 /** @param {import('@playwright/test').Page} page @param {string} expression  of `p`, the console interface */
 const on = (page, expression) => page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
@@ -47,7 +47,7 @@ test('the same state gives the same particles as the native core', async ({ page
 
 test('nothing is drawn while nothing happens', async ({ page }) => {
   await open(page);
-  await page.waitForTimeout(400);
+  await atRest(page);
   const { frames } = await counts(page);
   await page.waitForTimeout(700);
   expect((await counts(page)).frames).toBe(frames);
@@ -94,11 +94,18 @@ test('a lost pointer ends the drag', async ({ page }) => {
     fire('pointerdown', 100);
     fire('pointermove', 140);
     fire('pointercancel', 140);
-    await new Promise((resolve) => setTimeout(resolve, 300));
-    const { yaw } = engine.state.value.view.camera;
+    // The state follows the camera with a delay.
+    const settledYaw = async () => {
+      for (let last = NaN; ;) {
+        const { yaw } = engine.state.value.view.camera;
+        if (yaw === last) return yaw;
+        last = yaw;
+        await new Promise((resolve) => setTimeout(resolve, 300));
+      }
+    };
+    const yaw = await settledYaw();
     fire('pointermove', 240);
-    await new Promise((resolve) => setTimeout(resolve, 300));
-    return engine.state.value.view.camera.yaw - yaw;
+    return (await settledYaw()) - yaw;
   });
   expect(after).toBe(0);
 });

@@ -33,9 +33,11 @@ export function mountDrop(engine, toast) {
     const { dataTransfer } = event;
     if (!dataTransfer || !carriesFiles(dataTransfer)) return;
     event.preventDefault();
+    // The formula's editor would take the file for text.
+    event.stopPropagation();
     const [file, ...others] = dataTransfer.files;
     if (!file) return;
     if (others.length > 0) toast({ id: 'files', kind: 'info', text: `One file makes one surface: ${file.name} was taken.` });
     void engine.openFile(file);
-  });
+  }, true);
 }
