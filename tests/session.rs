@@ -231,7 +231,7 @@ fn every_row_of_the_report_is_in_the_report() {
     let description = describe();
     assert!(description.report.len() > 10);
     for row in &description.report {
-        for path in [Some(row.key), row.to].into_iter().flatten() {
+        for path in [Some(row.key), row.to, row.unless].into_iter().flatten() {
             let found = path.split('.').try_fold(&report, |value, key| value.get(key));
             assert!(found.is_some_and(|v| !v.is_object() && !v.is_array()), "{path} is not in the report");
         }

@@ -132,6 +132,9 @@ pub struct ReportRow {
     pub key: &'static str,
     /// Path of the upper end, if the row is a range that begins at `key`.
     pub to: Option<&'static str>,
+    /// Path of the figure that stands in its place where that one is there: what a lattice of one size is the measure of says
+    /// nothing of particles of many.
+    pub unless: Option<&'static str>,
     /// Name for a person.
     pub label: &'static str,
     /// Group it is shown in.
@@ -366,7 +369,7 @@ const fn row(
     (ideal, better): (&'static str, Option<&'static str>),
     help: &'static str,
 ) -> ReportRow {
-    ReportRow { key, to: None, label, group, unit, digits, ideal, better, help }
+    ReportRow { key, to: None, unless: None, label, group, unit, digits, ideal, better, help }
 }
 
 const LOWER: Option<&str> = Some("lower");
@@ -454,55 +457,67 @@ const REPORT: &[ReportRow] = &[
         ("0 %", LOWER),
         "Share of the triangles with an angle above 90°.",
     ),
-    row(
-        "quality.cover",
-        "Largest hole",
-        ("Spacing", "", 2),
-        ("1", LOWER),
-        "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles.",
-    ),
-    row(
-        "quality.rho",
-        "Closest pair",
-        ("Spacing", "", 3),
-        ("1", HIGHER),
-        "Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius.",
-    ),
-    row(
-        "quality.nn_cv",
-        "Spacing variation",
-        ("Spacing", "%", 1),
-        ("0 %", LOWER),
-        "Standard deviation of the distance to the nearest neighbour over its mean.",
-    ),
+    ReportRow {
+        unless: Some("quality.cover_local"),
+        ..row(
+            "quality.cover",
+            "Largest hole",
+            ("Spacing", "", 2),
+            ("1", LOWER),
+            "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of as many particles.",
+        )
+    },
+    ReportRow {
+        unless: Some("quality.overlap_min"),
+        ..row(
+            "quality.rho",
+            "Closest pair",
+            ("Spacing", "", 3),
+            ("1", HIGHER),
+            "Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius.",
+        )
+    },
+    ReportRow {
+        unless: Some("quality.size_cv"),
+        ..row(
+            "quality.nn_cv",
+            "Spacing variation",
+            ("Spacing", "%", 1),
+            ("0 %", LOWER),
+            "Standard deviation of the distance to the nearest neighbour over its mean.",
+        )
+    },
     row(
         "quality.size_cv",
-        "Fit to the wanted size",
+        "Spacing variation",
         ("Spacing", "%", 1),
         ("0 %", LOWER),
         "Standard deviation over mean of the distance between natural neighbours over the sum of their radii.",
     ),
     row(
         "quality.cover_local",
-        "Largest hole for its size",
+        "Largest hole",
         ("Spacing", "", 2),
         ("1", LOWER),
         "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it.",
     ),
     row(
         "quality.overlap_min",
-        "Closest pair for its size",
+        "Closest pair",
         ("Spacing", "", 3),
         ("1", HIGHER),
         "Smallest distance of two neighbours over the sum of their radii.",
     ),
-    row(
-        "quality.edge_cv",
-        "Edge variation",
-        ("Spacing", "%", 1),
-        ("0 %", LOWER),
-        "Standard deviation of the distance between natural neighbours over its mean.",
-    ),
+    ReportRow {
+        unless: Some("quality.size_cv"),
+        ..row(
+            "quality.edge_cv",
+            "Edge variation",
+            ("Spacing", "%", 1),
+            ("0 %", LOWER),
+            "Standard deviation of the distance between natural neighbours over its mean.",
+        )
+    },
     row(
         "quality.err_max",
         "Largest residual",

@@ -91,7 +91,10 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         let Some(key) = row.key.strip_prefix("quality.") else {
             continue;
         };
-        if report["quality"][key].is_null() {
+        let stands = |path: &str| {
+            path.split('.').try_fold(&report, |value, key| value.get(key)).is_some_and(|v| !v.is_null())
+        };
+        if !stands(row.key) || row.unless.is_some_and(stands) {
             continue;
         }
         let before = if compared { figure(row, &report["quality_before"][key]) } else { String::new() };

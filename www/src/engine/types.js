@@ -57,6 +57,7 @@
  * One row of the report. `key` is a path into {@link Report}, for example `quality.six`; what is null there has no place in the run.
  * @typedef {object} ReportRow
  * @property {string} key
+ * @property {string | null} [unless]  path of the figure that stands in its place where that one is there
  * @property {string | null} [to]  path of the upper end of a range that begins at `key`
  * @property {string} label
  * @property {string} group

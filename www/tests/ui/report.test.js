@@ -48,11 +48,13 @@ describe('the report', () => {
 
   it('leaves out what a run says nothing of', () => {
     const report = /** @type {any} */ ({ undecided_cells: null, count: 0, quality: { six: null }, quality_before: { six: 0.9 } });
-    expect(isTold(report, 'count')).toBe(true);
-    expect(isTold(report, 'undecided_cells')).toBe(false);
-    expect(isTold(report, 'not_there')).toBe(false);
-    expect(isTold(report, 'quality.six')).toBe(true);
-    expect(isTold(null, 'undecided_cells')).toBe(true);
+    expect(isTold(report, { key: 'count' })).toBe(true);
+    expect(isTold(report, { key: 'undecided_cells' })).toBe(false);
+    expect(isTold(report, { key: 'not_there' })).toBe(false);
+    expect(isTold(report, { key: 'quality.six' })).toBe(true);
+    expect(isTold(null, { key: 'undecided_cells' })).toBe(true);
+    expect(isTold(report, { key: 'count', unless: 'quality.six' })).toBe(false);
+    expect(isTold(report, { key: 'count', unless: 'undecided_cells' })).toBe(true);
   });
 
   it('groups rows in the order of their first member', () => {

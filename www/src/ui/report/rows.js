@@ -35,14 +35,18 @@ export function figuresOf(report, key) {
 }
 
 /**
- * Whether a report says anything of a figure: not every run has every one. Without a report every row has its place.
+ * Whether a report says anything of a figure: not every run has every one. Without a report every row has
+ * its place.
  * @param {Report | null} report
- * @param {string} key
+ * @param {Pick<ReportRow, 'key' | 'unless'>} row
  */
-export function isTold(report, key) {
-  if (!report) return true;
-  const { now, before } = figuresOf(report, key);
-  return (now ?? before ?? null) !== null;
+export function isTold(report, { key, unless }) {
+  const has = (/** @type {string} */ path) => {
+    if (!report) return false;
+    const { now, before } = figuresOf(report, path);
+    return (now ?? before ?? null) !== null;
+  };
+  return (!report || has(key)) && !(unless && has(unless));
 }
 
 /** The core's words, in those of a person. @type {Record<string, string>} */

@@ -31,7 +31,7 @@ export function createTable(report, rows) {
         ),
         members.map((row) => createRow(report, row)),
       );
-      effect(() => { body.hidden = !members.some((row) => isTold(report.value, row.key)); });
+      effect(() => { body.hidden = !members.some((row) => isTold(report.value, row)); });
       return body;
     }),
   );
@@ -64,7 +64,7 @@ function createRow(report, row) {
   const line = h('tr', null, head, paired ? before : null, now);
   effect(() => {
     const current = report.value;
-    line.hidden = !isTold(current, row.key);
+    line.hidden = !isTold(current, row);
     if (paired) return;
     // A range or a word needs the room of two figures.
     const wide = row.to || (current && typeof figuresOf(current, row.key).now === 'string');
