@@ -74,14 +74,13 @@ impl Mesh {
     /// and the cloud has no normals. To be called when all areas are summed.
     #[must_use]
     pub fn into_cloud(mut self) -> (Cloud, Vec<String>) {
-        let mut kept = 0;
-        let mut given = 0;
-        let mut normal = core::mem::take(&mut self.normal);
-        normal.resize(self.position.len(), DVec3::ZERO);
+        let has_given = !self.normal.is_empty();
+        let mut normal = core::mem::take(if has_given { &mut self.normal } else { &mut self.area });
+        let (mut kept, mut given) = (0, false);
         for (i, normal) in normal.iter_mut().enumerate() {
             *normal = normal.normalize_or_zero();
             if *normal != DVec3::ZERO {
-                given += 1;
+                given |= has_given;
             } else if let Some(area) = self.area.get(i) {
                 *normal = area.normalize_or_zero();
             }
@@ -102,7 +101,7 @@ impl Mesh {
         let mut stays = normal.iter().map(|normal| *normal != DVec3::ZERO);
         self.position.retain(|_| stays.next().unwrap_or(false));
         normal.retain(|normal| *normal != DVec3::ZERO);
-        let source = if given > 0 { NormalSource::Given } else { NormalSource::FromMesh };
+        let source = if given { NormalSource::Given } else { NormalSource::FromMesh };
         (Cloud { position: self.position, normal, source }, self.warnings)
     }
 }

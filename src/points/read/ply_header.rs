@@ -85,6 +85,9 @@ pub(super) const SLOTS: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 /// Lines that a header may have; those of scanners with a long history have some dozens.
 const MOST_LINES: u64 = 10_000;
 
+/// Bytes of a line that are looked at; only comments are longer.
+const LONGEST_LINE: usize = 1024;
+
 impl Element {
     pub(super) fn is_vertex(&self) -> bool {
         self.name == "vertex"
@@ -133,7 +136,8 @@ pub(super) fn read(input: &mut Input) -> Result<(Encoding, Vec<Element>), ReadEr
         let Some(range) = input.line().filter(|_| input.line_number() <= MOST_LINES) else {
             return Err(input.wrong("the header has no `end_header`; the file is cut off: export it again"));
         };
-        let line = input.slice(range).to_vec();
+        let line = input.slice(range);
+        let line = line[..line.len().min(LONGEST_LINE)].to_vec();
         let words: Vec<&[u8]> = words(&line).collect();
         match words[..] {
             [b"format", format, version] => {

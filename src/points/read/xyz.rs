@@ -81,10 +81,13 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// Whether the commas of a line stand in its numbers: some words are set apart by something else, and a comma has no white
 /// space beside it.
 fn has_decimal_commas(line: &[u8]) -> bool {
+    /// Words that are looked at.
+    const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')
         .map(|word| word.trim_ascii())
         .filter(|word| !word.is_empty())
+        .take(LOOKED_AT)
         .collect();
     by_others.len() >= 3
         && by_others.iter().any(|word| {
