@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` the million, no argument
 //! both. Either way it ends with the ratio of the whole job to naive surface nets (`fast-surface-nets`) with as many
-//! vertices on the same field, timed by turns so that a busy machine disturbs both alike.
+//! vertices on the same field, timed by turns so that a busy machine disturbs both alike, and with the share of the job that goes
+//! into finding every piece of the surface.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 #![allow(missing_docs, reason = "the macros' items have none")]
 
@@ -15,7 +16,7 @@ use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::quality::{Options, measure};
-use marching_particles::sampler::{Sampler, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -225,12 +226,66 @@ fn ratio(count: u32, rounds: usize) {
     );
 }
 
+/// Prints how much of a job of `count` particles goes into finding a first point on every piece: the survey, the proof, and the
+/// check of every candidate.
+fn search_share(id: &str, count: u32, rounds: usize) {
+    let surface = gallery::find(id).expect("a gallery surface");
+    let mut field = surface.field();
+    let mut settings = Settings { size_mode: SizeMode::Count, count, ..Settings::default() };
+    let mut shares: Vec<[f64; 3]> = Vec::new();
+    let mut cells = None;
+    for round in 0..=rounds {
+        let mut sampler = Sampler::new();
+        let start = Instant::now();
+        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        let surveyed = start.elapsed().as_secs_f64();
+        let (mut seeding, mut phase) = (0.0, Phase::Seeding);
+        let reason = loop {
+            let before = start.elapsed().as_secs_f64();
+            // Small steps, so that hardly any of the front is counted with it.
+            let progress = sampler.step(&mut field, if phase == Phase::Seeding { 64 } else { 4_096 });
+            if phase == Phase::Seeding {
+                seeding += start.elapsed().as_secs_f64() - before;
+            }
+            phase = progress.phase;
+            if let Some(reason) = progress.stop_reason {
+                break reason;
+            }
+        };
+        assert_eq!(reason, StopReason::Complete);
+        let whole = start.elapsed().as_secs_f64();
+        if round == 0 {
+            // By count the front is run twice; from here on once.
+            let radius_share = sampler.radius() / surface.bounds.diagonal();
+            settings = Settings { radius_share, ..Settings::default() };
+        } else {
+            shares.push([surveyed, seeding, (surveyed + seeding) / whole]);
+            cells = sampler.undecided_cells();
+        }
+    }
+    let [survey, seeding, share] = [0, 1, 2].map(|k| {
+        let mut column: Vec<f64> = shares.iter().map(|row| row[k]).collect();
+        column.sort_by(f64::total_cmp);
+        column[rounds / 2]
+    });
+    println!(
+        "{id}, {count}: finding every piece takes {:.1} % of the job (survey {:.2} ms, proof and cover {:.2} ms), \
+         undecided cells {cells:?}",
+        share * 100.0,
+        survey * 1e3,
+        seeding * 1e3
+    );
+}
+
 criterion_group!(sets, quick, full);
 
 fn main() {
     sets();
     for count in QUICK {
         ratio(count, 15);
+    }
+    for id in ["ellipsoid", "torus", "tanglecube"] {
+        search_share(id, 50_000, 9);
     }
     Criterion::default().configure_from_args().final_summary();
 }

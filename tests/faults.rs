@@ -150,7 +150,7 @@ fn every_component_has_a_front_and_they_are_counted() {
     let formula = "(abs(x) - 0.5)^2 + (abs(y) - 0.5)^2 + (abs(z) - 0.5)^2 = 0.06";
     let (_, progress, report) = sampled(formula, 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
-    assert_eq!(report.components_seeded, 8);
+    assert_eq!((report.components_seeded, report.components), (8, 8));
     assert_eq!(report.quality.map(|q| q.components), Some(8));
     assert_eq!(report.quality.map(|q| q.euler), Some(16));
 }
@@ -169,13 +169,24 @@ fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
 #[test]
 fn sheets_nearer_than_a_spacing_are_kept_apart() {
     // Two planes 0.01 apart, particles ten times that.
-    let (session, progress, _) = sampled("z^2 - 0.000025", 1.0, &coarse());
+    let (session, progress, report) = sampled("z^2 - 0.000025", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
+    assert!(report.warnings.iter().any(|w| w.contains("face another sheet")), "{:?}", report.warnings);
+    assert_eq!(report.components, 2);
     let position = &session.particles().position;
     let upper = position.iter().filter(|p| p.z > 0.0).count() as f64;
     let lower = position.len() as f64 - upper;
     assert!(upper > 100.0 && (upper / lower - 1.0).abs() < 0.1, "{upper} above, {lower} below");
     assert!(position.iter().all(|p| (p.z.abs() - 0.005).abs() < 1e-4));
+    // Sheets farther apart than 2r, and sharp edges, are no reason to warn.
+    for formula in ["z^2 - 0.01", "abs(x) + abs(y) + abs(z) - 0.9", "x^2 + y^2 + z^2 - 0.5"] {
+        let (_, _, report) = sampled(formula, 1.0, &coarse());
+        assert!(
+            !report.warnings.iter().any(|w| w.contains("another sheet")),
+            "{formula}: {:?}",
+            report.warnings
+        );
+    }
 }
 
 #[test]

@@ -53,6 +53,8 @@ const MOST_CELLS: usize = 16_384;
 const CELLS_PER_PARTICLE: f64 = 0.25;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
 const CHUNK: usize = 32;
+/// Units of work that a cell is charged for: on long formulas it takes as long as several particles.
+const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side.
 const MARGIN: f64 = 1.0 / 65_536.0;
 /// A taller cell reaches this much farther than the slopes of the cell itself ask for, and at least by [`LEAST_RISE`] of its
@@ -225,14 +227,14 @@ impl Octree {
         self.state != State::Running
     }
 
-    /// Looks at up to `budget` cells, rounded up to whole chunks, and returns what is left.
+    /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
     pub(super) fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
         while budget > 0 && !self.is_done() {
             let count = CHUNK.min(self.level.len() - self.next);
             self.look_at(field, self.next..self.next + count);
             self.next += count;
             self.cells += count;
-            budget = budget.saturating_sub(CHUNK as u32);
+            budget = budget.saturating_sub(UNITS * CHUNK as u32);
             if self.next == self.level.len() {
                 self.level.clear();
                 core::mem::swap(&mut self.level, &mut self.halves);

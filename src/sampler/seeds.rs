@@ -60,6 +60,11 @@ impl Seeds {
         self.restart();
     }
 
+    /// Whether the field has bounds to search by.
+    pub(super) fn can_prove(&self) -> bool {
+        self.octree.is_available()
+    }
+
     /// Says how many particles the run will have.
     pub(super) fn expect(&mut self, particles: f64) {
         self.octree.expect(particles);

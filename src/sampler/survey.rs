@@ -9,6 +9,9 @@ use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
 const CELLS: f64 = 32.0;
+/// The same where nothing but the grid tells where the surface is: a sphere whose radius is
+/// 1.4 % of the box's longest side is not missed.
+const DENSE_CELLS: f64 = 64.0;
 /// Most evaluations of the Newton projection of a candidate.
 const MAX_STEPS: u32 = 12;
 /// Candidates at which the resolution is measured.
@@ -69,7 +72,7 @@ struct Layer {
     gradient: Vec<Vec3>,
 }
 
-/// Surveys `field` over `bounds`.
+/// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
 ///
 /// Two kinds of places are tried: grid edges whose ends differ in sign, and nodes whose first-order distance |f|/|∇f|
 /// is below the spacing (surfaces that f touches without changing sign, and sheets thinner than a cell). Every place is
@@ -77,9 +80,14 @@ struct Layer {
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
 /// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
-pub(super) fn survey(field: &mut dyn Field, bounds: &Bounds, projector: &mut Projector) -> Survey {
+pub(super) fn survey(
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    is_dense: bool,
+    projector: &mut Projector,
+) -> Survey {
     let size = bounds.hi() - bounds.lo();
-    let spacing = size.max_element() / CELLS;
+    let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
     let cells = (size / spacing).ceil();
     let step = size / cells;
     let [nx, ny, nz] = cells.to_array().map(|c| c as usize + 1);

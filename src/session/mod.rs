@@ -2,6 +2,7 @@
 //! there is no clock, no GPU and no platform in here.
 
 mod describe;
+mod warnings;
 
 pub use describe::{
     Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
@@ -470,14 +471,7 @@ impl Session {
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
         let mut warnings = self.warnings.clone();
-        let troubled = counts.fates.not_converged + counts.fates.undefined;
-        if troubled > 0 {
-            warnings.push(format!(
-                "{} children found no surface at their distance and {} met a place without a value or a normal: \
-                 an edge, a singular point or a radius too large for the curvature.",
-                counts.fates.not_converged, counts.fates.undefined
-            ));
-        }
+        warnings.extend(warnings::about(particles, &counts));
         Report {
             count,
             levels: level_counts.len() as u32,

@@ -9,7 +9,7 @@ const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind:
 fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
     let mut field = surface.field();
     let mut projector = Projector::new();
-    let found = survey(&mut field, &surface.bounds, &mut projector);
+    let found = survey(&mut field, &surface.bounds, false, &mut projector);
     Sizing::new(&mut field, &surface.bounds, settings, &found, &mut 0)
 }
 

@@ -1,0 +1,57 @@
+//! What a user should know about a run, in words.
+
+use crate::particles::Particles;
+use crate::sampler::Counts;
+use crate::spatial::tree::Tree;
+
+/// Sheets are said to be close if at least this share of the particles face one, and at least this many.
+const CLOSE_SHARE: f64 = 0.005;
+const CLOSE_COUNT: usize = 8;
+
+/// Warnings about what became of the particles.
+pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let troubled = counts.fates.not_converged + counts.fates.undefined;
+    if troubled > 0 {
+        warnings.push(format!(
+            "{} children found no surface at their distance and {} met a place without a value or a normal: \
+             an edge, a singular point or a radius too large for the curvature.",
+            counts.fates.not_converged, counts.fates.undefined
+        ));
+    }
+    let close = facing_another_sheet(particles);
+    if close >= CLOSE_COUNT && close as f64 >= CLOSE_SHARE * particles.len() as f64 {
+        warnings.push(format!(
+            "{close} particles face another sheet of the surface within 2r. The sheets are kept apart, but the particles are \
+             too large to tell them apart by position alone: choose a smaller radius."
+        ));
+    }
+    if counts.left_out > 0 {
+        warnings.push(format!(
+            "{} features smaller than a particle lie within 2r of other particles and got none of their own: a smaller radius \
+             shows whether they are pieces by themselves.",
+            counts.left_out
+        ));
+    }
+    warnings
+}
+
+/// Particles nearer than 2r to one that faces the other way.
+fn facing_another_sheet(particles: &Particles) -> usize {
+    /// Normals at more than 120° face each other: across a sharp edge they are nearer.
+    const FACING: f32 = -0.5;
+    let tree = Tree::new(&particles.position, 0..particles.len() as u32);
+    let mut near = Vec::new();
+    (0..particles.len())
+        .filter(|&i| {
+            let (p, n) = (particles.position[i], particles.normal[i]);
+            let reach = 2.0 * particles.radius[i];
+            near.clear();
+            tree.within_box(p - reach, p + reach, &mut near);
+            near.iter().any(|&k| {
+                particles.normal[tree.origin[k as usize] as usize].dot(n) < FACING
+                    && tree.position[k as usize].distance_squared(p) < reach * reach
+            })
+        })
+        .count()
+}
