@@ -43,7 +43,10 @@ export async function settled(page) {
  * @param {import('@playwright/test').Page} page
  */
 export async function atRest(page) {
-  await settled(page);
+  await page.waitForFunction(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    return !engine.busy.value && engine.reveal.value === null;
+  });
   await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
   // The state follows the camera with a delay: two looks further apart than that see the same.
   await page.waitForFunction(() => {

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, scan, state } from './helpers.js';
+import { open, scan, settled, state } from './helpers.js';
 
 const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
 
@@ -45,6 +45,7 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
       expect((await scan(page)).violations).toEqual([]);
       await page.getByRole('radio', { name: 'Adaptive' }).check();
       await page.getByRole('button', { name: 'Advanced' }).click();
+      await settled(page);
       expect((await scan(page)).violations).toEqual([]);
       await page.getByRole('button', { name: 'View options' }).click();
       expect((await scan(page)).violations).toEqual([]);

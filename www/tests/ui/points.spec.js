@@ -77,7 +77,7 @@ test('keys alone open the chooser for files', async ({ page }) => {
   expect(await page.locator('input[type=file]').getAttribute('accept')).toContain('.ply');
 });
 
-test('what is on its way shows its stage and can be given up', async ({ page }) => {
+test('what is on its way shows its stage', async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   const { clean } = await open(page, { width: 1440, height: 900 });
   await page.evaluate(() => {
@@ -89,6 +89,26 @@ test('what is on its way shows its stage and can be given up', async ({ page }) 
   await expect(page.locator('.loading')).toContainText('Solving');
   await expect(page.getByRole('button', { name: 'Cancel' })).toBeVisible();
   expect((await scan(page)).violations).toEqual([]);
+  await clean();
+});
+
+test('a model given up on its way leaves the surface as it was', async ({ page }) => {
+  const { clean } = await open(page);
+  const before = await state(page);
+  const { digest } = await report(page);
+  await page.evaluate(() => new Promise((/** @type {(done: void) => void} */ resolve) => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    // Pressed in the page itself: from here a press could come late.
+    engine.loading.subscribe((/** @type {any} */ loading) => {
+      if (loading) setTimeout(() => { /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click(); resolve(); });
+    });
+    /** @type {HTMLElement} */ (document.querySelector('.tile[data-surface="bunny"]')).click();
+  }));
+  await expect(page.locator('.loading')).toBeHidden();
+  await settled(page);
+  expect((await state(page)).surface).toBe(before.surface);
+  expect((await report(page)).digest).toBe(digest);
+  await expect(page.locator('.refused')).toBeHidden();
   await clean();
 });
 

@@ -158,6 +158,7 @@ test('no surface in the box is said in words, with a way out', async ({ page }) 
   await atRest(page);
   const { distance } = (await state(page)).view.camera;
   await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
+  await settled(page);
   await atRest(page);
   expect((await state(page)).view.camera.distance).toBeLessThan(distance);
   await expect(page.locator('.empty')).toBeHidden();
