@@ -17,7 +17,6 @@ use super::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use super::pairs::Pairs;
 use super::placement::{Landed, Placement, Proposal, Spot};
 use super::project::{BATCH, Circle, Landing, Projector, tolerance};
-use super::relax::SKIN;
 use super::repulsion::{Overlap, Repulsion};
 use super::settings::{Placement as Method, Settings};
 use super::sheets::is_near_own;
@@ -38,7 +37,7 @@ use glam::{Vec2, Vec3};
 const REACH: f32 = 3.7;
 
 /// Particles within this share of r_i + r_j are listed for the relaxation.
-const LISTED: f32 = 0.5 * (Overlap::RANGE + SKIN);
+const LISTED: f32 = 0.5 * (Overlap::RANGE + Overlap::SKIN);
 
 /// Neighbours within this share of r_i + r_j count as touching.
 const TOUCHING: f32 = 1.25;

@@ -1,6 +1,7 @@
 //! Cell grids for particles of different radii: one per range of radii, so that a query among small particles does not
 //! read cells made for large ones.
 
+use super::uniform::CELL_PER_REACH;
 use crate::spatial::{CellGrid, Neighbour, Place};
 use glam::Vec3;
 
@@ -41,7 +42,8 @@ impl RadiusGrids {
                 top = largest.max(bottom);
             }
             // Cells of twice the reach at the middle of the range.
-            let side = 2.0 * reach * (bottom * top).sqrt();
+            let middle = if top > bottom { (bottom * top).sqrt() } else { top };
+            let side = CELL_PER_REACH * (reach * middle);
             if count == self.grids.len() {
                 self.grids.push(CellGrid::new(side));
             } else {

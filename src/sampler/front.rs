@@ -10,7 +10,6 @@ use super::uniform::{FateCounts, UniformFront};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::CellGrid;
 use crate::trace::Trace;
 use glam::Vec3;
 
@@ -76,11 +75,6 @@ impl Front {
                 self.adaptive.reset(settings, radii, self.survey, bounds, expected);
             }
         }
-    }
-
-    /// The grid for the relaxation, empty.
-    pub(super) fn grid(&mut self) -> &mut CellGrid {
-        &mut self.uniform.grid
     }
 
     /// Gives back what only the front needs.

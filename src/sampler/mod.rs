@@ -527,13 +527,8 @@ impl Sampler {
                         projector: &mut self.projector,
                         sizing: self.sizing.as_ref(),
                     };
-                    let (rest, moved) = self.relaxation.step(
-                        &mut surface,
-                        self.front.grid(),
-                        &mut self.pairs,
-                        &mut self.particles,
-                        left,
-                    );
+                    let (rest, moved) =
+                        self.relaxation.step(&mut surface, &mut self.pairs, &mut self.particles, left);
                     self.moved |= moved;
                     left = rest;
                     self.counts.relaxation_evaluations += self.projector.evaluations - start;
@@ -749,7 +744,6 @@ impl Sampler {
                 relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
             }
             Sampling::Adaptive => relax::Law::Overlap {
-                largest: self.particles.radius.iter().fold(0.0, |most: f32, &radius| most.max(radius)),
                 resolution: self.survey.resolution,
                 min_gradient: self.tolerance.min_gradient,
             },

@@ -9,24 +9,23 @@
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
 //!   so the energy falls at every step.
 
+use super::adaptive_grid::RadiusGrids;
 use super::pairs::Pairs;
 use super::project::{BATCH, Projector, Tolerance};
 use super::repulsion::{Gaussian, Overlap, Points, Repulsion};
 use super::sizing::Sizing;
-use super::uniform::CELL_PER_REACH;
 use crate::field::Field;
 
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::{CellGrid, Neighbour, Vicinity};
+use crate::spatial::{Neighbour, Vicinity};
 use core::ops::Range;
 use glam::Vec3;
 
 /// Range of the Gaussian, in radii.
 pub(super) const CUT_OFF: f32 = Gaussian::RANGE;
-/// The neighbour lists reach this much farther, in mean radii of a pair, so that they serve while particles move. It was
-/// chosen by counting instructions: a wider one lengthens every list, a narrower one has more of them made anew.
-pub(super) const SKIN: f32 = 0.4;
+/// What the neighbour lists of particles of one size reach farther, in radii.
+pub(super) const SKIN: f32 = Gaussian::SKIN;
 /// Step sizes halve after a failure and grow back by this factor after a success.
 const GROWTH: f32 = 1.05;
 /// Failures in a row after which the configuration counts as being at its minimum.
@@ -58,8 +57,8 @@ enum Stage {
 pub(super) enum Law {
     /// Particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
-    /// Particles of radii up to `largest`, on a surface that single precision resolves to `resolution`.
-    Overlap { largest: f32, resolution: f32, min_gradient: f32 },
+    /// Particles of many radii, on a surface that single precision resolves to `resolution`.
+    Overlap { resolution: f32, min_gradient: f32 },
 }
 
 /// The surface that the particles stay on.
@@ -71,7 +70,7 @@ pub(super) struct Surface<'a> {
 }
 
 /// A relaxation under way.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) struct Relaxation {
     law: Law,
     bounds: Bounds,
@@ -79,6 +78,7 @@ pub(super) struct Relaxation {
     done: u32,
     stage: Stage,
     next: usize,
+    grids: RadiusGrids,
     found: Vec<Neighbour>,
     list: Vec<u32>,
     /// Particles that have gone far since their lists were made.
@@ -113,6 +113,7 @@ impl Relaxation {
             done: 0,
             stage: Stage::Done,
             next: 0,
+            grids: RadiusGrids::new(),
             found: Vec::new(),
             list: Vec::new(),
             far: Vec::new(),
@@ -205,18 +206,17 @@ impl Relaxation {
     pub(super) fn step(
         &mut self,
         surface: &mut Surface,
-        grid: &mut CellGrid,
         pairs: &mut Pairs,
         particles: &mut Particles,
         budget: u32,
     ) -> (u32, bool) {
         match (self.law, surface.sizing) {
             (Law::Gaussian { radius, tolerance }, _) => {
-                self.run(&Gaussian::new(radius, tolerance), surface, grid, pairs, particles, budget)
+                self.run(&Gaussian::new(radius, tolerance), surface, pairs, particles, budget)
             }
-            (Law::Overlap { resolution, min_gradient, .. }, Some(sizing)) => {
+            (Law::Overlap { resolution, min_gradient }, Some(sizing)) => {
                 let law = Overlap { sizing, resolution, min_gradient };
-                self.run(&law, surface, grid, pairs, particles, budget)
+                self.run(&law, surface, pairs, particles, budget)
             }
             (Law::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
         }
@@ -226,7 +226,6 @@ impl Relaxation {
         &mut self,
         law: &L,
         surface: &mut Surface,
-        grid: &mut CellGrid,
         pairs: &mut Pairs,
         particles: &mut Particles,
         mut budget: u32,
@@ -241,9 +240,10 @@ impl Relaxation {
             match self.stage {
                 Stage::Grid => {
                     if range.start == 0 {
-                        let reach = self.list_reach::<L>();
-                        grid.reset(CELL_PER_REACH * reach);
-                        self.vicinity.reset(reach, self.far.len());
+                        let reach = L::RANGE + L::SKIN;
+                        let (smallest, largest) = law.extent(particles);
+                        self.grids.reset(smallest, largest, reach);
+                        self.vicinity.reset(reach * largest, self.far.len());
                         for &i in &self.far {
                             self.vicinity.add(particles.position[i as usize]);
                         }
@@ -251,7 +251,7 @@ impl Relaxation {
                     for i in range {
                         let p = particles.position[i];
                         if self.all || self.vicinity.may_hold(p) {
-                            grid.insert(p, i as u32);
+                            self.grids.insert(p, law.radius(particles, i), i as u32);
                         }
                     }
                     if last == n {
@@ -260,7 +260,7 @@ impl Relaxation {
                 }
                 Stage::Refresh => {
                     for k in range {
-                        self.refresh(law, grid, pairs, particles, self.far[k] as usize);
+                        self.refresh(law, pairs, particles, self.far[k] as usize);
                     }
                     if last == n {
                         self.far.clear();
@@ -357,15 +357,6 @@ impl Relaxation {
         }
     }
 
-    /// Radius within which the lists hold every pair, for the largest particles.
-    fn list_reach<L: Repulsion>(&self) -> f32 {
-        let largest = match self.law {
-            Law::Gaussian { radius, .. } => radius,
-            Law::Overlap { largest, .. } => largest,
-        };
-        (L::RANGE + SKIN) * largest
-    }
-
     /// Notes that particle `i` has gone some way and grown: two particles of which each has used up half of its skin may
     /// have come within range without being listed.
     #[inline]
@@ -376,7 +367,7 @@ impl Relaxation {
             after += 0.5 * L::RANGE * grown.max(0.0);
         }
         self.way[i] = after;
-        let limit = 0.5 * SKIN * law.radius(particles, i);
+        let limit = 0.5 * L::SKIN * law.radius(particles, i);
         if after > limit && before <= limit {
             self.far.push(i as u32);
         }
@@ -384,25 +375,19 @@ impl Relaxation {
 
     /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the range and the skin. Those of
     /// a larger index get it into their lists.
-    fn refresh<L: Repulsion>(
-        &mut self,
-        law: &L,
-        grid: &CellGrid,
-        pairs: &mut Pairs,
-        particles: &Particles,
-        i: usize,
-    ) {
+    fn refresh<L: Repulsion>(&mut self, law: &L, pairs: &mut Pairs, particles: &Particles, i: usize) {
         self.way[i] = 0.0;
-        grid.gather(particles.position[i], self.list_reach::<L>(), &mut self.found);
-        let normal = particles.normal[i];
         let radius = law.radius(particles, i);
+        let listed = |other: f32| 0.5 * (L::RANGE + L::SKIN) * (radius + other);
+        self.grids.gather(particles.position[i], listed, &mut self.found);
+        let normal = particles.normal[i];
         self.list.clear();
         for &Neighbour { index: j, distance_sq, .. } in &self.found {
             if particles.normal[j as usize].dot(normal) <= 0.0 {
                 continue;
             }
             if L::RESIZES {
-                let reach = 0.5 * (L::RANGE + SKIN) * (radius + law.radius(particles, j as usize));
+                let reach = listed(law.radius(particles, j as usize));
                 if distance_sq > reach * reach {
                     continue;
                 }
@@ -473,7 +458,7 @@ impl Relaxation {
         range: Range<usize>,
         points: &mut Points,
     ) {
-        for (k, i) in range.enumerate() {
+        for (point, i) in points.position.iter_mut().zip(range) {
             let p = particles.position[i];
             let normal = particles.normal[i];
             let radius = law.radius(particles, i);
@@ -482,7 +467,7 @@ impl Relaxation {
             if L::RESIZES {
                 self.previous_radius[i] = radius;
             }
-            points.position[k] = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
+            *point = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
         }
     }
 

@@ -39,6 +39,9 @@ impl Points {
 pub(super) trait Repulsion {
     /// Distance beyond which it ends.
     const RANGE: f32;
+    /// What the neighbour lists reach farther, so that they serve while particles move. It was chosen by counting
+    /// instructions: a wider one lengthens every list, a narrower one has more of them made anew.
+    const SKIN: f32;
     /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
@@ -46,6 +49,9 @@ pub(super) trait Repulsion {
 
     /// Radius of particle `i`.
     fn radius(&self, particles: &Particles, i: usize) -> f32;
+
+    /// Smallest and largest radius now.
+    fn extent(&self, particles: &Particles) -> (f32, f32);
 
     /// Force over offset, and energy, of a pair with this offset and mean radius, both lengths.
     fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32);
@@ -77,6 +83,7 @@ impl Gaussian {
 
 impl Repulsion for Gaussian {
     const RANGE: f32 = 3.0;
+    const SKIN: f32 = 0.4;
     /// In units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
     /// below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in ten
     /// steps and set the squeezed rows trembling.
@@ -86,6 +93,10 @@ impl Repulsion for Gaussian {
     #[inline(always)]
     fn radius(&self, _: &Particles, _: usize) -> f32 {
         self.radius
+    }
+
+    fn extent(&self, _: &Particles) -> (f32, f32) {
+        (self.radius, self.radius)
     }
 
     #[inline(always)]
@@ -142,6 +153,7 @@ pub(super) struct Overlap<'a> {
 
 impl Repulsion for Overlap<'_> {
     const RANGE: f32 = 2.0 * REACH;
+    const SKIN: f32 = 0.8;
     /// The stiffest wave of the hexagonal lattice has the eigenvalue 6 less six times the share by which it is compressed,
     /// so steps below 0.36 are stable. Shorter ones mend less in ten.
     const STEP: f32 = 0.33;
@@ -150,6 +162,12 @@ impl Repulsion for Overlap<'_> {
     #[inline(always)]
     fn radius(&self, particles: &Particles, i: usize) -> f32 {
         particles.radius[i]
+    }
+
+    fn extent(&self, particles: &Particles) -> (f32, f32) {
+        particles.radius.iter().fold((f32::INFINITY, 0.0), |(least, most), &radius| {
+            (if radius < least { radius } else { least }, if radius > most { radius } else { most })
+        })
     }
 
     #[inline(always)]

@@ -153,6 +153,8 @@ struct Envelope {
     lo: Vec3,
     inverse_cell: f32,
     cell: f32,
+    /// The last place in the box, in cells.
+    last: Vec3,
     /// Nodes along each axis. The outermost ones are never active, so that an active node has all its neighbours.
     nodes: [usize; 3],
     value: Vec<f32>,
@@ -163,6 +165,9 @@ struct Envelope {
 /// Cells of the grid beyond the box, on each side: an active node lies within two of a point in the box.
 const MARGIN: usize = 2;
 
+/// What the last place of the box is off its last node, so that it lies in the last cell.
+const LAST_CELL: f32 = 1e-4;
+
 impl Envelope {
     fn new(bounds: &Bounds, points: impl Iterator<Item = Vec3>) -> Self {
         let size = (bounds.hi() - bounds.lo()).as_vec3();
@@ -172,6 +177,7 @@ impl Envelope {
             lo: bounds.lo().as_vec3() - cell * MARGIN as f32,
             inverse_cell: 1.0 / cell,
             cell,
+            last: Vec3::from_array(nodes.map(|n| (n - 1 - MARGIN) as f32)) - LAST_CELL,
             nodes,
             value: vec![0.0; nodes.iter().product()],
             active: Vec::new(),
@@ -198,15 +204,13 @@ impl Envelope {
     /// axis.
     #[inline(always)]
     fn locate(&self, p: Vec3) -> (usize, Vec3) {
-        let place = (p - self.lo) * self.inverse_cell;
-        let mut first = 0;
-        let mut rest = Vec3::ZERO;
-        for (axis, stride) in self.strides().into_iter().enumerate() {
-            // NaN becomes 0.
-            let cell = (place[axis].max(0.0) as usize).clamp(MARGIN, self.nodes[axis] - 2 - MARGIN);
-            first += cell * stride;
-            rest[axis] = (place[axis] - cell as f32).clamp(0.0, 1.0);
-        }
+        // NaN becomes the first place.
+        let place = ((p - self.lo) * self.inverse_cell).max(Vec3::splat(MARGIN as f32)).min(self.last);
+        let cell = place.to_array().map(|c| c as u32);
+        let rest = place - Vec3::from_array(cell.map(|c| c as f32));
+        let [x, y, z] = cell.map(|c| c as usize);
+        let [_, row, layer] = self.strides();
+        let first = x + y * row + z * layer;
         (first, rest)
     }
 
@@ -275,8 +279,10 @@ impl Envelope {
     fn at(&self, p: Vec3) -> f32 {
         let (first, t) = self.locate(p);
         let [_, row, layer] = self.strides();
-        let v = |offset: usize| self.value[first + offset];
-        let along_x = |offset: usize| v(offset) + (v(offset + 1) - v(offset)) * t.x;
+        let along_x = |offset: usize| {
+            let ends = &self.value[first + offset..first + offset + 2];
+            ends[0] + (ends[1] - ends[0]) * t.x
+        };
         let along_y = |offset: usize| {
             let (a, b) = (along_x(offset), along_x(offset + row));
             a + (b - a) * t.y
