@@ -47,8 +47,10 @@ enum Stage {
     Move,
     Restore,
     Polish,
-    /// Lower the radii that a neighbour's does not allow.
-    Grade,
+    /// Lower the radii that a neighbour's does not allow: before a step or, at the `end`, after the last.
+    Grade {
+        end: bool,
+    },
     Done,
 }
 
@@ -95,8 +97,9 @@ pub(super) struct Relaxation {
     has_previous: bool,
     /// Radii before that step, where they change.
     previous_radius: Vec<f32>,
-    /// Whether this pass over the radii has lowered one.
+    /// Whether this pass over the radii has lowered one, and whether any has.
     lowered: bool,
+    steep: bool,
     step_size: f32,
     failures: u32,
     /// Energy of the positions whose forces are being computed.
@@ -125,6 +128,7 @@ impl Relaxation {
             has_previous: false,
             previous_radius: Vec::new(),
             lowered: false,
+            steep: false,
             step_size: 0.0,
             failures: 0,
             sum: 0.0,
@@ -164,6 +168,7 @@ impl Relaxation {
         self.way.resize(particles, 0.0);
         self.far.clear();
         self.all = false;
+        self.steep = false;
         if pairs.len() == particles && self.done == 0 {
             self.after_lists(particles);
         } else {
@@ -311,18 +316,24 @@ impl Relaxation {
                     }
                     moved |= !range.is_empty();
                     if last == n {
-                        self.lowered = false;
-                        self.enter(if L::RESIZES { Stage::Grade } else { Stage::Done });
+                        self.enter(if L::RESIZES { Stage::Grade { end: true } } else { Stage::Done });
                     }
                 }
-                Stage::Grade => {
-                    let slope = surface.sizing.map_or(0.0, Sizing::slope);
+                Stage::Grade { end } => {
                     for i in range {
-                        self.lowered |= grade(slope, pairs, particles, i);
+                        self.lowered |= grade(law.slope(), pairs, particles, i);
                     }
                     if last == n {
-                        self.enter(if self.lowered { Stage::Grade } else { Stage::Done });
-                        self.lowered = false;
+                        let lowered = core::mem::take(&mut self.lowered);
+                        self.steep |= lowered;
+                        // Between two steps once is enough: what is left is lowered after the next one.
+                        if lowered && (end || !self.has_begun()) {
+                            self.enter(self.stage);
+                        } else if end || self.target == 0 {
+                            self.enter(Stage::Done);
+                        } else {
+                            self.begin_forces(n);
+                        }
                     }
                 }
                 Stage::Done => {}
@@ -331,11 +342,19 @@ impl Relaxation {
         (budget, moved)
     }
 
-    /// Goes on to the forces, or, where no step is to be made, to what follows the last one.
+    /// Whether the forces of the particles as they were given have been computed.
+    fn has_begun(&self) -> bool {
+        self.energy.len() > self.done as usize
+    }
+
+    /// Goes on from complete lists: to the forces or, where the radii may differ too much, by way of their grading.
     fn after_lists(&mut self, n: usize) {
-        if self.target == 0 && matches!(self.law, Law::Overlap { .. }) {
-            self.lowered = false;
-            self.enter(Stage::Grade);
+        let differ = match self.law {
+            Law::Gaussian { .. } => false,
+            Law::Overlap { .. } => self.steep || !self.has_begun(),
+        };
+        if differ {
+            self.enter(Stage::Grade { end: false });
         } else {
             self.begin_forces(n);
         }
@@ -348,10 +367,10 @@ impl Relaxation {
         self.enter(Stage::Forces);
     }
 
-    /// Goes on to the forces, by way of new lists where the old ones may miss a pair.
+    /// Goes on from new places, by way of new lists where the old ones may miss a pair.
     fn after_moving(&mut self, n: usize) {
         if self.far.is_empty() {
-            self.begin_forces(n);
+            self.after_lists(n);
         } else {
             self.enter(Stage::Grid);
         }

@@ -50,6 +50,9 @@ pub(super) trait Repulsion {
     /// Radius of particle `i`.
     fn radius(&self, particles: &Particles, i: usize) -> f32;
 
+    /// Lipschitz slope of the radius along the surface.
+    fn slope(&self) -> f32;
+
     /// Smallest and largest radius now.
     fn extent(&self, particles: &Particles) -> (f32, f32);
 
@@ -93,6 +96,10 @@ impl Repulsion for Gaussian {
     #[inline(always)]
     fn radius(&self, _: &Particles, _: usize) -> f32 {
         self.radius
+    }
+
+    fn slope(&self) -> f32 {
+        0.0
     }
 
     fn extent(&self, _: &Particles) -> (f32, f32) {
@@ -162,6 +169,10 @@ impl Repulsion for Overlap<'_> {
     #[inline(always)]
     fn radius(&self, particles: &Particles, i: usize) -> f32 {
         particles.radius[i]
+    }
+
+    fn slope(&self) -> f32 {
+        self.sizing.slope()
     }
 
     fn extent(&self, particles: &Particles) -> (f32, f32) {
