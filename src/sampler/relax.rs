@@ -47,10 +47,8 @@ enum Stage {
     Move,
     Restore,
     Polish,
-    /// Lower the radii that a neighbour's does not allow: before a step or, at the `end`, after the last.
-    Grade {
-        end: bool,
-    },
+    /// Lower the radii that a neighbour's does not allow: before a step and after the last.
+    Grade,
     Done,
 }
 
@@ -100,6 +98,8 @@ pub(super) struct Relaxation {
     /// Whether this pass over the radii has lowered one, and whether any has.
     lowered: bool,
     steep: bool,
+    /// Whether only the grading is left to do.
+    ending: bool,
     step_size: f32,
     failures: u32,
     /// Energy of the positions whose forces are being computed.
@@ -129,6 +129,7 @@ impl Relaxation {
             previous_radius: Vec::new(),
             lowered: false,
             steep: false,
+            ending: false,
             step_size: 0.0,
             failures: 0,
             sum: 0.0,
@@ -169,13 +170,12 @@ impl Relaxation {
         self.far.clear();
         self.all = false;
         self.steep = false;
-        if pairs.len() == particles && self.done == 0 {
+        self.ending = target == 0 && matches!(law, Law::Overlap { .. });
+        if pairs.len() == particles && self.done == 0 && !self.ending {
             self.after_lists(particles);
         } else {
             pairs.extend_to(particles);
-            self.far.extend(0..particles as u32);
-            self.all = true;
-            self.enter(Stage::Grid);
+            self.make_lists(particles);
         }
     }
 
@@ -316,10 +316,17 @@ impl Relaxation {
                     }
                     moved |= !range.is_empty();
                     if last == n {
-                        self.enter(if L::RESIZES { Stage::Grade { end: true } } else { Stage::Done });
+                        if L::RESIZES {
+                            // The grading is a promise about all pairs: none may be missing that the front or a change of
+                            // radii has left out.
+                            self.ending = true;
+                            self.make_lists(n);
+                        } else {
+                            self.enter(Stage::Done);
+                        }
                     }
                 }
-                Stage::Grade { end } => {
+                Stage::Grade => {
                     for i in range {
                         self.lowered |= grade(law.slope(), pairs, particles, i);
                     }
@@ -327,9 +334,9 @@ impl Relaxation {
                         let lowered = core::mem::take(&mut self.lowered);
                         self.steep |= lowered;
                         // Between two steps once is enough: what is left is lowered after the next one.
-                        if lowered && (end || !self.has_begun()) {
-                            self.enter(self.stage);
-                        } else if end || self.target == 0 {
+                        if lowered && (self.ending || !self.has_begun()) {
+                            self.enter(Stage::Grade);
+                        } else if self.ending {
                             self.enter(Stage::Done);
                         } else {
                             self.begin_forces(n);
@@ -342,6 +349,14 @@ impl Relaxation {
         (budget, moved)
     }
 
+    /// Makes all lists anew.
+    fn make_lists(&mut self, n: usize) {
+        self.far.clear();
+        self.far.extend(0..n as u32);
+        self.all = true;
+        self.enter(Stage::Grid);
+    }
+
     /// Whether the forces of the particles as they were given have been computed.
     fn has_begun(&self) -> bool {
         self.energy.len() > self.done as usize
@@ -351,10 +366,10 @@ impl Relaxation {
     fn after_lists(&mut self, n: usize) {
         let differ = match self.law {
             Law::Gaussian { .. } => false,
-            Law::Overlap { .. } => self.steep || !self.has_begun(),
+            Law::Overlap { .. } => self.steep || self.ending || !self.has_begun(),
         };
         if differ {
-            self.enter(Stage::Grade { end: false });
+            self.enter(Stage::Grade);
         } else {
             self.begin_forces(n);
         }
