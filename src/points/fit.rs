@@ -123,7 +123,7 @@ enum Stage {
     Eliminating(Elimination),
     /// Measures the distance of the points from `next` on.
     Measuring {
-        field: RbfField,
+        field: Box<RbfField>,
         condition: f64,
         next: usize,
         sum: f64,
@@ -220,7 +220,7 @@ impl Fitter {
                     let end = (next + BATCH).min(self.given.len());
                     measure(&mut field, &self.given[next..end], &mut sum, &mut largest);
                     if end == self.given.len() {
-                        return Ok(Some(self.measured(field, condition, sum, largest)));
+                        return Ok(Some(self.measured(&field, condition, sum, largest)));
                     }
                     Stage::Measuring { field, condition, next: end, sum, largest }
                 }
@@ -265,12 +265,14 @@ impl Fitter {
             data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
         }
         match RbfField::new(data) {
-            Ok(field) => Ok(Stage::Measuring { field, condition, next: 0, sum: 0.0, largest: 0.0 }),
+            Ok(field) => {
+                Ok(Stage::Measuring { field: Box::new(field), condition, next: 0, sum: 0.0, largest: 0.0 })
+            }
             Err(_) => Err(FitError::Singular { condition }),
         }
     }
 
-    fn measured(&mut self, field: RbfField, condition: f64, sum: f64, largest: f64) -> Fit {
+    fn measured(&mut self, field: &RbfField, condition: f64, sum: f64, largest: f64) -> Fit {
         let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
         let (lo, hi) = corners(self.given.iter().copied().chain(centres));
         let diagonal = (hi - lo).length();

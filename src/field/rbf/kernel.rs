@@ -1,157 +1,196 @@
-//! The field in single precision: SIMD lanes over points, one centre at a time broadcast to all of them.
+//! The sums at one point in single precision: SIMD lanes over the coefficients of a cell's polynomial and over its near
+//! centres.
+//!
+//! Lanes over points would need many points of one cell together, and a front passes from cell to cell.
 
-use super::{Frame, RbfData};
-use crate::math::{LANES, Lanes, Sym3};
-use glam::{DVec3, Vec3};
+use super::taylor::DEGREE;
+use crate::math::{LANES, Lanes};
+use glam::DVec3;
 
-/// Centres per tile: 16 kB, half of a small first-level cache.
-const TILE: usize = 512;
-/// |d| below this, in local units, counts as this in a divisor: nothing is divided by zero at a centre, and no cube of
-/// the reciprocal overflows.
+/// |d| below this, in local units, counts as this in a divisor: nothing is divided by zero at a centre.
 const LEAST_DISTANCE: f32 = 1e-12;
+/// Rows of a polynomial: those powers of z and x that have degree up to [`DEGREE`].
+pub(super) const ROWS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
-/// A centre with its coefficients in local coordinates, ready for the sums.
+/// A polynomial's coefficients: in the lanes the powers of y; by rows from the largest power of z down, and within it from
+/// the largest power of x down. What would be beyond the degree is zero.
+pub(super) type Rows = [Lanes; ROWS];
+
+const _: () = assert!(LANES == DEGREE + 1, "the powers of y fill the lanes");
+
+/// A centre with its coefficients, in local coordinates.
 #[derive(Clone, Copy, Debug)]
-struct Centre {
-    place: [f32; 3],
+pub(super) struct Centre {
+    pub(super) place: DVec3,
+    pub(super) alpha: f64,
+    pub(super) beta: DVec3,
+}
+
+/// Eight centres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    place: [Lanes; 3],
     /// α.
-    alpha: f32,
-    /// 3 β.
-    beta: [f32; 3],
+    alpha: Lanes,
     /// 3 α.
-    alpha3: f32,
+    alpha3: Lanes,
+    /// 3 β.
+    beta: [Lanes; 3],
 }
 
-/// The centres in single precision.
-#[derive(Clone, Debug)]
-pub(super) struct Single {
-    centres: Vec<Centre>,
-    origin: [f32; 3],
-    scale: f32,
-}
-
-impl Single {
-    pub(super) fn new(data: &RbfData) -> Self {
-        let frame = Frame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
-        let scale = frame.scale();
-        let centres = (0..data.centres.len())
-            .map(|j| {
-                // f(x) = g(s (x − o))/s, as in `points::fit`.
-                let alpha = data.alpha[j] / (scale * scale);
-                Centre {
-                    place: frame.local(DVec3::from_array(data.centres[j])).as_vec3().to_array(),
-                    alpha: alpha as f32,
-                    beta: data.beta[j].map(|b| (3.0 * b / scale) as f32),
-                    alpha3: (3.0 * alpha) as f32,
-                }
-            })
-            .collect();
-        Self { centres, origin: frame.origin().as_vec3().to_array(), scale: scale as f32 }
-    }
-
-    pub(super) fn values(&self, points: &[Vec3], value: &mut [f32]) {
-        for (points, value) in points.chunks(LANES).zip(value.chunks_mut(LANES)) {
-            let sums = self.sums::<1>(points);
-            value.copy_from_slice(&sums[0].0[..points.len()]);
+impl Near {
+    /// Up to eight centres; the rest has no weight.
+    pub(super) fn new(centres: &[Centre]) -> Self {
+        let lanes = |of: &dyn Fn(&Centre) -> f64| {
+            Lanes(core::array::from_fn(|k| centres.get(k).map_or(0.0, |centre| of(centre) as f32)))
+        };
+        Self {
+            place: [0, 1, 2].map(|axis| lanes(&|c| c.place[axis])),
+            alpha: lanes(&|c| c.alpha),
+            alpha3: lanes(&|c| 3.0 * c.alpha),
+            beta: [0, 1, 2].map(|axis| lanes(&|c| 3.0 * c.beta[axis])),
         }
-    }
-
-    pub(super) fn gradients(&self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        let outputs = value.chunks_mut(LANES).zip(gradient.chunks_mut(LANES));
-        for (points, (value, gradient)) in points.chunks(LANES).zip(outputs) {
-            let sums = self.sums::<4>(points);
-            value.copy_from_slice(&sums[0].0[..points.len()]);
-            for (k, gradient) in gradient.iter_mut().enumerate() {
-                *gradient = Vec3::new(sums[1].0[k], sums[2].0[k], sums[3].0[k]);
-            }
-        }
-    }
-
-    pub(super) fn hessians(
-        &self,
-        points: &[Vec3],
-        value: &mut [f32],
-        gradient: &mut [Vec3],
-        hessian: &mut [Sym3<f32>],
-    ) {
-        let outputs = value.chunks_mut(LANES).zip(gradient.chunks_mut(LANES)).zip(hessian.chunks_mut(LANES));
-        for (points, ((value, gradient), hessian)) in points.chunks(LANES).zip(outputs) {
-            let sums = self.sums::<10>(points);
-            value.copy_from_slice(&sums[0].0[..points.len()]);
-            for (k, (gradient, hessian)) in gradient.iter_mut().zip(hessian).enumerate() {
-                let [_, gx, gy, gz, xx, xy, xz, yy, yz, zz] = sums.map(|sum| sum.0[k]);
-                *gradient = Vec3::new(gx, gy, gz);
-                *hessian = Sym3 { xx, xy, xz, yy, yz, zz };
-            }
-        }
-    }
-
-    /// The sums over all centres at up to [`LANES`] points: 1 (f), 4 (and ∇f) or 10 (and ∇∇f: xx, xy, xz, yy, yz, zz).
-    fn sums<const N: usize>(&self, points: &[Vec3]) -> [Lanes; N] {
-        let (scale, last) = (Lanes::splat(self.scale), points.len() - 1);
-        let place = [0, 1, 2].map(|axis| {
-            let lanes = Lanes(core::array::from_fn(|k| points[k.min(last)][axis]));
-            (lanes - Lanes::splat(self.origin[axis])) * scale
-        });
-        let mut sums = [Lanes::splat(0.0); N];
-        for tile in self.centres.chunks(TILE) {
-            add_all(&mut sums, tile, &place);
-        }
-        // Gradients are those of the model; values and second derivatives have units.
-        sums[0] = sums[0] * Lanes::splat(1.0 / self.scale);
-        for second in sums.iter_mut().skip(4) {
-            *second = *second * scale;
-        }
-        sums
     }
 }
 
-/// Adds all the centres' terms. Not inlined: only where lanes go in and out by memory does the compiler keep each of
-/// them in registers of its own.
+/// A point, for a cell that holds it.
+pub(super) struct Place {
+    /// In local coordinates.
+    pub(super) local: [f32; 3],
+    /// From the middle of the cell, in units of its half-width.
+    pub(super) offset: [f32; 3],
+    /// 1 over the half-width.
+    pub(super) inverse: f32,
+}
+
+/// f, and for `N` = 4 also ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
+///
+/// What it calls is not inlined: only where lanes go in and out by memory does the compiler keep each of them in registers
+/// of its own.
+pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], place: &Place) -> [f32; N] {
+    let [x, y, z] = place.offset.map(Lanes::splat);
+    let mut planes = [Lanes::splat(0.0); 6];
+    polynomial::<N>(&mut planes, rows, &x, &z);
+    let mut sums = [Lanes::splat(0.0); N];
+    weigh(&mut sums, &planes, &powers(y.0[0]), place.inverse);
+    if !near.is_empty() {
+        add(&mut sums, near, &place.local.map(Lanes::splat));
+    }
+    sums.map(Lanes::sum)
+}
+
+/// The polynomial and its derivatives by x and z, by nested multiplication along both: f, ∂x, ∂z, half of ∂xx, ∂xz, half of
+/// ∂zz. The sums over the powers of y are left to the lanes.
 #[inline(never)]
-fn add_all<const N: usize>(sums: &mut [Lanes; N], centres: &[Centre], place: &[Lanes; 3]) {
-    let mut local = *sums;
-    for centre in centres {
-        add(&mut local, centre, *place);
+fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z: &Lanes) {
+    let (x, z) = (*x, *z);
+    let [mut f, mut fx, mut fz, mut fxx, mut fxz, mut fzz] = *planes;
+    let mut rest = rows.as_slice();
+    for i in (0..=DEGREE).rev() {
+        let (plane, others) = rest.split_at(DEGREE - i + 1);
+        rest = others;
+        let [mut value, mut first, mut second] = [Lanes::splat(0.0); 3];
+        for &row in plane {
+            if N == 10 {
+                second = second * x + first;
+            }
+            if N >= 4 {
+                first = first * x + value;
+            }
+            value = value * x + row;
+        }
+        if N == 10 {
+            fzz = fzz * z + fz;
+            fxz = fxz * z + fx;
+            fxx = fxx * z + second;
+        }
+        if N >= 4 {
+            fz = fz * z + f;
+            fx = fx * z + first;
+        }
+        f = f * z + value;
     }
-    *sums = local;
+    *planes = [f, fx, fz, fxx, fxz, fzz];
 }
 
-/// Adds one centre's terms.
+/// yʲ.
+#[inline(never)]
+fn powers(y: f32) -> Lanes {
+    let mut power = [1.0; LANES];
+    for j in 1..LANES {
+        power[j] = power[j - 1] * y;
+    }
+    Lanes(power)
+}
+
+/// What stands in the lane before, times the lane's number.
 #[inline(always)]
-fn add<const N: usize>(sums: &mut [Lanes; N], centre: &Centre, [x, y, z]: [Lanes; 3]) {
-    let [bx, by, bz] = centre.beta.map(Lanes::splat);
-    let (dx, dy, dz) = (
-        x - Lanes::splat(centre.place[0]),
-        y - Lanes::splat(centre.place[1]),
-        z - Lanes::splat(centre.place[2]),
-    );
-    let square = dx * dx + dy * dy + dz * dz;
-    let r = square.sqrt();
-    let along = bx * dx + by * dy + bz * dz;
-    sums[0] += r * (Lanes::splat(centre.alpha) * square + along);
+fn slope(power: Lanes) -> Lanes {
+    Lanes(core::array::from_fn(|j| if j < 1 { 0.0 } else { j as f32 * power.0[j - 1] }))
+}
+
+/// Weighs the planes with the powers of y, and makes derivatives by the offset into such by the place.
+#[inline(never)]
+fn weigh<const N: usize>(sums: &mut [Lanes; N], planes: &[Lanes; 6], powers: &Lanes, inverse: f32) {
+    let [f, fx, fz, fxx, fxz, fzz] = *planes;
+    let mut power = *powers;
+    sums[0] = f * power;
     if N == 1 {
         return;
     }
-    let inverse = Lanes::splat(1.0) / r.map(|r| if r > LEAST_DISTANCE { r } else { LEAST_DISTANCE });
-    let stretch = Lanes::splat(centre.alpha3) * r;
-    let slope = along * inverse;
-    let common = stretch + slope;
-    sums[1] += dx * common + bx * r;
-    sums[2] += dy * common + by * r;
-    sums[3] += dz * common + bz * r;
+    let inverse = Lanes::splat(inverse);
+    power = power * inverse;
+    let mut first = slope(power);
+    sums[1] = fx * power;
+    sums[2] = f * first;
+    sums[3] = fz * power;
     if N == 4 {
         return;
     }
-    // 3 (α r + β·u) I + 3 (α r − β·u) u uᵀ + 3 (β uᵀ + u βᵀ): the last two together are u pᵀ + p uᵀ.
-    let (ux, uy, uz) = (dx * inverse, dy * inverse, dz * inverse);
-    let half = Lanes::splat(0.5) * (stretch - slope);
-    let (px, py, pz) = (half * ux + bx, half * uy + by, half * uz + bz);
-    let (two_x, two_y, two_z) = (ux + ux, uy + uy, uz + uz);
-    sums[4] += common + two_x * px;
-    sums[5] += ux * py + uy * px;
-    sums[6] += ux * pz + uz * px;
-    sums[7] += common + two_y * py;
-    sums[8] += uy * pz + uz * py;
-    sums[9] += common + two_z * pz;
+    (power, first) = (power * inverse, first * inverse);
+    sums[4] = (fxx + fxx) * power;
+    sums[5] = fx * first;
+    sums[6] = fxz * power;
+    sums[7] = f * slope(first);
+    sums[8] = fz * first;
+    sums[9] = (fzz + fzz) * power;
+}
+
+/// Adds the terms of centres.
+#[inline(never)]
+fn add<const N: usize>(sums: &mut [Lanes; N], centres: &[Near], place: &[Lanes; 3]) {
+    let mut local = *sums;
+    let [x, y, z] = *place;
+    for near in centres {
+        let ([cx, cy, cz], [bx, by, bz]) = (near.place, near.beta);
+        let (dx, dy, dz) = (x - cx, y - cy, z - cz);
+        let square = dx * dx + dy * dy + dz * dz;
+        let r = square.sqrt();
+        let along = bx * dx + by * dy + bz * dz;
+        local[0] += r * (near.alpha * square + along);
+        if N == 1 {
+            continue;
+        }
+        let inverse = Lanes::splat(1.0) / r.map(|r| if r > LEAST_DISTANCE { r } else { LEAST_DISTANCE });
+        let stretch = near.alpha3 * r;
+        let slope = along * inverse;
+        let common = stretch + slope;
+        local[1] += dx * common + bx * r;
+        local[2] += dy * common + by * r;
+        local[3] += dz * common + bz * r;
+        if N == 4 {
+            continue;
+        }
+        // 3 (α r + β·u) I + 3 (α r − β·u) u uᵀ + 3 (β uᵀ + u βᵀ): the last two together are u pᵀ + p uᵀ.
+        let (ux, uy, uz) = (dx * inverse, dy * inverse, dz * inverse);
+        let half = Lanes::splat(0.5) * (stretch - slope);
+        let (px, py, pz) = (half * ux + bx, half * uy + by, half * uz + bz);
+        local[4] += common + (ux + ux) * px;
+        local[5] += ux * py + uy * px;
+        local[6] += ux * pz + uz * px;
+        local[7] += common + (uy + uy) * py;
+        local[8] += uy * pz + uz * py;
+        local[9] += common + (uz + uz) * pz;
+    }
+    *sums = local;
 }

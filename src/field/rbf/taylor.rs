@@ -1,0 +1,182 @@
+//! Taylor polynomials of the sum over far centres.
+//!
+//! About the middle of a cell the terms of centres that are far from it are smooth, and a few dozen coefficients stand for
+//! all of them. The recurrence for |d + t|³ follows from u ∇φ = 3 (d + t) φ with u = |d + t|², φ = u^(3/2), degree by degree
+//! (Duan & Krasny, "An adaptive treecode for computing nonbonded potential energy in classical molecular systems", 2001,
+//! have it for other powers).
+
+use super::kernel::{Centre, Rows};
+use crate::math::{LANES, Lanes};
+use glam::DVec3;
+
+/// Degree of the polynomials.
+pub(super) const DEGREE: usize = 7;
+/// Their coefficients: those of degree up to [`DEGREE`] in three variables.
+pub(super) const TERMS: usize = below(DEGREE + 1);
+/// One degree more, as ∇φ takes it.
+const MORE_TERMS: usize = below(DEGREE + 2);
+/// Centres expanded together.
+const TOGETHER: usize = 8;
+/// Powers along an axis, of the cube that holds a polynomial while it is shifted.
+const POWERS: usize = DEGREE + 1;
+
+/// Number of terms in three variables below a degree.
+const fn below(degree: usize) -> usize {
+    degree * (degree + 1) * (degree + 2) / 6
+}
+
+/// Coefficients in order of degree; the variables are offsets from the middle of a cell in units of its half-width.
+pub(super) type Polynomial = [f64; TERMS];
+
+/// A coefficient and its neighbours.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    powers: [usize; 3],
+    /// Index of the coefficient with one power less along each axis; [`MORE_TERMS`], where a zero stands, if there is none.
+    /// In bytes, so that no index needs to be checked.
+    less: [u8; 3],
+    /// With two powers less.
+    less_two: [u8; 3],
+    /// With one power more.
+    more: [u8; 3],
+}
+
+/// What is the same for all polynomials.
+#[derive(Clone, Debug)]
+pub(super) struct Taylor {
+    terms: Vec<Term>,
+    /// For each of [`Rows`] the indices of its coefficients; [`MORE_TERMS`] beyond the degree.
+    rows: Vec<[usize; LANES]>,
+    /// Coefficients of a group of centres.
+    group: Vec<Group>,
+}
+
+/// A number of each of the centres that are expanded together.
+type Group = [f64; TOGETHER];
+/// Places for coefficients: as many as a byte can tell.
+const PLACES: usize = 256;
+
+impl Taylor {
+    pub(super) fn new() -> Self {
+        let mut powers: Vec<[usize; 3]> = Vec::new();
+        for degree in 0..=DEGREE + 1 {
+            for i in 0..=degree {
+                powers.extend((0..=degree - i).map(|j| [degree - i - j, j, i]));
+            }
+        }
+        let index = |wanted: [usize; 3]| powers.iter().position(|p| *p == wanted).unwrap_or(MORE_TERMS);
+        let moved = |from: [usize; 3], by: isize| {
+            [0, 1, 2].map(|axis| {
+                let mut to = from;
+                let power = to[axis].checked_add_signed(by);
+                to[axis] = power.unwrap_or(usize::MAX);
+                index(to) as u8
+            })
+        };
+        let terms = powers
+            .iter()
+            .map(|&p| Term { powers: p, less: moved(p, -1), less_two: moved(p, -2), more: moved(p, 1) })
+            .collect();
+        let mut rows = Vec::new();
+        for i in (0..=DEGREE).rev() {
+            for k in (0..=DEGREE - i).rev() {
+                let within = |j: usize| i + j + k <= DEGREE;
+                rows.push(core::array::from_fn(|j| if within(j) { index([k, j, i]) } else { MORE_TERMS }));
+            }
+        }
+        Self { terms, rows, group: vec![[0.0; TOGETHER]; PLACES] }
+    }
+
+    /// Adds the terms of `centres`, of which none is at `middle`, to the polynomial of the cell.
+    pub(super) fn expand(
+        &mut self,
+        polynomial: &mut Polynomial,
+        middle: DVec3,
+        half: f64,
+        centres: &[Centre],
+    ) {
+        for group in centres.chunks(TOGETHER) {
+            let at = |k: usize| group[k.min(group.len() - 1)];
+            // In units of the cell: φ has the factor half³, ∇φ half².
+            let offset = core::array::from_fn(|k| (middle - at(k).place) / half);
+            let real: [f64; TOGETHER] =
+                core::array::from_fn(|k| if k < group.len() { half * half } else { 0.0 });
+            let alpha: [f64; TOGETHER] = core::array::from_fn(|k| at(k).alpha * half * real[k]);
+            let beta: [DVec3; TOGETHER] = core::array::from_fn(|k| at(k).beta * real[k]);
+            self.expand_group(polynomial, &offset, &alpha, &beta);
+        }
+    }
+
+    /// Adds α |d + t|³ + β · ∇|d + t|³ for each d.
+    fn expand_group(
+        &mut self,
+        polynomial: &mut Polynomial,
+        offset: &[DVec3; TOGETHER],
+        alpha: &Group,
+        beta: &[DVec3; TOGETHER],
+    ) {
+        let d: [Group; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
+        let b: [Group; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
+        let inverse: Group = offset.map(|d| 1.0 / d.length_squared());
+        let Some(a) = self.group.first_chunk_mut::<PLACES>() else {
+            unreachable!("the group has its places");
+        };
+        a[0] = offset.map(|d| d.length_squared() * d.length());
+        for degree in 1..=DEGREE + 1 {
+            let m = degree as f64;
+            let (one, two) = ((5.0 - 2.0 * m) / m, (5.0 - m) / m);
+            let terms = below(degree)..below(degree + 1);
+            for (n, term) in terms.clone().zip(&self.terms[terms]) {
+                let [x, y, z] = term.less.map(|n| a[usize::from(n)]);
+                let [xx, yy, zz] = term.less_two.map(|n| a[usize::from(n)]);
+                a[n] = core::array::from_fn(|k| {
+                    let along = d[0][k] * x[k] + d[1][k] * y[k] + d[2][k] * z[k];
+                    (one * along + two * (xx[k] + yy[k] + zz[k])) * inverse[k]
+                });
+            }
+        }
+        for (sum, (a_n, term)) in polynomial.iter_mut().zip(a.iter().zip(&self.terms)) {
+            let [x, y, z] = term.more.map(|n| a[usize::from(n)]);
+            let [p, q, r] = term.powers.map(|power| (power + 1) as f64);
+            let of_group: Group = core::array::from_fn(|k| {
+                alpha[k] * a_n[k] + (b[0][k] * p * x[k] + b[1][k] * q * y[k] + b[2][k] * r * z[k])
+            });
+            let [e, f, g, h, i, j, k, l] = of_group;
+            *sum += ((e + i) + (g + k)) + ((f + j) + (h + l));
+        }
+    }
+
+    /// The polynomial of the eighth of the cell whose middle is at `side`/2, each of −1 or 1.
+    pub(super) fn shifted(&self, polynomial: &Polynomial, side: [f64; 3]) -> Polynomial {
+        let mut cube = [0.0; POWERS * POWERS * POWERS];
+        let place = |[k, j, i]: [usize; 3]| (i * POWERS + j) * POWERS + k;
+        for (value, term) in polynomial.iter().zip(&self.terms) {
+            cube[place(term.powers)] = *value;
+        }
+        for (axis, stride) in [1, POWERS, POWERS * POWERS].into_iter().enumerate() {
+            let middle = 0.5 * side[axis];
+            for term in self.terms[..TERMS].iter().filter(|term| term.powers[axis] == 0) {
+                let (first, top) = (place(term.powers), DEGREE - term.powers.iter().sum::<usize>());
+                // Σ cₖ (middle + t/2)ᵏ by repeated synthetic division.
+                for low in 0..top {
+                    for k in (low..top).rev() {
+                        cube[first + k * stride] += middle * cube[first + (k + 1) * stride];
+                    }
+                }
+                let mut scale = 1.0;
+                for k in 0..=top {
+                    cube[first + k * stride] *= scale;
+                    scale *= 0.5;
+                }
+            }
+        }
+        core::array::from_fn(|n| cube[place(self.terms[n].powers)])
+    }
+
+    /// The coefficients in single precision, as the kernel takes them.
+    pub(super) fn rows(&self, polynomial: &Polynomial) -> Rows {
+        core::array::from_fn(|row| {
+            Lanes(self.rows[row].map(|n| polynomial.get(n).map_or(0.0, |&coefficient| coefficient as f32)))
+        })
+    }
+}
