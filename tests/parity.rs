@@ -3,7 +3,10 @@
 //! browser tests hold the page to it.
 //!
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test parity`.
+#![cfg(feature = "points")]
 
+use marching_particles::field::model;
+use marching_particles::points::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
@@ -13,13 +16,18 @@ use std::path::PathBuf;
 #[derive(Serialize, Deserialize)]
 struct Golden {
     runs: Vec<Run>,
+    /// Runs on built-in models, which the page solves in a bundle of its own.
+    models: Vec<Run>,
 }
 
 /// A run and what it must give.
 #[derive(Serialize, Deserialize)]
 struct Run {
     name: String,
-    field: serde_json::Value,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    field: Option<serde_json::Value>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    model: Option<String>,
     settings: serde_json::Value,
     count: usize,
     digest: String,
@@ -29,12 +37,21 @@ struct Run {
 const BUDGET: u32 = 100_000;
 
 fn run(case: &Run) -> (usize, String) {
-    let field: FieldRequest = serde_json::from_value(case.field.clone())
-        .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
+    let mut session = Session::new();
+    if let Some(field) = &case.field {
+        let field: FieldRequest = serde_json::from_value(field.clone())
+            .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
+        session.set_field(&field).unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    }
+    if let Some(model) = &case.model {
+        let model = model::find(model).unwrap_or_else(|| panic!("{}: no such model", case.name));
+        let fit = models::begin(model).finish().unwrap_or_else(|error| panic!("{}: {error}", case.name));
+        session
+            .set_points(fit.data, fit.info, fit.bounds)
+            .unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    }
     let settings: Settings = serde_json::from_value(case.settings.clone())
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
-    let mut session = Session::new();
-    session.set_field(&field).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     while session.step(BUDGET).stop_reason.is_none() {}
     (session.count(), format!("{:016x}", session.particles().digest()))
@@ -48,7 +65,7 @@ fn runs_have_the_digests_that_other_platforms_give() {
     assert!(golden.runs.len() >= 3, "{} holds {} runs", path.display(), golden.runs.len());
     let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
     let mut faults = Vec::new();
-    for case in &mut golden.runs {
+    for case in golden.runs.iter_mut().chain(&mut golden.models) {
         let (count, digest) = run(case);
         assert!(count > 500, "{}: {count} particles are too few to show anything", case.name);
         if update {

@@ -1,14 +1,20 @@
 // Holds the core as WebAssembly to the digests that the native core is held to by tests/parity.rs, and to an answer in
 // words where the memory is used up.
 //
-// Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core`.
+// Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core points`.
 import { readFile } from 'node:fs/promises';
 import process from 'node:process';
 
 const root = new URL('../../', import.meta.url);
-const bundle = new URL('www/src/wasm/core/', root);
-const { initSync, Core } = await import(new URL('core.js', bundle).href);
-const { memory } = initSync({ module: await readFile(new URL('core_bg.wasm', bundle)) });
+/** @param {string} name */
+const load = async (name) => {
+  const folder = new URL(`www/src/wasm/${name}/`, root);
+  const bundle = await import(new URL(`${name}.js`, folder).href);
+  const { memory } = bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
+  return { ...bundle, memory };
+};
+const { Core, memory } = await load('core');
+const { Points } = await load('points');
 
 /** Units of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 977;
@@ -19,10 +25,20 @@ function accepted(json, name) {
   if (answer.ok !== true) throw new Error(`${name}: ${json}`);
 }
 
-/** @param {{ name: string, field: object, settings: object }} run */
-function sample({ name, field, settings }) {
+/** @param {Core} core @param {string} model @param {string} name */
+function solve(core, model, name) {
+  const points = new Points();
+  accepted(points.model(model), name);
+  for (let done = false; !done; ({ done } = JSON.parse(points.step(BUDGET))));
+  accepted(core.set_points(points.field(), points.info()), `${name}: set_points`);
+  points.free();
+}
+
+/** @param {{ name: string, field?: object, model?: string, settings: object }} run */
+function sample({ name, field, model, settings }) {
   const core = new Core();
-  accepted(core.set_field(JSON.stringify(field)), `${name}: set_field`);
+  if (field) accepted(core.set_field(JSON.stringify(field)), `${name}: set_field`);
+  if (model) solve(core, model, name);
   accepted(core.start(JSON.stringify(settings)), `${name}: start`);
   while (JSON.parse(core.step(BUDGET)).stop_reason === null);
   const result = { count: core.count(), digest: core.digest() };
@@ -30,10 +46,10 @@ function sample({ name, field, settings }) {
   return result;
 }
 
-const { runs } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
-if (runs.length < 3) throw new Error(`only ${runs.length} runs`);
+const { runs, models } = JSON.parse(await readFile(new URL('tests/golden/digests.json', root), 'utf8'));
+if (runs.length < 3 || models.length < 2) throw new Error(`only ${runs.length} and ${models.length} runs`);
 let failures = 0;
-for (const run of runs) {
+for (const run of [...runs, ...models]) {
   const { count, digest } = sample(run);
   const same = count === run.count && digest === run.digest;
   failures += same ? 0 : 1;

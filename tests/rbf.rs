@@ -1,0 +1,363 @@
+//! Fields from points: the fit, its failures, and the evaluation against the sum in double precision.
+#![cfg(feature = "points")]
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::Field;
+use marching_particles::field::model::{self, MODELS};
+use marching_particles::field::rbf::{DataError, RbfData, RbfField};
+use marching_particles::math::Sym3;
+use marching_particles::points::fit::{Fit, FitError, Fitter};
+use marching_particles::points::models;
+use marching_particles::points::{Cloud, CloudError, ModelInfo};
+use marching_particles::sampler::{Settings, StopReason};
+use marching_particles::session::{Report, Session};
+use rand_core::Rng;
+use rand_pcg::Pcg64Mcg;
+
+fn of_model(id: &str) -> Fit {
+    let model = model::find(id).expect("a built-in model");
+    models::begin(model).finish().unwrap_or_else(|error| panic!("{id}: {error}"))
+}
+
+/// Points of an ellipsoid, evenly spread along a spiral.
+fn ellipsoid(count: usize) -> Cloud {
+    let axes = DVec3::new(1.0, 0.7, 0.5);
+    let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let mut cloud = Cloud::default();
+    for k in 0..count {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
+        let (sin, cos) = libm::sincos(golden * k as f64);
+        let unit = DVec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z;
+        cloud.position.push(unit * axes);
+        cloud.normal.push((unit / axes).normalize_or_zero());
+    }
+    cloud
+}
+
+fn fitted(cloud: &Cloud) -> Result<Fit, FitError> {
+    Fitter::new(cloud, cloud.position.clone(), ModelInfo::default())?.finish()
+}
+
+fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
+    let mut session = Session::new();
+    session.set_points(fit.data, fit.info, fit.bounds).expect("a field");
+    session.start(settings).expect("valid settings");
+    while session.step(10_000).stop_reason.is_none() {}
+    let report = session.report();
+    (session, report)
+}
+
+/// Numbers of −1 … 1.
+struct Random(Pcg64Mcg);
+
+impl Random {
+    fn new(seed: u128) -> Self {
+        Self(Pcg64Mcg::new(seed))
+    }
+
+    fn number(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / f64::from(u32::MAX) * 2.0 - 1.0
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.number(), self.number(), self.number())
+    }
+}
+
+#[test]
+fn the_field_vanishes_at_the_points_and_has_their_normals_as_gradients() {
+    for model in MODELS {
+        let cloud = models::cloud(model.id).expect("a model has points");
+        let fit = of_model(model.id);
+        for (centre, (p, n)) in fit.data.centres.iter().zip(cloud.position.iter().zip(&cloud.normal)) {
+            let centre = DVec3::from_array(*centre);
+            assert!(centre.distance(*p) < 1e-7, "{}: a point moved to {centre}", model.id);
+            let jet = fit.data.jet(centre);
+            assert!(jet.value.abs() < 1e-10, "{}: {} at {centre}", model.id, jet.value);
+            assert!(jet.gradient.distance(*n) < 1e-9, "{}: {} at {centre}", model.id, jet.gradient);
+        }
+        assert!(fit.info.condition > 1e5 && fit.info.condition < 1e9, "{}: {:?}", model.id, fit.info);
+        assert!(fit.info.residual_max < 1e-5, "{}: {:?}", model.id, fit.info);
+        assert_eq!((fit.info.points, fit.info.centres, &*fit.info.credit), (200, 200, model.credit));
+    }
+}
+
+#[test]
+fn points_between_the_centres_are_met_within_a_few_thousandths() {
+    let (few, many) = (ellipsoid(100), ellipsoid(4000));
+    let fitter = Fitter::new(&few, many.position, ModelInfo::default()).expect("good points");
+    let info = fitter.finish().expect("a field").info;
+    assert_eq!((info.points, info.centres), (4000, 100));
+    assert!(info.residual_mean > 1e-6 && info.residual_mean < 1e-3, "{info:?}");
+    assert!(info.residual_max < 5e-3, "{info:?}");
+}
+
+#[test]
+fn derivatives_are_those_of_differences() {
+    let data = of_model("bunny").data;
+    let mut random = Random::new(7);
+    let h = 1e-5;
+    for _ in 0..200 {
+        let p = random.vector() * 1.2;
+        let jet = data.jet(p);
+        let hessian = [DVec3::X, DVec3::Y, DVec3::Z].map(|e| jet.hessian.apply(e));
+        for axis in 0..3 {
+            let mut step = DVec3::ZERO;
+            step[axis] = h;
+            let (ahead, behind) = (data.jet(p + step), data.jet(p - step));
+            let slope = (ahead.value - behind.value) / (2.0 * h);
+            assert!((slope - jet.gradient[axis]).abs() < 1e-5, "∂{axis} at {p}: {slope} {}", jet.gradient);
+            // Near a centre the third derivative is large, and a difference errs by it.
+            let bend = (ahead.gradient - behind.gradient) / (2.0 * h);
+            let nearest = data.centres.iter().map(|&c| p.distance(DVec3::from_array(c))).fold(1.0, f64::min);
+            let allowed = 1e-4 + 1e-7 / nearest;
+            assert!(bend.distance(hessian[axis]) < allowed, "∂∂{axis} at {p}: {bend} {}", hessian[axis]);
+        }
+    }
+}
+
+/// Places on the surface and off it, near a centre, on the faces of the octree's cells, and far away.
+fn places(fit: &Fit) -> Vec<Vec3> {
+    let mut random = Random::new(11);
+    let mut places = Vec::new();
+    for k in 0..600 {
+        let centre = DVec3::from_array(fit.data.centres[k % fit.data.centres.len()]);
+        let mut p = centre + random.vector() * [0.1, 1e-3, 0.5][k % 3];
+        if k % 2 == 0 {
+            for _ in 0..6 {
+                let jet = fit.data.jet(p);
+                p -= jet.gradient * (jet.value / jet.gradient.length_squared());
+            }
+        }
+        places.push(p.as_vec3());
+    }
+    places.extend([
+        Vec3::ZERO,
+        Vec3::splat(0.25),
+        Vec3::splat(-0.5),
+        Vec3::splat(3.9),
+        Vec3::new(0.0, 4.0, 50.0),
+    ]);
+    places
+}
+
+#[test]
+fn batches_agree_with_the_sum_in_double_precision() {
+    for id in ["bunny", "sack-and-hat"] {
+        let fit = of_model(id);
+        let mut field = RbfField::new(fit.data.clone()).expect("a field");
+        let places = places(&fit);
+        let n = places.len();
+        let mut value = vec![0.0; n];
+        let mut gradient = vec![Vec3::ZERO; n];
+        let mut hessian = vec![Sym3::<f32>::default(); n];
+        field.hessians(&places, &mut value, &mut gradient, &mut hessian);
+        let mut distances = Vec::new();
+        for (i, &p) in places.iter().enumerate() {
+            let jet = fit.data.jet(p.as_dvec3());
+            let size = jet.gradient.length().max(1.0);
+            // The coordinates are of the order of 1. Away from the surface cells are larger and coarser.
+            let off = (f64::from(value[i]) - jet.value).abs();
+            let allowed = if jet.value.abs() < 1e-3 { 3e-5 } else { 2e-4 * (1.0 + jet.value.abs()) };
+            assert!(off < allowed * size, "{id}: {} for {} at {p}", value[i], jet.value);
+            let slope = gradient[i].as_dvec3().distance(jet.gradient);
+            assert!(slope < 2e-3 * size, "{id}: {} for {} at {p}", gradient[i], jet.gradient);
+            let nearest = fit
+                .data
+                .centres
+                .iter()
+                .map(|&c| p.as_dvec3().distance(DVec3::from_array(c)))
+                .fold(9.0, f64::min);
+            let bend = jet.hessian.apply(DVec3::ONE);
+            let found = hessian[i].apply(Vec3::ONE).as_dvec3();
+            assert!(
+                found.distance(bend) < 0.02 * (1.0 + bend.length()) + 1e-4 / nearest,
+                "{id}: {found} for {bend} at {p}"
+            );
+            if i % 2 == 0 && i < 600 {
+                distances.push(off / jet.gradient.length());
+            }
+        }
+        // On the surface: a tenth of the tolerance of particles of the default radius, three times in four.
+        distances.sort_by(f64::total_cmp);
+        let quartile = distances[distances.len() * 3 / 4] / fit.bounds.diagonal();
+        assert!(quartile < 6e-7, "{id}: {quartile:e} of the diagonal");
+    }
+}
+
+#[test]
+fn a_points_result_depends_on_nothing_but_the_point() {
+    let fit = of_model("rabbit");
+    let places = places(&fit);
+    let n = places.len();
+    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let mut value = vec![0.0; n];
+    let mut gradient = vec![Vec3::ZERO; n];
+    field.gradients(&places, &mut value, &mut gradient);
+    // Alone, in another order, with cells made by other points, and without or with more derivatives.
+    let mut other = RbfField::new(fit.data).expect("a field");
+    let mut hessian = [Sym3::<f32>::default()];
+    for i in (0..n).rev() {
+        let (mut v, mut w, mut g) = ([0.0], [0.0], [Vec3::ZERO]);
+        other.values(&places[i..=i], &mut v);
+        other.hessians(&places[i..=i], &mut w, &mut g, &mut hessian);
+        assert_eq!(v[0].to_bits(), value[i].to_bits(), "at {}", places[i]);
+        assert_eq!((w[0].to_bits(), g[0]), (value[i].to_bits(), gradient[i]), "at {}", places[i]);
+    }
+    let mut v = [0.0; 3];
+    other.values(&[Vec3::NAN, Vec3::INFINITY, Vec3::new(0.0, f32::NAN, 0.0)], &mut v);
+    assert!(v.iter().all(|v| v.is_nan()), "{v:?}");
+}
+
+#[test]
+fn a_centre_is_an_ordinary_point() {
+    let fit = of_model("bunny");
+    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    for &centre in &fit.data.centres {
+        let p = DVec3::from_array(centre).as_vec3();
+        let (mut v, mut g, mut h) = ([1.0], [Vec3::ZERO], [Sym3::<f32>::default()]);
+        field.hessians(&[p], &mut v, &mut g, &mut h);
+        assert!(v[0].abs() < 3e-5 && (g[0].length() - 1.0).abs() < 1e-3, "{} {} at {p}", v[0], g[0]);
+        assert!(h[0].apply(Vec3::ONE).is_finite(), "{:?} at {p}", h[0]);
+    }
+}
+
+#[test]
+fn other_units_and_places_give_the_same_field() {
+    let cloud = models::cloud("bunny").expect("points");
+    let plain = fitted(&cloud).expect("a field");
+    let (_, expected) = sampled(plain.clone(), &Settings { radius_share: 0.01, ..Settings::default() });
+    // By a power of two every bit is the same.
+    let scale = 2.0_f64.powi(-20);
+    let small =
+        fitted(&Cloud { position: cloud.position.iter().map(|&p| p * scale).collect(), ..cloud.clone() })
+            .expect("a field");
+    assert_eq!(small.info.condition.to_bits(), plain.info.condition.to_bits());
+    for (a, b) in small.data.alpha.iter().zip(&plain.data.alpha) {
+        assert_eq!(a * scale * scale, *b);
+    }
+    let (mut a, mut b) =
+        (RbfField::new(small.data).expect("a field"), RbfField::new(plain.data.clone()).expect("a field"));
+    let places = places(&plain);
+    let scaled: Vec<Vec3> = places.iter().map(|&p| p * scale as f32).collect();
+    let (mut of_a, mut of_b) = (vec![0.0; places.len()], vec![0.0; places.len()]);
+    a.values(&scaled, &mut of_a);
+    b.values(&places, &mut of_b);
+    assert_eq!(of_a, of_b.iter().map(|value| value * scale as f32).collect::<Vec<_>>());
+    // A hundred model sizes away single precision has two digits less.
+    let away = DVec3::new(200.0, -150.0, 90.0);
+    let far = Cloud { position: cloud.position.iter().map(|&p| p * 0.3 + away).collect(), ..cloud };
+    let (_, report) =
+        sampled(fitted(&far).expect("a field"), &Settings { radius_share: 0.01, ..Settings::default() });
+    assert_eq!(report.stop_reason, Some(StopReason::Complete));
+    let off = report.count.abs_diff(expected.count) as f64 / expected.count as f64;
+    assert!(off < 0.03, "{} particles, not about {}", report.count, expected.count);
+}
+
+#[test]
+fn the_models_have_one_closed_piece_and_the_joined_ears_a_handle() {
+    for (id, euler) in [("bunny", 2), ("bunny-joined", 0), ("rabbit", 2), ("sack-and-hat", 2)] {
+        let (_, report) = sampled(of_model(id), &Settings { radius_share: 0.005, ..Settings::default() });
+        let quality = report.quality.expect("there are particles");
+        assert_eq!(report.stop_reason, Some(StopReason::Complete), "{id}");
+        assert_eq!((quality.euler, quality.components), (euler, 1), "{id}");
+        assert_eq!(quality.boundary_excluded, 0, "{id}: the surface leaves its box");
+        assert!(quality.six > 0.75 && quality.cover < 1.45, "{id}: {quality:?}");
+    }
+}
+
+#[test]
+fn the_models_have_nothing_outside_of_their_box() {
+    // A dense search: a grid whose cells are smaller than the thinnest part of any model.
+    const NODES: usize = 61;
+    for model in MODELS {
+        let fit = of_model(model.id);
+        let mut field = RbfField::new(fit.data).expect("a field");
+        let (middle, half) =
+            ((fit.bounds.lo() + fit.bounds.hi()) * 0.5, (fit.bounds.hi() - fit.bounds.lo()) * 0.5);
+        let mut value = [0.0; NODES];
+        let mut outside = 0;
+        for row in 0..NODES * NODES {
+            let at = |k: usize| 6.0 * k as f64 / (NODES - 1) as f64 - 3.0;
+            let line: Vec<Vec3> = (0..NODES)
+                .map(|k| (middle + half * DVec3::new(at(k), at(row % NODES), at(row / NODES))).as_vec3())
+                .collect();
+            field.values(&line, &mut value);
+            for (p, value) in line.iter().zip(value) {
+                if !fit.bounds.contains(*p) {
+                    assert!(value > 0.0, "{}: {value} at {p}", model.id);
+                    outside += 1;
+                }
+            }
+        }
+        assert!(outside > 200_000);
+    }
+}
+
+#[test]
+fn cut_into_single_steps_the_fit_is_the_same() {
+    let cloud = ellipsoid(60);
+    let whole = fitted(&cloud).expect("a field");
+    let mut fitter = Fitter::new(&cloud, cloud.position.clone(), ModelInfo::default()).expect("good points");
+    let (mut before, mut steps) = (0.0, 0);
+    let fit = loop {
+        let fraction = fitter.fraction();
+        assert!((before..=1.0).contains(&fraction), "{fraction} after {before}");
+        (before, steps) = (fraction, steps + 1);
+        if let Some(fit) = fitter.step(1).expect("a field") {
+            break fit;
+        }
+    };
+    assert!(steps > 20 && before > 0.8, "{steps} steps, the last at {before}");
+    assert_eq!((fit.data, fit.bounds, fit.info), (whole.data, whole.bounds, whole.info));
+}
+
+#[test]
+fn hopeless_points_are_refused_with_the_reason() {
+    let good = ellipsoid(30);
+    let with = |change: &dyn Fn(&mut Cloud)| {
+        let mut cloud = good.clone();
+        change(&mut cloud);
+        fitted(&cloud).expect_err("no field can be made")
+    };
+    assert_eq!(with(&|c| *c = ellipsoid(3)), FitError::TooFew { count: 3 });
+    assert_eq!(with(&|c| *c = Cloud::default()), FitError::TooFew { count: 0 });
+    assert_eq!(with(&|c| *c = ellipsoid(1001)), FitError::TooMany { count: 1001 });
+    assert_eq!(with(&|c| c.normal.clear()), FitError::Normals { points: 30, normals: 0 });
+    assert_eq!(with(&|c| c.position[7].y = f64::NAN), FitError::NotFinite { index: 7 });
+    assert_eq!(with(&|c| c.normal[9] = DVec3::ZERO), FitError::NotFinite { index: 9 });
+    assert_eq!(with(&|c| c.position[20] = c.position[4]), FitError::Duplicate { first: 4, second: 20 });
+    let near = with(&|c| c.position[20] = c.position[4] + DVec3::splat(1e-8));
+    assert_eq!(near, FitError::Duplicate { first: 4, second: 20 });
+    let plane = with(&|c| c.position.iter_mut().for_each(|p| p.z = 0.25));
+    assert_eq!(plane, FitError::Cloud(CloudError::Plane));
+    assert!(near.to_string().contains("points 4 and 20 are the same"), "{near}");
+    // Two points as near as they may be, with normals that point at each other: solved, and said to be doubtful or not.
+    let mut cloud = good;
+    cloud.position[20] = cloud.position[4] + DVec3::X * 3e-6;
+    cloud.normal[20] = -cloud.normal[4];
+    match fitted(&cloud) {
+        Ok(fit) => assert!(!fit.info.warnings.is_empty() && fit.info.condition > 1e10, "{:?}", fit.info),
+        Err(error) => {
+            assert!(matches!(error, FitError::Singular { condition } if condition > 1e13), "{error}")
+        }
+    }
+}
+
+#[test]
+fn bytes_hold_a_field_and_nothing_else_is_taken_for_one() {
+    let data = fitted(&ellipsoid(20)).expect("a field").data;
+    let bytes = data.to_bytes();
+    assert_eq!(bytes.len(), 8 + 20 * 56);
+    assert_eq!(RbfData::from_bytes(&bytes), Ok(data.clone()));
+    assert_eq!(RbfData::from_bytes(&[]), Err(DataError::Bytes));
+    assert_eq!(RbfData::from_bytes(&bytes[..bytes.len() - 1]), Err(DataError::Bytes));
+    assert_eq!(RbfData::from_bytes(&bytes[..bytes.len() - 8]), Err(DataError::Bytes));
+    assert_eq!(RbfData::from_bytes(&bytes[..8]), Err(DataError::Empty));
+    assert_eq!(RbfData::from_bytes(&bytes[8..]), Err(DataError::Bytes));
+    let mut wrong = bytes;
+    wrong[8 + 56 * 3..][..8].copy_from_slice(&f64::NAN.to_le_bytes());
+    assert_eq!(RbfData::from_bytes(&wrong), Err(DataError::NotFinite { index: 3 }));
+    let short = RbfData { alpha: vec![0.0; 19], ..data };
+    assert_eq!(RbfField::new(short).err(), Some(DataError::Lengths { centres: 20, alpha: 19, beta: 20 }));
+}
