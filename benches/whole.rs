@@ -2,8 +2,9 @@
 //!
 //! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` the million, no argument
 //! both. Either way it ends with the ratio of the whole job to naive surface nets (`fast-surface-nets`) with as many
-//! vertices on the same field, timed by turns so that a busy machine disturbs both alike, and with the share of the job that goes
-//! into finding every piece of the surface.
+//! vertices on the same field, timed by turns so that a busy machine disturbs both alike, with the share of the job that goes
+//! into finding every piece of the surface, and with the whole job on the bunny of 200 points, uniform and adaptive, by turns
+//! with the uniform one on the ellipsoid.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 #![allow(missing_docs, reason = "the macros' items have none")]
 
@@ -14,9 +15,12 @@ use glam::Vec3;
 use marching_particles::field::Field;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
+use marching_particles::field::model;
+use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
+use marching_particles::points::models;
 use marching_particles::quality::{Options, measure};
-use marching_particles::sampler::{Phase, Sampler, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{Phase, Sampler, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -59,7 +63,7 @@ impl Job {
     }
 }
 
-fn finish(sampler: &mut Sampler, field: &mut FormulaField) {
+fn finish(sampler: &mut Sampler, field: &mut dyn Field) {
     let reason = loop {
         if let Some(reason) = sampler.step(field, 65_536).stop_reason {
             break reason;
@@ -209,11 +213,7 @@ fn ratio(count: u32, rounds: usize) {
         let mesh = (clock[3] - clock[2]) / f64::from(REPEAT);
         times.push([clock[1] - clock[0], whole, mesh, whole / mesh]);
     }
-    let [front, whole, mesh, ratio] = [0, 1, 2, 3].map(|k| {
-        let mut column: Vec<f64> = times.iter().map(|row| row[k]).collect();
-        column.sort_by(f64::total_cmp);
-        column[rounds / 2]
-    });
+    let [front, whole, mesh, ratio] = [0, 1, 2, 3].map(|k| median(&times, k));
     let each = |seconds: f64| seconds * 1e6 / particles as f64;
     println!(
         "{count}: whole job {:.1} ms, {:.2} µs for each of {particles} particles (front {:.2}, relaxation {:.2}); \
@@ -263,11 +263,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
             cells = sampler.undecided_cells();
         }
     }
-    let [survey, seeding, share] = [0, 1, 2].map(|k| {
-        let mut column: Vec<f64> = shares.iter().map(|row| row[k]).collect();
-        column.sort_by(f64::total_cmp);
-        column[rounds / 2]
-    });
+    let [survey, seeding, share] = [0, 1, 2].map(|k| median(&shares, k));
     println!(
         "{id}, {count}: finding every piece takes {:.1} % of the job (survey {:.2} ms, proof and cover {:.2} ms), \
          undecided cells {cells:?}",
@@ -275,6 +271,58 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         survey * 1e3,
         seeding * 1e3
     );
+}
+
+/// Prints the whole job's time per particle on the bunny, after the run that makes the field's cells and with that run's
+/// own, by turns with the uniform job on the ellipsoid, which tells how busy the machine is.
+fn bunny(count: u32, rounds: usize) {
+    let model = model::find("bunny").expect("the bunny is a model");
+    let fit = models::begin(model).finish().expect("the bunny is solved for");
+    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let mut ellipsoid = Job::new(count);
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        let by_count = Settings { size_mode: SizeMode::Count, count, relax_steps: 0, ..Settings::default() };
+        let start = Instant::now();
+        let run = |field: &mut RbfField, settings: &Settings| {
+            let mut sampler = Sampler::new();
+            let before = processor_seconds(start);
+            sampler.start(field, &fit.bounds, settings).expect("valid settings");
+            finish(&mut sampler, field);
+            (processor_seconds(start) - before, sampler)
+        };
+        let settings = match sampling {
+            // A run that meets a count does the front twice: the timed runs are given the radius.
+            Sampling::Uniform => {
+                let radius_share = run(&mut field, &by_count).1.radius() / fit.bounds.diagonal();
+                Settings { radius_share, ..Settings::default() }
+            }
+            Sampling::Adaptive => Settings { sampling, ..Settings::default() },
+        };
+        let mut times: Vec<[f64; 3]> = Vec::new();
+        let mut particles = 0;
+        for _ in 0..rounds {
+            let mut cold = RbfField::new(fit.data.clone()).expect("a field");
+            let (first, _) = run(&mut cold, &settings);
+            let (again, sampler) = run(&mut field, &settings);
+            let before = processor_seconds(start);
+            let other = black_box(ellipsoid.run()).particles().len();
+            let other = (processor_seconds(start) - before) / other as f64;
+            particles = sampler.particles().len();
+            times.push([first / particles as f64, again / particles as f64, other]);
+        }
+        let [first, again, other] = [0, 1, 2].map(|k| median(&times, k) * 1e6);
+        println!(
+            "bunny, {sampling:?}: {again:.2} µs for each of {particles} particles, {first:.2} in the first run; \
+             the ellipsoid {other:.2}"
+        );
+    }
+}
+
+/// Median of a column.
+fn median<const N: usize>(rows: &[[f64; N]], k: usize) -> f64 {
+    let mut column: Vec<f64> = rows.iter().map(|row| row[k]).collect();
+    column.sort_by(f64::total_cmp);
+    column[column.len() / 2]
 }
 
 criterion_group!(sets, quick, full);
@@ -287,5 +335,6 @@ fn main() {
     for id in ["ellipsoid", "torus", "tanglecube"] {
         search_share(id, 50_000, 9);
     }
+    bunny(QUICK[1], 5);
     Criterion::default().configure_from_args().final_summary();
 }

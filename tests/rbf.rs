@@ -339,7 +339,7 @@ fn hopeless_points_are_refused_with_the_reason() {
     match fitted(&cloud) {
         Ok(fit) => assert!(!fit.info.warnings.is_empty() && fit.info.condition > 1e10, "{:?}", fit.info),
         Err(error) => {
-            assert!(matches!(error, FitError::Singular { condition } if condition > 1e13), "{error}")
+            assert!(matches!(error, FitError::Singular { condition } if condition > 1e13), "{error}");
         }
     }
 }
