@@ -55,6 +55,10 @@ const RISE_SLACK: f32 = 0.35;
 /// Slots of a particle, at most.
 const SLOTS: usize = 10;
 
+/// A child whose radius was foretold worse than this has it and its parent look again for room, when the radii around are
+/// known.
+const SURPRISE: f32 = 0.1;
+
 /// Rounds in which particles that lost a child look for room again.
 const MAX_FILLS: u32 = 4;
 
@@ -118,6 +122,7 @@ impl<'a> Surface<'a> {
 #[derive(Clone)]
 pub(super) struct AdaptiveFront {
     method: Method,
+    grading: f32,
     match_tolerance: f32,
     resolution: f32,
     gradient_scale: f32,
@@ -152,6 +157,8 @@ pub(super) struct AdaptiveFront {
     placement: Placement,
     /// Curvature at each settled particle.
     curvature: Vec<Curvature>,
+    /// Gradient of the radius at each settled particle; that of its parent until it places its children.
+    slope: Vec<Vec3>,
     /// Largest distance between a provisional and a final place in this level, and by how much a radius grew.
     drift: f32,
     growth: f32,
@@ -170,6 +177,7 @@ impl AdaptiveFront {
     pub(super) fn new() -> Self {
         Self {
             method: Method::Direct,
+            grading: 0.2,
             match_tolerance: 0.7,
             resolution: 0.0,
             gradient_scale: 1.0,
@@ -196,6 +204,7 @@ impl AdaptiveFront {
             landing: Vec::new(),
             placement: Placement::new(),
             curvature: Vec::new(),
+            slope: Vec::new(),
             drift: 0.0,
             growth: 0.0,
             seams: Vec::new(),
@@ -217,13 +226,15 @@ impl AdaptiveFront {
         bounds: &Bounds,
         expected: usize,
     ) {
+        self.grading = settings.grading as f32;
         self.method = settings.placement;
         self.match_tolerance = settings.match_tolerance as f32;
         self.resolution = resolution;
         self.gradient_scale = gradient_scale;
         self.bounds = *bounds;
         self.max_particles = settings.max_particles as usize;
-        self.curvature.reserve_exact(expected.saturating_sub(self.curvature.len()));
+        self.curvature.reserve_exact(expected);
+        self.slope.reserve_exact(expected);
         self.filled = 0;
         // Neighbours that touch differ by this factor at most.
         let ratio = (1.0 + settings.grading as f32) / (1.0 - settings.grading as f32);
@@ -237,6 +248,7 @@ impl AdaptiveFront {
         self.children.clear();
         self.landings.clear();
         self.curvature.clear();
+        self.slope.clear();
         self.seams.clear();
         self.fills = 0;
         self.trace.clear();
@@ -257,6 +269,8 @@ impl AdaptiveFront {
     /// Gives back what only the front needs.
     pub(super) fn release(&mut self) {
         self.grids.release();
+        self.curvature = Vec::new();
+        self.slope = Vec::new();
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
@@ -316,6 +330,7 @@ impl AdaptiveFront {
             }
             particles.truncate(last);
             self.curvature.truncate(last);
+            self.slope.truncate(last);
             self.seams.retain(|&i| (i as usize) < last);
             pairs.truncate(last);
             self.settled = last;
@@ -334,6 +349,7 @@ impl AdaptiveFront {
         self.seed_place = self.grids.insert(position, spot.radius, index as u32);
         surface.particles.push(position, normal, spot.radius, Particles::NO_PARENT, 0, Slots::default());
         self.curvature.push(spot.curvature);
+        self.slope.push(Vec3::ZERO);
         self.parents.push(index as u32);
         self.settled = index + 1;
         self.begin_level();
@@ -353,6 +369,8 @@ impl AdaptiveFront {
         self.fills += 1;
         core::mem::swap(&mut self.parents, &mut self.seams);
         self.seams.clear();
+        self.parents.sort_unstable();
+        self.parents.dedup();
         self.begin_level();
         true
     }
@@ -433,7 +451,9 @@ impl AdaptiveFront {
         let mut base = Base { radius, u, w, n, shape: [0.0; 3], slope: Vec2::ZERO };
         if self.method == Method::Direct {
             base.shape = shape_in(&self.curvature[parent], u, w);
-            base.slope = self.ring.slope(u, w, radius);
+            let inherited = self.slope[parent];
+            base.slope = self.ring.slope(u, w, radius, Vec2::new(inherited.dot(u), inherited.dot(w)));
+            self.slope[parent] = u * base.slope.x + w * base.slope.y;
         }
         self.ring.find_arcs(&base);
         if self.trace.follows(parent as u32) {
@@ -534,60 +554,75 @@ impl AdaptiveFront {
     /// Gives every occupant of the circle a slot, and the children a provisional place. A parent that looks for room `again`
     /// keeps the slots it has filled.
     fn fill_slots(&mut self, particles: &mut Particles, parent: usize, again: bool) {
-        let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
         let mut slots = particles.slots[parent];
-        let mut slot = 0;
-        if again {
-            slot = (0..SLOTS).rev().find(|&k| slots.get(k) != SlotFate::Open).map_or(0, |k| k + 1);
-        } else if particles.parent[parent] != Particles::NO_PARENT {
-            slots.set(0, SlotFate::Parent);
-            slot = 1;
-        }
-        let level = particles.level[parent] + 1;
         let was_there = |what: What| matches!(what, What::Known(SlotFate::Matched));
         let mut children = self.circle.iter().filter(|occupant| !was_there(occupant.what)).count();
+        // A bit for every slot given out here.
+        let mut given = 0_u32;
+        if !again && particles.parent[parent] != Particles::NO_PARENT {
+            slots.set(0, SlotFate::Parent);
+            given = 1;
+        }
         for k in 0..self.circle.len() {
             let what = self.circle[k].what;
             children -= usize::from(!was_there(what));
             // Where there are more occupants than slots, those that were there before stand back.
-            if slot + children >= SLOTS && was_there(what) {
+            if was_there(what) && (again || given.count_ones() as usize + children >= SLOTS) {
                 continue;
             }
+            let is = |k: usize, fate| given >> k & 1 == 0 && slots.get(k) == fate;
+            let Some(slot) = (0..SLOTS)
+                .find(|&k| is(k, SlotFate::Open))
+                .or_else(|| (0..SLOTS).rev().find(|&k| is(k, SlotFate::Matched)))
+            else {
+                break;
+            };
+            given |= 1 << slot;
+            self.fates.uncount(slots.get(slot));
             let fate = match what {
-                _ if slot >= SLOTS => break,
                 What::Known(fate) => fate,
                 What::Child(..) if particles.len() >= self.max_particles => {
                     self.capped = true;
                     SlotFate::Capped
                 }
                 What::Child(guess, number, clearance) => {
-                    let index = particles.len() as u32;
-                    let position = p + guess.offset;
-                    let (normal, child_radius) = (guess.normal, guess.radius);
-                    particles.push(position, normal, child_radius, parent as u32, level, initial_slots());
-                    let circle = Circle {
-                        centre: p,
-                        normal: n,
-                        direction: guess.direction,
-                        radius: guess.distance,
-                        guess: guess.turn,
-                    };
-                    self.children.push(Child {
-                        proposal: Proposal { circle, parent_radius: radius, slope: guess.slope },
-                        slot: slot as u32,
-                        number,
-                        held: self.grids.insert(position, child_radius, index),
-                        clearance,
-                    });
-                    slot += 1;
-                    continue;
+                    self.enter_child(particles, parent, slot as u32, (guess, number, clearance));
+                    SlotFate::Open
                 }
             };
             slots.set(slot, fate);
             self.fates.count(fate);
-            slot += 1;
         }
         particles.slots[parent] = slots;
+    }
+
+    /// Gives a child its provisional place.
+    fn enter_child(
+        &mut self,
+        particles: &mut Particles,
+        parent: usize,
+        slot: u32,
+        (guess, number, clearance): (Guess, u32, f32),
+    ) {
+        let index = particles.len() as u32;
+        let (centre, normal) = (particles.position[parent], particles.normal[parent]);
+        let position = centre + guess.offset;
+        let level = particles.level[parent] + 1;
+        particles.push(position, guess.normal, guess.radius, parent as u32, level, initial_slots());
+        let circle =
+            Circle { centre, normal, direction: guess.direction, radius: guess.distance, guess: guess.turn };
+        self.children.push(Child {
+            proposal: Proposal {
+                circle,
+                parent_radius: particles.radius[parent],
+                slope: guess.slope,
+                grading: self.grading,
+            },
+            slot,
+            number,
+            held: self.grids.insert(position, guess.radius, index),
+            clearance,
+        });
     }
 
     /// Reads what was gathered around `parent`: into the ring what its children may collide with, and into `pairs` the
@@ -671,12 +706,14 @@ impl AdaptiveFront {
                 let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
                 let safe = child.clearance - moved - self.drift - self.match_tolerance * grown > 0.0;
                 if !safe && self.collides(particles, spot.position, spot.normal, spot.radius) {
-                    if self.seams.last() != Some(&parent) {
-                        self.seams.push(parent);
-                    }
+                    self.seams.push(parent);
                     SlotFate::Matched
                 } else {
                     let index = self.settled;
+                    let surprise = spot.radius - particles.radius[provisional];
+                    if surprise.abs() > SURPRISE * spot.radius {
+                        self.seams.extend([parent, index as u32]);
+                    }
                     self.grids.update(child.held, spot.position, spot.radius, index as u32);
                     particles.position[index] = spot.position;
                     particles.normal[index] = spot.normal;
@@ -684,6 +721,7 @@ impl AdaptiveFront {
                     particles.parent[index] = parent;
                     particles.level[index] = particles.level[provisional];
                     self.curvature.push(spot.curvature);
+                    self.slope.push(self.slope[parent as usize]);
                     self.settled += 1;
                     self.filled += u64::from(self.fills > 0);
                     SlotFate::Added

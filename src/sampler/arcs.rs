@@ -273,8 +273,9 @@ impl Ring {
         self.chunks[i / LANES].angle.0[i % LANES]
     }
 
-    /// Gradient of the radius in the plane (u, w), fitted to the neighbours whose radius is exact.
-    pub(super) fn slope(&self, u: Vec3, w: Vec3, radius: f32) -> Vec2 {
+    /// Gradient of the radius in the plane (u, w), fitted to the neighbours whose radius is exact; what they leave open is as
+    /// `inherited`.
+    pub(super) fn slope(&self, u: Vec3, w: Vec3, radius: f32, inherited: Vec2) -> Vec2 {
         let mut sums = [Lanes::splat(0.0); 5];
         for chunk in &self.chunks[..self.len.div_ceil(LANES)] {
             for lane in 0..LANES {
@@ -291,11 +292,11 @@ impl Ring {
             }
         }
         let [xx, xy, yy, xr, yr] = sums.map(Lanes::sum);
-        // A slight pull to zero decides what neighbours in a row leave open.
         let pull = SLOPE_PULL * (xx + yy);
         let (a, c) = (xx + pull, yy + pull);
+        let (xr, yr) = (xr + pull * inherited.x, yr + pull * inherited.y);
         let slope = Vec2::new(c * xr - xy * yr, a * yr - xy * xr) / (a * c - xy * xy);
-        if slope.is_finite() { slope } else { Vec2::ZERO }
+        if slope.is_finite() { slope } else { inherited }
     }
 
     /// Finds the free arcs, in the order of their angles.

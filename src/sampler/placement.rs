@@ -2,7 +2,7 @@
 //! |c − p| = r_p + r(c) with c on the surface, solved for the angle on the circle and the distance at once, a batch at a
 //! time.
 
-use super::project::{BATCH, Circle, Landing, Projector, Tolerance, turned};
+use super::project::{BATCH, Circle, Landing, MIN_COS, Projector, Tolerance, turned};
 use super::sizing::Sizing;
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
@@ -35,7 +35,7 @@ const MIN_CROSSING: f32 = 0.1;
 const MAX_ROUNDS: u32 = 6;
 
 /// Where the radius jumps no distance fits: a child is taken if it misses by no more than this share of its radius.
-const LOOSE_TOUCH: f32 = 0.2;
+const LOOSE_TOUCH: f32 = 0.5;
 
 /// A child on its way.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +46,18 @@ pub(super) struct Proposal {
     pub(super) parent_radius: f32,
     /// Change of the radius per length away from the parent, as guessed.
     pub(super) slope: f32,
+    /// Largest slope allowed.
+    pub(super) grading: f32,
+}
+
+impl Proposal {
+    /// The radius that the law gives, as far as the parent allows it at this distance.
+    #[inline(always)]
+    fn graded(&self, radius: f32, distance: f32) -> f32 {
+        let most = self.parent_radius + self.grading * distance;
+        // NaN stays.
+        if radius > most { most } else { radius }
+    }
 }
 
 /// Where a child came to lie.
@@ -205,17 +217,13 @@ impl Placement {
         let hessian = &self.hessian[k];
         let curvature = self.curvature[k];
         let slope = gradient.length();
-        let radius = sizing.radius(position, &curvature);
+        let radius = proposal.graded(sizing.radius(position, &curvature), a.distance);
         let Tolerance { residual, min_gradient } = tolerance(radius);
         // NaN is never greater.
         if !(slope > min_gradient && radius > 0.0) {
             return Step::Lost;
         }
         let touch = a.distance - proposal.parent_radius - radius;
-        let on_surface = value.abs() <= residual * slope;
-        if on_surface && touch.abs() <= TOUCH * radius {
-            return Step::Landed(Spot { position, normal: gradient / slope, radius, curvature });
-        }
         let way = a.distance - a.last[0];
         if a.steps > 0 && way.abs() > TOUCH * radius {
             a.slope = ((radius - a.last[1]) / way).clamp(-MAX_SLOPE, MAX_SLOPE);
@@ -230,35 +238,35 @@ impl Placement {
         a.turn = turned(a.turn, half);
         a.distance += pull;
         a.steps += 1;
-        let settles = value.abs() <= a.last_value
-            && derivative.abs() > MIN_CROSSING * slope * circle.radius
-            && a.turn[0] > super::project::MIN_COS
-            && a.steps < MAX_STEPS
-            && half.is_finite()
-            && a.distance.is_finite();
-        // Twice the value may stay: a step that is mostly a pull moves along the surface.
-        a.last_value = value.abs() + residual * slope;
-        if !settles {
-            return Step::Lost;
-        }
-        // What the correction leaves is known from the Hessian; if that is on the surface too, no evaluation is needed.
+        // What the correction leaves is known from the Hessian; if that is on the surface, no evaluation is needed.
         let corrected = Circle { radius: a.distance, ..proposal.circle }.point(a.turn);
         let moved = corrected - position;
-        let turned_gradient = gradient + hessian.apply(moved);
-        let left = value + 0.5 * (gradient + turned_gradient).dot(moved);
-        let turned_slope = turned_gradient.length();
-        if left.abs() <= 0.5 * residual * turned_slope
+        let corrected_gradient = gradient + hessian.apply(moved);
+        let corrected_slope = corrected_gradient.length();
+        let left = value + 0.5 * (gradient + corrected_gradient).dot(moved);
+        if left.abs() <= 0.5 * residual * corrected_slope
             && moved.length_squared() <= (TRUSTED_MOVE * radius) * (TRUSTED_MOVE * radius)
             && pull.abs() <= TRUSTED_PULL * radius
         {
             return Step::Landed(Spot {
                 position: corrected,
-                normal: turned_gradient / turned_slope,
+                normal: corrected_gradient / corrected_slope,
                 radius: a.distance - proposal.parent_radius,
                 curvature,
             });
         }
-        Step::Again
+        if value.abs() <= residual * slope && touch.abs() <= TOUCH * radius {
+            return Step::Landed(Spot { position, normal: gradient / slope, radius, curvature });
+        }
+        let settles = value.abs() <= a.last_value
+            && derivative.abs() > MIN_CROSSING * slope * circle.radius
+            && a.turn[0] > MIN_COS
+            && a.steps < MAX_STEPS
+            && half.is_finite()
+            && a.distance.is_finite();
+        // The value may stay: a step that is mostly a pull moves along the surface.
+        a.last_value = value.abs() + residual * slope;
+        if settles { Step::Again } else { Step::Lost }
     }
 
     /// The root on the circle and the distance by turns: ends on any field.
@@ -286,7 +294,8 @@ impl Placement {
                 Landing::Undefined if best.is_none() => return Landed::Undefined,
                 _ => break,
             };
-            let spot = self.look(field, projector, sizing, position);
+            let mut spot = self.look(field, projector, sizing, position);
+            spot.radius = proposal.graded(spot.radius, circle.radius);
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
                 return Landed::Undefined;
             }

@@ -199,6 +199,7 @@ impl AdaptiveFront {
         self.grids.insert(position, radius, self.settled as u32);
         particles.push(position, normal, radius, id, level, initial_slots());
         self.curvature.push(spot.curvature);
+        self.slope.push(Vec3::ZERO);
         self.settled += 1;
         self.filled += u64::from(self.fills > 0);
         self.ring.push(position - circle.centre, radius, true);
