@@ -485,8 +485,16 @@ impl AdaptiveFront {
             let count = self.ring.spread(base, arc).len();
             for m in 0..count {
                 let angle = self.ring.children[m];
-                let guess = base.child_at(angle);
-                let room = self.ring.clearance(guess.offset, guess.radius, self.match_tolerance);
+                let mut guess = base.child_at(angle, f32::INFINITY);
+                let limits = |ring: &Ring, guess: &Guess| {
+                    ring.limits(guess.offset, guess.radius, self.match_tolerance, self.grading)
+                };
+                let (mut room, largest) = limits(&self.ring, &guess);
+                if guess.radius > largest {
+                    guess = base.child_at(angle, largest);
+                    (room, _) = limits(&self.ring, &guess);
+                }
+                guess.largest = largest.min(base.radius + self.grading * guess.distance);
                 // The gathered particles are those within the reach; beyond it anything may be.
                 let seen =
                     self.reach * base.radius - guess.distance - 2.0 * self.match_tolerance * guess.radius;
@@ -616,7 +624,7 @@ impl AdaptiveFront {
                 circle,
                 parent_radius: particles.radius[parent],
                 slope: guess.slope,
-                grading: self.grading,
+                largest: guess.largest,
             },
             slot,
             number,

@@ -79,10 +79,11 @@ impl Base {
         if dip > -MAX_DIP { dip } else { -MAX_DIP }
     }
 
-    /// The child to expect at an angle.
-    pub(super) fn child_at(&self, angle: f32) -> Guess {
+    /// The child to expect at an angle, no larger than `largest`.
+    pub(super) fn child_at(&self, angle: f32, largest: f32) -> Guess {
         let (x, y) = (cos(angle), sin(angle));
         let radius = self.child_radius(x, y);
+        let radius = if radius < largest { radius } else { largest };
         let distance = self.radius + radius;
         let sin_theta = self.dip(x, y, distance);
         let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
@@ -94,6 +95,7 @@ impl Base {
             turn: [cos_theta, sin_theta],
             distance,
             radius,
+            largest,
             slope: self.slope_along(x, y),
             offset: (direction * cos_theta + self.n * sin_theta) * distance,
             // The turn is tangential, so the sum is never shorter than n.
@@ -135,6 +137,8 @@ pub(super) struct Guess {
     pub(super) distance: f32,
     /// Radius r_c.
     pub(super) radius: f32,
+    /// Largest radius that the particles around allow.
+    pub(super) largest: f32,
     /// Change of the radius per length in this direction.
     pub(super) slope: f32,
     /// Position from the parent's.
@@ -471,21 +475,26 @@ impl Ring {
         Room { phi, tau: arc.to - (self.children[k] - self.slack * (k + 1) as f32) + phi }
     }
 
-    /// Room that a place at `offset` with the radius `radius` leaves to the neighbours beyond `share` (r_i + r_j);
-    /// negative where one is nearer.
+    /// What the neighbours leave to a place at `offset` with the radius `radius`: the room beyond `share` (r_i + r_j), negative
+    /// where one is nearer, and the largest radius that a slope of `grading` away from each of them allows.
     #[inline(always)]
-    pub(super) fn clearance(&self, offset: Vec3, radius: f32, share: f32) -> f32 {
+    pub(super) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
-        let mut least = Lanes::splat(f32::INFINITY);
+        let mut room = Lanes::splat(f32::INFINITY);
+        let mut largest = Lanes::splat(f32::INFINITY);
         for chunk in &self.chunks[..self.len.div_ceil(LANES)] {
             let (dx, dy, dz) = (chunk.x - ox, chunk.y - oy, chunk.z - oz);
             let distance = (dx * dx + dy * dy + dz * dz).sqrt();
-            let room = distance - (chunk.radius + Lanes::splat(radius)) * Lanes::splat(share);
+            let beyond = distance - (chunk.radius + Lanes::splat(radius)) * Lanes::splat(share);
+            let allowed = chunk.radius + distance * Lanes::splat(grading);
             for lane in 0..LANES {
-                least.0[lane] = if room.0[lane] < least.0[lane] { room.0[lane] } else { least.0[lane] };
+                let (a, b) = (beyond.0[lane], allowed.0[lane]);
+                room.0[lane] = if a < room.0[lane] { a } else { room.0[lane] };
+                largest.0[lane] = if b < largest.0[lane] { b } else { largest.0[lane] };
             }
         }
-        least.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a })
+        let least = |lanes: Lanes| lanes.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+        (least(room), least(largest))
     }
 }
 

@@ -46,17 +46,16 @@ pub(super) struct Proposal {
     pub(super) parent_radius: f32,
     /// Change of the radius per length away from the parent, as guessed.
     pub(super) slope: f32,
-    /// Largest slope allowed.
-    pub(super) grading: f32,
+    /// Largest radius that the particles around allow.
+    pub(super) largest: f32,
 }
 
 impl Proposal {
-    /// The radius that the law gives, as far as the parent allows it at this distance.
+    /// The radius that the law gives, as far as the particles around allow it.
     #[inline(always)]
-    fn graded(&self, radius: f32, distance: f32) -> f32 {
-        let most = self.parent_radius + self.grading * distance;
+    fn graded(&self, radius: f32) -> f32 {
         // NaN stays.
-        if radius > most { most } else { radius }
+        if radius > self.largest { self.largest } else { radius }
     }
 }
 
@@ -217,7 +216,7 @@ impl Placement {
         let hessian = &self.hessian[k];
         let curvature = self.curvature[k];
         let slope = gradient.length();
-        let radius = proposal.graded(sizing.radius(position, &curvature), a.distance);
+        let radius = proposal.graded(sizing.radius(position, &curvature));
         let Tolerance { residual, min_gradient } = tolerance(radius);
         // NaN is never greater.
         if !(slope > min_gradient && radius > 0.0) {
@@ -295,7 +294,7 @@ impl Placement {
                 _ => break,
             };
             let mut spot = self.look(field, projector, sizing, position);
-            spot.radius = proposal.graded(spot.radius, circle.radius);
+            spot.radius = proposal.graded(spot.radius);
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
                 return Landed::Undefined;
             }
