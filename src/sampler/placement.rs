@@ -229,8 +229,8 @@ impl Placement {
         }
         a.last = [a.distance, radius];
         let circle = Circle { radius: a.distance, ..proposal.circle };
-        let longest = MAX_PULL * a.distance;
-        let pull = (-touch / (1.0 - a.slope)).clamp(-longest, longest);
+        // In shares of the distance: a clamp between numbers that are not constants can panic with them in words.
+        let pull = (-touch / ((1.0 - a.slope) * a.distance)).clamp(-MAX_PULL, MAX_PULL) * a.distance;
         let radial = (position - circle.centre) / a.distance;
         let derivative = gradient.dot(circle.tangent(a.turn));
         let half = (-0.5 * (value + gradient.dot(radial) * pull) / derivative).clamp(-MAX_TURN, MAX_TURN);
