@@ -1,7 +1,7 @@
 //! What a user should know about a run, in words.
 
 use crate::particles::Particles;
-use crate::sampler::Counts;
+use crate::sampler::{Counts, FateCounts};
 use crate::spatial::tree::Tree;
 
 /// Sheets are said to be close if at least this share of the particles face one, and at least this many.
@@ -11,12 +11,19 @@ const CLOSE_COUNT: usize = 8;
 /// Warnings about what became of the particles.
 pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
     let mut warnings = Vec::new();
-    let troubled = counts.fates.not_converged + counts.fates.undefined;
-    if troubled > 0 {
+    let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
+    let FateCounts { not_converged, undefined, .. } = counts.fates;
+    let mut troubles = Vec::new();
+    if not_converged > 0 {
+        troubles.push(format!("{} found no surface at the right distance", children(not_converged)));
+    }
+    if undefined > 0 {
+        troubles.push(format!("{} met a place without a value or a normal", children(undefined)));
+    }
+    if !troubles.is_empty() {
         warnings.push(format!(
-            "{} children found no surface at their distance and {} met a place without a value or a normal: \
-             an edge, a singular point or a radius too large for the curvature.",
-            counts.fates.not_converged, counts.fates.undefined
+            "{}: an edge, a singular point or a radius too large for the curvature.",
+            troubles.join(" and ")
         ));
     }
     let close = facing_another_sheet(particles);
