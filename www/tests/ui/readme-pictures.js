@@ -1,7 +1,8 @@
 /**
  * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
  *
- * Writes readme/page-{light,dark}.webp (the whole page) and readme/levels-{light,dark}.webp (generation levels growing).
+ * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models from
+ * points) and readme/levels-{light,dark}.webp (generation levels growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -11,6 +12,14 @@ const PAGE_PX = { width: 1440, height: 840 };
 /** The page is shown with so many device pixels per pixel, and kept at that. */
 const PAGE_SCALE = 1.25;
 const PAGE_SURFACE = 'tanglecube';
+
+/** What the strip of sizes shows, from left to right; `zoom` fills the frame, for which the fit leaves room to turn. */
+const SIZES = [
+  { surface: 'ellipsoid', settings: { sampling: 'adaptive', chord_error: 1.5e-4 }, view: { colour: 'radius' }, zoom: 1.2 },
+  { surface: 'bunny', settings: { radius_share: 0.009 }, view: { colour: 'level', points: true }, zoom: 1.1 },
+  { surface: 'bunny', settings: { sampling: 'adaptive', chord_error: 3e-4 }, view: { colour: 'radius', points: false }, zoom: 1.1 },
+  { surface: 'sack-and-hat', settings: { sampling: 'adaptive', chord_error: 3e-4 }, view: { colour: 'curvature', points: false }, zoom: 1 },
+];
 
 /** A frame of the strip, and device pixels per pixel of it. */
 const LEVEL_PX = { width: 300, height: 240 };
@@ -58,6 +67,34 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await page.close();
 }
 
+/** Leaves nothing of the page but the picture. @param {import('@playwright/test').Page} page */
+const onlyThePicture = (page) => page.evaluate(() => {
+  for (let kept = /** @type {Element | null} */ (document.querySelector('canvas')); kept && kept !== document.body; kept = kept.parentElement) {
+    for (const other of kept.parentElement?.children ?? []) if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
+  }
+});
+
+for (const theme of /** @type {const} */ (['light', 'dark'])) {
+  const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
+  await page.goto(base);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+  await onlyThePicture(page);
+  const frames = [];
+  for (const { zoom, ...state } of SIZES) {
+    await page.evaluate(async ({ wanted, zoom }) => {
+      const mp = /** @type {any} */ (window).marchingParticles;
+      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
+      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      mp.engine.zoom(zoom);
+    }, { wanted: state, zoom });
+    await page.waitForTimeout(1500);
+    frames.push(await page.screenshot());
+  }
+  await page.close();
+  await write(`sizes-${theme}.webp`, await webp(frames, 0.86));
+}
+
 // The page lets the levels appear by the clock. With the clock held, each can be shown at its time.
 for (const theme of /** @type {const} */ (['light', 'dark'])) {
   const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
@@ -73,12 +110,7 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   });
   await page.goto(base);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
-  await page.evaluate(() => {
-// Only the picture.
-    for (let kept = /** @type {Element | null} */ (document.querySelector('canvas')); kept && kept !== document.body; kept = kept.parentElement) {
-      for (const other of kept.parentElement?.children ?? []) if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
-    }
-  });
+  await onlyThePicture(page);
   await page.evaluate(async ({ surface, settings, camera }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
     const insets = { left: 0, right: 0, top: 0, bottom: 0 };
