@@ -132,7 +132,10 @@ export async function runJob(core, job, env, memory) {
     env.post({ type: 'field', id, answer });
     if (!answer.ok) return done('field_error');
     memory.held = 0;
+    // The search for the surface begins with the start, and on a model most of it is there.
+    const before = env.now_ms();
     const start = JSON.parse(core.start(JSON.stringify(job.settings)));
+    seconds.seeding += (env.now_ms() - before) / 1000;
     if (!start.ok) return done('refused', String(start.error?.message ?? start.error));
     predicted = start.predicted_count ?? 0;
     env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings ?? [] });
