@@ -73,6 +73,8 @@ const COUNT_ROOM: f64 = 1.1;
 /// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
 /// but no more than the peak that tests/memory.rs holds it to.
 const BYTES_PER_PARTICLE: usize = 120;
+/// The same for an adaptive run.
+const BYTES_PER_ADAPTIVE_PARTICLE: usize = 190;
 
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
@@ -417,7 +419,11 @@ impl Sampler {
     /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
     /// of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
-        let bytes = |particles: usize| particles.checked_mul(BYTES_PER_PARTICLE);
+        let each = match self.settings.sampling {
+            Sampling::Uniform => BYTES_PER_PARTICLE,
+            Sampling::Adaptive => BYTES_PER_ADAPTIVE_PARTICLE,
+        };
+        let bytes = |particles: usize| particles.checked_mul(each);
         let more = particles.saturating_sub(self.particles.position.capacity());
         bytes(particles).is_some_and(|all| all <= self.memory_limit)
             && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
