@@ -95,6 +95,8 @@ pub(super) struct Relaxation {
     has_previous: bool,
     /// Radii before that step, where they change.
     previous_radius: Vec<f32>,
+    /// Length of each particle's way since its radius was brought up to date, where radii change.
+    since: Vec<f32>,
     /// Whether this pass over the radii has lowered one, and whether any has.
     lowered: bool,
     steep: bool,
@@ -127,6 +129,7 @@ impl Relaxation {
             previous: Vec::new(),
             has_previous: false,
             previous_radius: Vec::new(),
+            since: Vec::new(),
             lowered: false,
             steep: false,
             ending: false,
@@ -170,6 +173,11 @@ impl Relaxation {
         self.far.clear();
         self.all = false;
         self.steep = false;
+        self.since.clear();
+        self.previous_radius.clear();
+        if matches!(law, Law::Overlap { .. }) {
+            self.since.resize(particles, 0.0);
+        }
         self.ending = target == 0 && matches!(law, Law::Overlap { .. });
         if pairs.len() == particles && self.done == 0 && !self.ending {
             self.after_lists(particles);
@@ -299,6 +307,9 @@ impl Relaxation {
                         let back = (particles.position[i] - self.previous[i]).length();
                         let shrunk = particles.radius[i];
                         self.restore(particles, i);
+                        if L::RESIZES {
+                            self.since[i] = (self.since[i] - back).max(0.0);
+                        }
                         self.went(law, particles, i, back, particles.radius[i] - shrunk);
                     }
                     moved = true;
@@ -333,8 +344,7 @@ impl Relaxation {
                     if last == n {
                         let lowered = core::mem::take(&mut self.lowered);
                         self.steep |= lowered;
-                        // Between two steps once is enough: what is left is lowered after the next one.
-                        if lowered && (self.ending || !self.has_begun()) {
+                        if lowered {
                             self.enter(Stage::Grade);
                         } else if self.ending {
                             self.enter(Stage::Done);
@@ -518,6 +528,9 @@ impl Relaxation {
         points.count = range.len();
         if L::RESIZES {
             points.radius[..range.len()].copy_from_slice(&particles.radius[range.clone()]);
+            for (k, i) in range.clone().enumerate() {
+                points.since[k] = self.since[i] + (points.position[k] - particles.position[i]).length();
+            }
         }
         law.land(surface.field, surface.projector, points, trust);
         for (k, i) in range.enumerate() {
@@ -529,6 +542,7 @@ impl Relaxation {
                 if L::RESIZES {
                     grown = points.radius[k] - particles.radius[i];
                     particles.radius[i] = points.radius[k];
+                    self.since[i] = points.since[k];
                 }
                 self.went(law, particles, i, distance, grown);
                 particles.position[i] = position;

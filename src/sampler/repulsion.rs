@@ -19,6 +19,8 @@ pub(super) struct Points {
     pub(super) normal: [Vec3; BATCH],
     /// Radius, where that changes.
     pub(super) radius: [f32; BATCH],
+    /// Way since the radius was brought up to date, a length.
+    pub(super) since: [f32; BATCH],
     /// Whether the point has come to the surface.
     pub(super) ok: [bool; BATCH],
 }
@@ -30,6 +32,7 @@ impl Points {
             position: [Vec3::ZERO; BATCH],
             normal: [Vec3::ZERO; BATCH],
             radius: [0.0; BATCH],
+            since: [0.0; BATCH],
             ok: [false; BATCH],
         }
     }
@@ -59,7 +62,8 @@ pub(super) trait Repulsion {
     /// Force over offset, and energy, of a pair with this offset and mean radius, both lengths.
     fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32);
 
-    /// Brings `points` onto the surface, and their radii up to date. A correction below `trust` radii is not checked.
+    /// Brings `points` onto the surface, and up to date the radii of those that have come far since that was done or, with
+    /// no `trust`, of all. A correction below `trust` radii is not checked.
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32);
 }
 
@@ -151,6 +155,17 @@ fn gaussian(x: f32) -> f32 {
 
 /// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): each pair
 /// pushes apart by its overlap.
+///
+/// The force is the overlap, of the same stiffness for all pairs, so that discs of all sizes are compressed alike where the
+/// forces balance. The energy is that of the relative overlaps, Σ (overlap / mean radius)², whose descent the same force is
+/// to first order when the change of the radii with the place is counted: the radius falls where the neighbours are
+/// smaller, which pushes a particle as much as the unequal forces of large and small neighbours do.
+///
+/// # Differs from the paper
+///
+/// * The paper gives no formulas. Overlap is counted against 1.15 (r_i + r_j): with discs that barely touch, gaps would push
+///   nothing. Of 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus and tanglecube.
+/// * A radius is brought up to date once its particle has gone a tenth of it, and at the end.
 pub(super) struct Overlap<'a> {
     pub(super) sizing: &'a Sizing,
     /// What single precision resolves, and the least gradient that is one.
@@ -196,44 +211,80 @@ impl Repulsion for Overlap<'_> {
     }
 
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
+        let n = points.count;
+        // Those whose curvature is asked for come first.
+        let is_old = |k: usize| trust <= 0.0 || points.since[k] > RADIUS_LASTS * points.radius[k];
+        let mut order = [0; BATCH];
+        let mut old = 0;
+        for k in (0..n).filter(|&k| is_old(k)) {
+            order[old] = k;
+            old += 1;
+        }
+        for (place, k) in order[old..].iter_mut().zip((0..n).filter(|&k| !is_old(k))) {
+            *place = k;
+        }
+        let mut position = [Vec3::ZERO; BATCH];
         let mut bent = Bent {
-            radius: &points.radius,
+            radius: [0.0; BATCH],
             resolution: self.resolution,
             trust,
+            bends: true,
             hessian: [Sym3::default(); BATCH],
             curvature: [Curvature::default(); BATCH],
             met: [Curvature::default(); BATCH],
         };
-        projector.land_along_gradient(
-            field,
-            &mut points.position[..points.count],
-            &mut points.normal,
-            &mut points.ok,
-            self.min_gradient,
-            &mut bent,
-            MAX_NEWTON,
-        );
-        let met = bent.met;
-        for ((radius, &position), curvature) in
-            points.radius.iter_mut().zip(&points.position[..points.count]).zip(&met)
-        {
-            *radius = self.sizing.radius(position, curvature);
+        let mut normal = [Vec3::ZERO; BATCH];
+        let mut ok = [false; BATCH];
+        for (part, bends) in [(0..old, true), (old..n, false)] {
+            let count = part.len();
+            let order = &order[part];
+            for (m, &k) in order.iter().enumerate() {
+                position[m] = points.position[k];
+                bent.radius[m] = points.radius[k];
+            }
+            bent.bends = bends;
+            let min_gradient = self.min_gradient;
+            let place = &mut position[..count];
+            projector.land_along_gradient(
+                field,
+                place,
+                &mut normal,
+                &mut ok,
+                min_gradient,
+                &mut bent,
+                MAX_NEWTON,
+            );
+            for (m, &k) in order.iter().enumerate() {
+                points.position[k] = position[m];
+                points.normal[k] = normal[m];
+                points.ok[k] = ok[m];
+                if bends {
+                    points.radius[k] = self.sizing.radius(position[m], &bent.met[m]);
+                    points.since[k] = 0.0;
+                }
+            }
         }
     }
 }
 
+/// A radius stands until its particle has gone this share of it: until then the law has changed by less than a share of
+/// the slope, a few thousandths on most surfaces, and a Hessian costs two or three gradients.
+const RADIUS_LASTS: f32 = 0.1;
+
 /// Points on their way to the surface with what the field's last evaluation says of the curvature there.
-struct Bent<'a> {
-    radius: &'a [f32; BATCH],
+struct Bent {
+    radius: [f32; BATCH],
     resolution: f32,
     trust: f32,
+    /// Whether the curvature is asked for.
+    bends: bool,
     hessian: [Sym3<f32>; BATCH],
     curvature: [Curvature; BATCH],
     /// The last curvature met by each point.
     met: [Curvature; BATCH],
 }
 
-impl Descents for Bent<'_> {
+impl Descents for Bent {
     #[inline(always)]
     fn of(&self, i: usize) -> Descent {
         let radius = self.radius[i];
@@ -252,6 +303,9 @@ impl Descents for Bent<'_> {
         value: &mut [f32],
         gradient: &mut [Vec3],
     ) {
+        if !self.bends {
+            return field.gradients(points, value, gradient);
+        }
         let hessian = &mut self.hessian[..points.len()];
         field.hessians(points, value, gradient, hessian);
         curvatures_of(gradient, hessian, &mut self.curvature[..points.len()]);
