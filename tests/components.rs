@@ -102,7 +102,7 @@ fn ten_metaballs_are_ten_pieces_or_two() {
     let (_, apart) = sampled(&metaballs(0.7), 1.5, 0.006);
     is_proven(&apart, "apart");
     assert_eq!((apart.components, apart.quality.map(|q| q.euler)), (10, Some(20)));
-    let (_, merged) = sampled(&metaballs(0.3), 1.5, 0.006);
+    let (_, merged) = sampled(&metaballs(0.3), 1.5, 0.002);
     is_proven(&merged, "merged");
     assert_eq!((merged.components, merged.quality.map(|q| q.euler)), (1, Some(0)));
 }
@@ -114,7 +114,7 @@ fn a_chain_of_linked_tori_is_as_many_pieces_as_it_has_links() {
         format!("hypot(hypot(x - ({centre}), {y}) - 0.4, {z}) - 0.07")
     };
     let chain: Vec<String> = (0..4).map(|k| torus(-0.9 + 0.6 * f64::from(k), k % 2 == 0)).collect();
-    let (_, report) = sampled(&least(&chain), 1.5, 0.007);
+    let (_, report) = sampled(&least(&chain), 1.5, 0.0013);
     assert_eq!((report.components, report.quality.map(|q| q.euler)), (4, Some(0)));
     is_proven(&report, "chain");
 }

@@ -47,10 +47,10 @@ use glam::DVec3;
 const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined: such cells line up along curves and faces.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a
-/// quarter of a particle. Most smooth surfaces take a few hundred to ten thousand.
-const MOST_CELLS: usize = 16_384;
-const CELLS_PER_PARTICLE: f64 = 0.25;
+/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a fifth of a
+/// particle. Smooth surfaces of the gallery take a hundred to twelve thousand.
+const MOST_CELLS: usize = 4_096;
+const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
 const CHUNK: usize = 32;
 /// Units of work that a cell is charged for: on long formulas it takes as long as several particles.
@@ -59,7 +59,7 @@ const UNITS: u32 = 8;
 const MARGIN: f64 = 1.0 / 65_536.0;
 /// A taller cell reaches this much farther than the slopes of the cell itself ask for, and at least by [`LEAST_RISE`] of its
 /// height.
-const RISE_ROOM: f64 = 1.25;
+const RISE_ROOM: f64 = 2.0;
 const LEAST_RISE: f64 = 0.02;
 /// A cell is halved rather than made taller than this many times its height, each way.
 const MOST_RISE: f64 = 2.0;

@@ -3,7 +3,7 @@
 use super::octree::{Octree, Witness};
 use super::project::{BATCH, Descent, Projector, Tolerance};
 use super::search::Search;
-use super::sheets::{are_connected, is_one_sheet};
+use super::sheets::{Oriented, TOGETHER, are_connected, is_connected_by_pieces, is_one_sheet};
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
@@ -103,6 +103,7 @@ impl Seeds {
     ) {
         let margin = self.octree.margin();
         let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
+        self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
         // Those that belong to nothing but the margin are no loss.
         let starts: Vec<(Vec3, usize)> = self
             .octree
@@ -141,6 +142,42 @@ impl Seeds {
         }
     }
 
+    /// Drops witnesses that are connected with others within the box: along a ridge of equal height there are many.
+    fn thin_out(&mut self, field: &mut dyn Field, corners: [DVec3; 2], tolerance: Tolerance) {
+        let slack = f64::from(2.0 * tolerance.residual);
+        let witnesses = core::mem::take(&mut self.octree.witnesses);
+        let mut kept: Vec<(Witness, DVec3)> = Vec::new();
+        for group in witnesses.chunk_by(|a, b| a.part == b.part).flat_map(|part| part.chunks(TOGETHER)) {
+            let part = group[0].part;
+            let ends: Vec<Oriented> = group
+                .iter()
+                .map(|witness| {
+                    let gradient = field.jet(witness.position).gradient;
+                    (witness.position, gradient.try_normalize().unwrap_or(DVec3::Z))
+                })
+                .collect();
+            let nearest: Vec<Option<DVec3>> = ends
+                .iter()
+                .map(|end| {
+                    let distance = |p: DVec3| (p - end.0).length_squared();
+                    kept.iter()
+                        .filter(|(other, normal)| other.part == part && normal.dot(end.1) > 0.0)
+                        .min_by(|(a, _), (b, _)| distance(a.position).total_cmp(&distance(b.position)))
+                        .map(|(other, _)| other.position)
+                })
+                .collect();
+            let pairs: Vec<(Oriented, DVec3)> =
+                ends.iter().zip(&nearest).map(|(&end, nearest)| (end, nearest.unwrap_or(end.0))).collect();
+            let connected = are_connected(field, part, &pairs, slack, Some(corners));
+            for k in 0..group.len() {
+                if nearest[k].is_none() || !connected[k] {
+                    kept.push((group[k], ends[k].1));
+                }
+            }
+        }
+        self.octree.witnesses.extend(kept.into_iter().map(|(witness, _)| witness));
+    }
+
     /// The next witness, if there is one, and what is left of the budget.
     pub(super) fn next(&mut self, budget: u32) -> (Option<Seed>, u32) {
         let witness = self.points.get(self.next).copied();
@@ -171,11 +208,17 @@ impl Seeds {
     ) -> Place {
         let Seed { position, normal, part } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
-        let (from, along) = (position.as_dvec3(), normal.as_dvec3());
+        let from = (position.as_dvec3(), normal.as_dvec3());
+        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
+        let mut pairs = [(from, from.0); MOST_TRIED];
+        let tried = near.len().min(MOST_TRIED);
+        for (pair, &j) in pairs.iter_mut().zip(&near) {
+            pair.1 = place_of(j);
+        }
         let mut place = Place::Bare;
-        if near.iter().take(MOST_TRIED).any(|&j| {
-            are_connected(field, part, from, particles.position[j as usize].as_dvec3(), along, slack)
-        }) {
+        if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
+            || near.first().is_some_and(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack))
+        {
             place = Place::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {
             let j = j as usize;

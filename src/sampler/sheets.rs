@@ -73,44 +73,70 @@ pub(super) fn is_one_sheet(
     gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
 }
 
-/// Whether the bounds of the gradient prove that the surface connects `a` and `b`, points of it with about the unit normal
-/// `normal`; `slack` is how far they may be from it.
+/// Pairs of points that are looked at together: with both ends a chunk of boxes.
+pub(super) const TOGETHER: usize = 10;
+
+/// A point of the surface, and the unit normal there.
+pub(super) type Oriented = (DVec3, DVec3);
+
+/// For each of at most [`TOGETHER`] pairs of points of the surface, the first with its normal, whether the bounds of the gradient
+/// prove that the surface connects them; `slack` is how far they may be from it.
 ///
 /// The proof is that of the [octree](super::octree) on a box around both: f is monotone along the axis of the normal, and the
-/// surface through `a` cannot leave the box over the rectangle between the two, so that it is the graph of a function there,
-/// which meets the line through `b` in one point. Where one box is too large for that, the way is cut into pieces.
+/// surface through the one cannot leave the box over the rectangle between the two, so that it is the graph of a function
+/// there, which meets the line through the other in one point. It need not stay between the two corners of a box, unless there
+/// are corners `within` which it has to.
 pub(super) fn are_connected(
     field: &mut dyn Field,
     part: usize,
-    a: DVec3,
-    b: DVec3,
-    normal: DVec3,
+    pairs: &[(Oriented, DVec3)],
+    slack: f64,
+    within: Option<[DVec3; 2]>,
+) -> [bool; TOGETHER] {
+    let mut boxes = [[DVec3::ZERO; 2]; 3 * TOGETHER];
+    let mut known = [Enclosure::UNKNOWN; 3 * TOGETHER];
+    for (k, &((a, normal), b)) in pairs.iter().enumerate() {
+        let (around, _, _) = graph_box(a, b, normal, slack);
+        boxes[3 * k..3 * k + 3].copy_from_slice(&[around, [a, a], [b, b]]);
+    }
+    field.enclose(part, &boxes[..3 * pairs.len()], &mut known);
+    core::array::from_fn(|k| {
+        let Some(&((a, normal), b)) = pairs.get(k) else { return false };
+        let (around, up, room) = graph_box(a, b, normal, slack);
+        let [known, ends @ ..] = [0, 1, 2].map(|part| known[3 * k + part]);
+        let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
+        // Ends that are not quite on the surface have it within 2 slacks above or below.
+        within.is_none_or(|[lo, hi]| around[0].cmpge(lo).all() && around[1].cmple(hi).all())
+            && proves_graph(&known, around, up, room - 4.0 * slack)
+            && ends.iter().all(|end| end.value[1].max(-end.value[0]) <= 2.0 * slack * least)
+    })
+}
+
+/// Whether the way between two points of the surface, cut into pieces, is [connected](are_connected): for points too far from
+/// each other, as the surface bends, for one box.
+pub(super) fn is_connected_by_pieces(
+    field: &mut dyn Field,
+    part: usize,
+    from: Oriented,
+    to: DVec3,
     slack: f64,
 ) -> bool {
-    /// Pieces tried.
-    const PIECES: [u32; 3] = [1, 4, 16];
+    /// Numbers of pieces tried.
+    const PIECES: [usize; 2] = [4, TOGETHER];
     PIECES.into_iter().any(|pieces| {
-        let mut from = a;
-        let mut along = normal;
-        (1..=pieces).all(|k| {
-            let (to, normal) = if k == pieces {
-                (b, along)
-            } else {
-                let share = f64::from(k) / f64::from(pieces);
-                match land(field, a + (b - a) * share) {
-                    Some(landing) => landing,
-                    None => return false,
-                }
-            };
-            let connected = is_graph(field, part, from, to, along, slack);
-            (from, along) = (to, normal);
-            connected
-        })
+        let mut pairs = [(from, to); TOGETHER];
+        for k in 1..pieces {
+            let share = k as f64 / pieces as f64;
+            let Some(landing) = land(field, from.0 + (to - from.0) * share) else { return false };
+            pairs[k - 1].1 = landing.0;
+            pairs[k].0 = landing;
+        }
+        are_connected(field, part, &pairs[..pieces], slack, None)[..pieces].iter().all(|&connected| connected)
     })
 }
 
 /// The surface near `p` by Newton's method along the gradient, and the unit normal there.
-fn land(field: &mut dyn Field, mut p: DVec3) -> Option<(DVec3, DVec3)> {
+fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
     const STEPS: u32 = 8;
     for _ in 0..STEPS {
         let jet = field.jet(p);
@@ -143,17 +169,6 @@ fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usiz
     lo[up] -= room;
     hi[up] += room;
     ([lo, hi], up, room)
-}
-
-fn is_graph(field: &mut dyn Field, part: usize, a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> bool {
-    let (around, up, room) = graph_box(a, b, normal, slack);
-    let mut known = [Enclosure::UNKNOWN; 3];
-    field.enclose(part, &[around, [a, a], [b, b]], &mut known);
-    let [known, ends @ ..] = known;
-    let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
-    // Ends that are not quite on the surface have it within 2 slacks above or below.
-    proves_graph(&known, around, up, room - 4.0 * slack)
-        && ends.iter().all(|end| end.value[1].max(-end.value[0]) <= 2.0 * slack * least)
 }
 
 /// Whether the surface through any point of a box, `room` away from its lower and upper face, is a graph over all of it.
