@@ -256,9 +256,11 @@ impl Relaxation {
                         let reach = L::RANGE + L::SKIN;
                         let (smallest, largest) = law.extent(particles);
                         self.grids.reset(smallest, largest, reach);
-                        self.vicinity.reset(reach * largest, self.far.len());
-                        for &i in &self.far {
-                            self.vicinity.add(particles.position[i as usize]);
+                        if !self.all {
+                            self.vicinity.reset(reach * largest, self.far.len());
+                            for &i in &self.far {
+                                self.vicinity.add(particles.position[i as usize]);
+                            }
                         }
                     }
                     for i in range {
