@@ -302,3 +302,42 @@ fn a_run_beyond_the_memory_is_refused_and_a_smaller_one_goes_on() {
     while session.step(65_536).stop_reason.is_none() {}
     assert!(session.count().abs_diff(20_000) <= 600);
 }
+
+#[test]
+fn a_field_that_stays_is_surveyed_once_and_sampled_alike() {
+    let finish = |session: &mut Session| {
+        while session.step(65_536).stop_reason.is_none() {}
+        let report = session.report();
+        (report.digest, report.evaluations)
+    };
+    let coarse = Settings { radius_share: 0.02, ..Settings::default() };
+    let fine = Settings { radius_share: 0.01, ..coarse };
+    let mut session = Session::new();
+    let mut seen = Vec::new();
+    for settings in [&coarse, &fine, &coarse] {
+        session.set_field(&FieldRequest::default()).expect("nothing is asked");
+        session.start(settings).expect("valid settings");
+        seen.push(finish(&mut session));
+    }
+    assert_eq!(seen[0].0, seen[2].0);
+    assert!(seen[2].1 + 25_000 < seen[0].1, "{seen:?}: the survey takes more than 25,000 evaluations");
+    let mut fresh = Session::new();
+    fresh.start(&fine).expect("valid settings");
+    assert_eq!(finish(&mut fresh).0, seen[1].0);
+
+    // What changes the field or the box brings the survey back.
+    let parameter = FieldRequest { parameters: [("a".into(), 0.9)].into(), ..FieldRequest::default() };
+    let boxed = FieldRequest { bounds: Some(Bounds::cube(1.5)), ..FieldRequest::default() };
+    for request in [parameter, boxed] {
+        session.set_field(&request).expect("valid");
+        session.start(&coarse).expect("valid settings");
+        let (digest, evaluations) = finish(&mut session);
+        assert!(evaluations > 25_000, "{request:?}");
+        let mut fresh = Session::new();
+        fresh
+            .set_field(&FieldRequest { parameters: [("a".into(), 0.9)].into(), ..request.clone() })
+            .expect("valid");
+        fresh.start(&coarse).expect("valid settings");
+        assert_eq!(finish(&mut fresh).0, digest, "{request:?}");
+    }
+}

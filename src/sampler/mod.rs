@@ -305,9 +305,8 @@ impl Sampler {
         &self.settings
     }
 
-    /// Starts a run: surveys the field (about 40,000 evaluations, 300,000 where a field has no bounds to prove by) and fixes the
-    /// radius. Particles of an earlier run are
-    /// dropped.
+    /// Starts a run: surveys the field (about 40,000 evaluations, 300,000 where a field has no bounds to prove by) and fixes
+    /// the radius. Particles of an earlier run are dropped.
     ///
     /// # Errors
     ///
@@ -318,6 +317,32 @@ impl Sampler {
         field: &mut dyn Field,
         bounds: &Bounds,
         settings: &Settings,
+    ) -> Result<Start, SettingsError> {
+        self.begin(field, bounds, settings, false)
+    }
+
+    /// [`Sampler::start`] on the field and the box of the last start, without surveying them again.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Sampler::start`].
+    pub fn start_again(
+        &mut self,
+        field: &mut dyn Field,
+        settings: &Settings,
+    ) -> Result<Start, SettingsError> {
+        let bounds = self.bounds;
+        // A survey that has found nothing by itself is made again: what it was given since depends on the run.
+        let is_known = self.survey.area > 0.0 && !self.survey.is_adopted;
+        self.begin(field, &bounds, settings, is_known)
+    }
+
+    fn begin(
+        &mut self,
+        field: &mut dyn Field,
+        bounds: &Bounds,
+        settings: &Settings,
+        is_known: bool,
     ) -> Result<Start, SettingsError> {
         settings.validate()?;
         if !bounds.is_valid() {
@@ -332,11 +357,14 @@ impl Sampler {
         self.stop_reason = None;
         self.attempt = 0;
         self.pilot = false;
-        self.factor = comfortable_factor(field, spread(bounds));
         self.seeds.begin(field, bounds);
         self.seeds.expect(0.0);
-        let is_dense = !self.seeds.can_prove();
-        self.survey = survey(&mut Scaled::new(field, self.factor), bounds, is_dense, &mut self.projector);
+        if !is_known {
+            self.factor = comfortable_factor(field, spread(bounds));
+            let is_dense = !self.seeds.can_prove();
+            let field_in_units = &mut Scaled::new(field, self.factor);
+            self.survey = survey(field_in_units, bounds, is_dense, &mut self.projector);
+        }
         if self.survey.area == 0.0 {
             self.search_all(field);
         }

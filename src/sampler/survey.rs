@@ -46,6 +46,8 @@ pub(super) struct Survey {
     pub(super) touches: bool,
     /// Verdict where there is no point.
     pub(super) absence: Absence,
+    /// Whether its points were found by other means.
+    pub(super) is_adopted: bool,
 }
 
 /// Why a survey found no surface.
@@ -250,6 +252,7 @@ impl Survey {
         bounds: &Bounds,
         search: Search,
     ) {
+        self.is_adopted = true;
         let mut slopes = Vec::new();
         for (position, normal) in found {
             let jet = field.jet(position.as_dvec3());

@@ -177,6 +177,8 @@ impl Source {
 /// A field, a sampler and a run.
 pub struct Session {
     source: Source,
+    /// Whether field and box are those of the last start.
+    is_surveyed: bool,
     surface: Option<&'static Surface>,
     declared: Vec<Parameter>,
     bounds: Bounds,
@@ -219,6 +221,7 @@ impl Session {
         let surface = &gallery::SURFACES[0];
         Self {
             source: Source::Formula(surface.field()),
+            is_surveyed: false,
             surface: Some(surface),
             declared: surface.declared(),
             bounds: surface.bounds,
@@ -310,6 +313,7 @@ impl Session {
             (None, None, Some(field)) => field.text(),
             // Of a model from points only the box can be changed.
             (None, None, None) => {
+                self.is_surveyed &= bounds == self.bounds;
                 self.bounds = bounds;
                 return Ok(self.answer());
             }
@@ -336,6 +340,9 @@ impl Session {
                 result => result?,
             }
         }
+        let is_same =
+            present.is_some_and(|p| p.text() == field.text() && p.parameters() == field.parameters());
+        self.is_surveyed &= is_same && bounds == self.bounds;
         self.surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
@@ -360,7 +367,17 @@ impl Session {
         if !bounds.is_valid() {
             return Err(FieldError::Box);
         }
-        self.source = Source::Points { field: RbfField::new(data)?, info };
+        let is_same = match &mut self.source {
+            Source::Points { field, info: present } if *field.data() == data => {
+                *present = info;
+                true
+            }
+            source => {
+                *source = Source::Points { field: RbfField::new(data)?, info };
+                false
+            }
+        };
+        self.is_surveyed &= is_same && bounds == self.bounds;
         self.surface = None;
         self.declared.clear();
         self.bounds = bounds;
@@ -378,7 +395,12 @@ impl Session {
     ///
     /// If a setting is out of its range, or there is no memory for the particles to expect.
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
-        let start = self.sampler.start(self.source.field(), &self.bounds, settings)?;
+        let start = if self.is_surveyed {
+            self.sampler.start_again(self.source.field(), settings)?
+        } else {
+            self.sampler.start(self.source.field(), &self.bounds, settings)?
+        };
+        self.is_surveyed = true;
         self.warnings.clone_from(&start.warnings);
         self.last = None;
         self.front.clear();
