@@ -148,6 +148,29 @@ fn ten_steps_even_the_sizes_out() {
     }
 }
 
+#[cfg(feature = "points")]
+#[test]
+fn the_bunny_is_even_after_ten_steps() {
+    use marching_particles::field::{model, rbf::RbfField};
+    use marching_particles::points::models;
+    let bunny = model::find("bunny").expect("a built-in model");
+    let fit = models::begin(bunny).finish().expect("the bunny is solved for");
+    let mut field = RbfField::new(fit.data).expect("the data is whole");
+    let settings = Settings { sampling: Sampling::Adaptive, chord_error: 1e-4, ..Settings::default() };
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &fit.bounds, &settings).expect("valid settings");
+    while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
+    let particles = sampler.particles();
+    let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..Default::default() };
+    let report =
+        quality::measure(&particles.position, &particles.normal, &mut field, Some(&fit.bounds), &options);
+    let figures = report.figures;
+    let context = format!("{} particles: {figures:?}", particles.len());
+    assert!(figures.size_cv <= 0.12, "{context}");
+    assert!(figures.cover_local <= 1.6, "{context}");
+    assert!(figures.overlap_min >= 0.6, "{context}");
+}
+
 #[test]
 fn direct_placement_is_better_for_a_third_of_the_evaluations() {
     for (surface, _) in SMOOTH {
