@@ -47,7 +47,7 @@ use glam::DVec3;
 const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined: such cells line up along curves and faces.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a fifth of a
+/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a third of a
 /// particle. Smooth surfaces of the gallery take a hundred to twelve thousand.
 const MOST_CELLS: usize = 4_096;
 const CELLS_PER_PARTICLE: f64 = 0.5;

@@ -465,7 +465,6 @@ impl UniformFront {
         let collision = self.collision_reach();
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
-        let mut doubtful = false;
         self.around.len = 0;
         pairs.push(found.iter().filter_map(|near| {
             let j = near.index as usize;
@@ -474,13 +473,18 @@ impl UniformFront {
                 self.around.push(near.offset, other);
             }
             let faces = other.dot(normal) > 0.0;
-            // The normals of children under way are only predicted, but they belong to this front.
-            doubtful |=
-                faces && j < self.settled && is_doubtful(near.offset, normal, other, 2.0 * self.radius);
             let repels = near.distance_sq <= repulsion * repulsion && faces;
             (j < parent && repels).then_some(near.index)
         }));
-        doubtful
+        let spacing = 2.0 * self.radius;
+        // The normals of children under way are only predicted, but they belong to this front.
+        self.around.are_doubtful(normal, spacing)
+            && found.iter().any(|near| {
+                let other = particles.normal[near.index as usize];
+                (near.index as usize) < self.settled
+                    && other.dot(normal) > 0.0
+                    && is_doubtful(near.offset, normal, other, spacing)
+            })
     }
 
     /// Takes the particles out of `found`, and of what children may collide with, that face the way of `parent` but are on
@@ -701,6 +705,28 @@ impl Surroundings {
             column.0[lane] = value;
         }
         self.len += 1;
+    }
+
+    /// Whether any of the particles is [doubtful](is_doubtful) beside the parent with the unit normal `normal`.
+    #[inline(always)]
+    fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
+        let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
+        let unit = Lanes::splat(1.0 / (spacing * spacing));
+        // The lift is half of what is summed here.
+        let limit = Lanes::splat((2.0 * MAX_LIFT * spacing) * (2.0 * MAX_LIFT * spacing));
+        let mut doubtful = false;
+        for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
+            let along = nx * mx + ny * my + nz * mz;
+            let lift = x * (nx + mx) + y * (ny + my) + z * (nz + mz);
+            let share = (x * x + y * y + z * z) * unit;
+            let cube = share * share * share;
+            for lane in 0..LANES {
+                let growth = if cube.0[lane] > 1.0 { cube.0[lane] } else { 1.0 };
+                let bound = limit.0[lane] * growth;
+                doubtful |= (along.0[lane] > 0.0) & (lift.0[lane] * lift.0[lane] > bound);
+            }
+        }
+        doubtful
     }
 
     /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
