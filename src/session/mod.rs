@@ -456,29 +456,30 @@ impl Session {
         curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
+    /// The first half of [`Session::report`], which does it where it has not been done: measures the particles as the front
+    /// left them.
+    pub fn measure_front(&mut self) {
+        if self.front_figures.is_none() && !self.front.position.is_empty() {
+            let Kept { position, normal, radius } = &self.front;
+            let options = options(self.sampler.settings(), radius);
+            let before =
+                quality::measure(position, normal, self.source.field(), Some(&self.bounds), &options);
+            self.front_figures = Some(before.figures);
+        }
+    }
+
     /// Measures the particles: a few microseconds each. Call it when the run has ended.
     pub fn report(&mut self) -> Report {
+        self.measure_front();
         let particles = self.sampler.particles();
-        let adaptive = self.sampler.settings().sampling == Sampling::Adaptive;
-        let options = |radius| {
-            let sizes = if adaptive { Sizes::Given(radius) } else { Sizes::None };
-            quality::Options { sizes, ..quality::Options::default() }
-        };
         let count = particles.len();
         self.measured = quality::measure(
             &particles.position,
             &particles.normal,
             self.source.field(),
             Some(&self.bounds),
-            &options(&particles.radius),
+            &options(self.sampler.settings(), &particles.radius),
         );
-        if self.front_figures.is_none() && !self.front.position.is_empty() {
-            let Kept { position, normal, radius } = &self.front;
-            let options = options(radius);
-            let before =
-                quality::measure(position, normal, self.source.field(), Some(&self.bounds), &options);
-            self.front_figures = Some(before.figures);
-        }
         let mut level_counts = Vec::new();
         for &level in &particles.level {
             if level_counts.len() <= level as usize {
@@ -523,5 +524,14 @@ impl Session {
     #[must_use]
     pub fn measured(&self) -> &quality::Report {
         &self.measured
+    }
+}
+
+/// How the particles of a run are measured.
+fn options<'a>(settings: &Settings, radius: &'a [f32]) -> quality::Options<'a> {
+    let adaptive = settings.sampling == Sampling::Adaptive;
+    quality::Options {
+        sizes: if adaptive { Sizes::Given(radius) } else { Sizes::None },
+        ..quality::Options::default()
     }
 }

@@ -174,6 +174,11 @@ impl Core {
         self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
+    /// Does the first half of [`Core::report`]: measures the particles as the front left them.
+    pub fn measure_front(&mut self) {
+        self.session.measure_front();
+    }
+
     /// Measures the particles: `Report`.
     pub fn report(&mut self) -> String {
         text(&self.session.report())

@@ -22,6 +22,7 @@ declare module '*/wasm/core/core.js' {
     parents(from: number): Uint32Array<ArrayBuffer>;
     slots(from: number): Uint32Array<ArrayBuffer>;
     radii(from: number): Float32Array<ArrayBuffer>;
+    measure_front(): void;
     report(): string;
     valence(): Uint8Array<ArrayBuffer>;
     nearest(): Float32Array<ArrayBuffer>;

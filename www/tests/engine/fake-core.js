@@ -91,6 +91,7 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
       return column(from, 2, Float32Array);
     },
     component: () => new Uint32Array(count),
+    measure_front() {},
     report() {
       calls.push('report');
       clock.ms += 50;
