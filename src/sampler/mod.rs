@@ -12,6 +12,7 @@ mod gaps;
 mod laws;
 mod octree;
 mod pairs;
+mod phase;
 mod placement;
 mod project;
 mod relax;
@@ -25,6 +26,7 @@ mod survey;
 mod uniform;
 
 pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
+pub use phase::{Phase, StopReason};
 pub use search::Search;
 pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
 pub use uniform::FateCounts;
@@ -79,43 +81,6 @@ const BYTES_PER_ADAPTIVE_PARTICLE: usize = 190;
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
 const SEARCH_SLICE: u32 = 8_192;
-
-/// What the sampler is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Phase {
-    /// Nothing started.
-    #[default]
-    Idle,
-    /// Looking for a first point on every component.
-    Seeding,
-    /// Placing particles, level by level.
-    Generation,
-    /// Relaxing them.
-    Relaxation,
-    /// Finished or stopped.
-    Done,
-}
-
-/// Why a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StopReason {
-    /// Everything done.
-    Complete,
-    /// Stopped by the caller; what was there stays.
-    Cancelled,
-    /// The limit on particles was reached.
-    Cap,
-    /// No point of the surface in the box.
-    NoSurface,
-    /// f has the same value everywhere.
-    Constant,
-    /// f has no value anywhere in the box.
-    Undefined,
-    /// The radius is too large for the surface: no child fits.
-    OneParticle,
-}
 
 /// What [`Sampler::start`] found out.
 #[derive(Clone, Debug, Serialize)]
