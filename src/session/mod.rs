@@ -331,7 +331,7 @@ impl Session {
         }
         let mut field = match present {
             Some(field) if text == field.text() && declared == self.declared => field.clone(),
-            _ => FormulaField::parse(text, &declared)?,
+            _ => FormulaField::parse(text, &declared)?.without_powers(),
         };
         for (name, &value) in &request.parameters {
             match field.set_parameter(name, value) {
@@ -402,6 +402,8 @@ impl Session {
         };
         self.is_surveyed = true;
         self.warnings.clone_from(&start.warnings);
+        self.warnings
+            .extend(self.source.formula().and_then(FormulaField::evaluated_as).map(warnings::about_powers));
         self.last = None;
         self.front.clear();
         self.front_figures = None;

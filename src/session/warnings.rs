@@ -8,6 +8,14 @@ use crate::spatial::tree::Tree;
 const CLOSE_SHARE: f64 = 0.005;
 const CLOSE_COUNT: usize = 8;
 
+/// What is said where another equation is sampled in the place of the formula.
+pub(super) fn about_powers(equation: String) -> String {
+    format!(
+        "f has powers, roots or absolute values of whole factors, which take its gradient on the surface. The same surface \
+         with every factor once is sampled: {equation}"
+    )
+}
+
 /// Warnings about what became of the particles.
 pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
     let mut warnings = Vec::new();

@@ -29,6 +29,7 @@ mod lex;
 mod mathml;
 mod operations;
 mod parse;
+mod powers;
 mod program;
 mod scalar;
 #[cfg(test)]
@@ -101,6 +102,8 @@ impl Parameter {
 pub struct FormulaField {
     text: String,
     equation: Equation,
+    /// The equation that is evaluated, where it is another one.
+    simple: Option<Equation>,
     parameters: Vec<Parameter>,
     automatic: Vec<String>,
     /// Declared names that the formula does not use.
@@ -140,42 +143,77 @@ impl FormulaField {
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
-        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let mut graph = Graph::default();
-        let root = build::build(&mut graph, &parsed.equation, &names)?;
-        let value_program = Program::compile(&graph, &[root]);
-        if value_program.operations() > MAX_OPERATIONS {
-            return Err(build::too_complex(&parsed.equation.left));
-        }
-        graph.let_zero_annihilate();
-        let gradient = cheaper_gradient(&mut graph, root);
-        let gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
-        let steps = graph.nodes()[..=root as usize].iter().any(|node| {
-            matches!(node, graph::Node::Unary(operations::Unary::Floor | operations::Unary::Sign, _))
-        });
-        let flat = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
-        let constant = graph.is_uniform(root) || (flat && !steps);
         let mut field = Self {
             text: text.to_owned(),
             equation: parsed.equation,
+            simple: None,
             values: parameters.iter().map(|parameter| parameter.value).collect(),
             parameters,
             automatic,
             unused,
-            graph,
-            root,
-            constant,
-            value_program,
-            gradient_program,
+            graph: Graph::default(),
+            root: 0,
+            constant: false,
+            value_program: Program::default(),
+            gradient_program: Program::default(),
             hessian_program: None,
-            gradient,
-            hessian: [root; 6],
+            gradient: [0; 3],
+            hessian: [0; 6],
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
             parts: Vec::new(),
         };
-        field.update();
+        field.compile()?;
         Ok(field)
+    }
+
+    /// The field of the same surface that has a gradient on it, where f is a power of another function or a product with
+    /// powers or repeated factors: u in the place of u², √u or |u|. Text, normal form and MathML stay those of the formula. The
+    /// field itself where it is none of these.
+    #[must_use]
+    pub fn without_powers(mut self) -> Self {
+        if self.simple.is_none()
+            && let Some(simple) = powers::without_powers(&self.equation)
+        {
+            let typed = self.clone();
+            self.simple = Some(simple);
+            // Shorter than the formula, so that no limit is met; but if it were, the formula itself is still good.
+            if self.compile().is_err() {
+                return typed;
+            }
+        }
+        self
+    }
+
+    /// The equation in the place of the formula, if [`FormulaField::without_powers`] has found one.
+    #[must_use]
+    pub fn evaluated_as(&self) -> Option<String> {
+        self.simple.as_ref().map(display::plain_equation)
+    }
+
+    /// Everything that is evaluated, from the equation and the names of the parameters.
+    fn compile(&mut self) -> Result<(), FormulaError> {
+        let equation = self.simple.as_ref().unwrap_or(&self.equation);
+        let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut graph = Graph::default();
+        let root = build::build(&mut graph, equation, &names)?;
+        self.value_program = Program::compile(&graph, &[root]);
+        if self.value_program.operations() > MAX_OPERATIONS {
+            return Err(build::too_complex(&equation.left));
+        }
+        graph.let_zero_annihilate();
+        let gradient = cheaper_gradient(&mut graph, root);
+        self.gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
+        let steps = graph.nodes()[..=root as usize].iter().any(|node| {
+            matches!(node, graph::Node::Unary(operations::Unary::Floor | operations::Unary::Sign, _))
+        });
+        let flat = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
+        self.constant = graph.is_uniform(root) || (flat && !steps);
+        (self.graph, self.root, self.gradient, self.hessian) = (graph, root, gradient, [root; 6]);
+        self.hessian_program = None;
+        self.parts.clear();
+        self.update();
+        Ok(())
     }
 
     /// The text that was parsed.
