@@ -1,7 +1,9 @@
 //! Every connected piece of the surface gets particles, however small or near another one, and the report says how sure
 //! that is.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Search, Settings, StopReason};
@@ -223,6 +225,24 @@ fn a_piece_that_is_not_there_is_proven_absent() {
         assert!(progress.message.is_some_and(|m| m.contains("proven")), "{formula}");
         is_proven(&session.report(), formula);
     }
+}
+
+#[test]
+fn slopes_that_jump_hide_no_piece() {
+    // Two octahedra and two boxes, all highest points of which are at edges and corners, on cells of every size.
+    for formula in [
+        "min(abs(x - 0.31) + abs(y - 0.17) + abs(z + 0.23) - 0.4, abs(x + 0.6) + abs(y + 0.6) + abs(z - 0.6) - 0.02)",
+        "min(max(abs(x - 0.31), abs(y - 0.17), abs(z + 0.23)) - 0.4, max(abs(x + 0.6), abs(y + 0.6), abs(z - 0.6)) - 0.02)",
+    ] {
+        let (_, report) = sampled(formula, 1.0, 0.002);
+        assert_eq!(report.components_seeded.min(2), 2, "{formula}: {report:?}");
+    }
+    // Bounds of the second derivatives say that there is no piece, unless it is known where they do not hold.
+    let mut field = FormulaField::parse("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
+    let across = [[DVec3::splat(-0.1), DVec3::splat(0.2)], [DVec3::splat(0.1), DVec3::splat(0.2)]];
+    let mut known = [Enclosure::UNKNOWN; 2];
+    field.enclose(0, &across, &mut known);
+    assert_eq!(known.map(|known| (known.continuous, known.smooth)), [(true, false), (true, true)]);
 }
 
 #[test]

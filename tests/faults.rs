@@ -101,15 +101,56 @@ fn a_singular_point_stops_its_neighbours_from_nothing() {
 }
 
 #[test]
-fn a_square_is_sampled_and_said_to_be_one() {
-    let (session, progress, report) = sampled("(x^2 + y^2 + z^2 - 0.5)^2", 1.0, &coarse());
+fn powers_of_a_factor_have_the_surface_of_the_factor() {
+    for (formula, factor) in [
+        ("x^2", "x"),
+        ("0 = x^3", "x"),
+        ("-2x^4/(y^2 + 1)^2", "x/(y^2 + 1)"),
+        ("sqrt(abs(x - 0.2))", "x - 0.2"),
+        ("(x^2 + y^2 + z^2 - 0.5)^2 = 0", "x^2 + y^2 + z^2 - 0.5"),
+        ("abs(x^2 + y^2 + z^2 - 0.5)^1.5", "x^2 + y^2 + z^2 - 0.5"),
+        ("x^2 (y - 0.2)", "x (y - 0.2)"),
+        ("x (x y)^3 (y - 0.7)", "x y (y - 0.7)"),
+        ("(x^2 + y^2 - z^2)^2", "x^2 + y^2 - z^2"),
+    ] {
+        let (powers, progress, report) = sampled(formula, 1.0, &coarse());
+        let (simple, _, _) = sampled(factor, 1.0, &coarse());
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        let share = powers.count() as f64 / simple.count() as f64;
+        assert!((0.95..1.05).contains(&share), "{formula}: {} and {}", powers.count(), simple.count());
+        assert!(report.warnings.iter().any(|w| w.contains("is sampled")), "{formula}: {:?}", report.warnings);
+        assert!(!report.warnings.iter().any(|w| w.contains("twice")), "{formula}: {:?}", report.warnings);
+    }
+    // A constant factor, another side, and a pole are left alone, and nothing is said.
+    for formula in ["x^2 = 0.3", "a^2 x", "x^3 + y", "x/(y + 3)^2"] {
+        let (_, _, report) = sampled(formula, 1.0, &coarse());
+        assert_eq!(report.warnings, Vec::<String>::new(), "{formula}");
+    }
+}
+
+#[test]
+fn a_square_that_is_not_written_as_one_is_sampled_and_said_to_be_one() {
+    let (session, progress, report) =
+        sampled("(x^2 + y^2 + z^2)^2 - (x^2 + y^2 + z^2) + 0.25", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.warnings.iter().any(|w| w.contains("without changing its sign")), "{:?}", report.warnings);
     for p in &session.particles().position {
-        assert!((p.length() - 0.5_f32.sqrt()).abs() < 1e-3 * 0.5, "{p}");
+        assert!((p.length() - 0.5_f32.sqrt()).abs() < 1e-3, "{p}");
     }
     let (_, _, report) = sampled("x^2 + y^2 + z^2 - 0.5", 1.0, &coarse());
     assert_eq!(report.warnings, Vec::<String>::new());
+}
+
+#[test]
+fn zeros_without_a_gradient_are_never_called_absent() {
+    // A line, a point, another line, and planes that f touches.
+    for formula in ["x^2 + y^2", "x^2 + y^2 + z^2", "(x - 0.1)^2 + (y + z)^2", "(x + y)^2 + z^2"] {
+        let (_, progress, report) = sampled(formula, 1.0, &coarse());
+        assert_ne!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
+        let message = progress.message.unwrap_or_default();
+        assert!(message.contains("f comes to zero") && message.contains("enter"), "{formula}: {message}");
+        assert_ne!(report.undecided_cells, Some(0), "{formula}");
+    }
 }
 
 #[test]

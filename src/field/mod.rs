@@ -45,6 +45,8 @@ pub struct Enclosure {
     pub defined: bool,
     /// Whether f is certainly continuous where it is defined.
     pub continuous: bool,
+    /// Whether the gradient is certainly continuous too: where it jumps, bounds of second derivatives say nothing of it.
+    pub smooth: bool,
     /// Whether f may be 0 somewhere in the box. It can be excluded even where the bounds have both signs, as for 1/x.
     pub may_vanish: bool,
 }
@@ -56,6 +58,7 @@ impl Enclosure {
         gradient: [[f64::NEG_INFINITY, f64::INFINITY]; 3],
         defined: false,
         continuous: false,
+        smooth: false,
         may_vanish: true,
     };
 
@@ -115,7 +118,7 @@ pub trait Field {
     }
 
     /// Bounds of the second derivatives of the same function over each box, in the order xx, xy, xz, yy, yz, zz; they hold
-    /// where f is defined and continuous and have no meaning elsewhere. By default nothing is known.
+    /// where f is defined and its gradient continuous and have no meaning elsewhere. By default nothing is known.
     ///
     /// # Panics
     ///

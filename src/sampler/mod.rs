@@ -10,6 +10,7 @@ mod arcs;
 mod front;
 mod gaps;
 mod laws;
+mod nodes;
 mod octree;
 mod pairs;
 mod phase;
@@ -38,7 +39,7 @@ use crate::particles::Particles;
 use crate::trace::Trace;
 use adaptive::Surface;
 use front::Front;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
@@ -377,7 +378,8 @@ impl Sampler {
         }
         if self.survey.touches {
             warnings.push(
-                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice"
+                "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
+                 If f is a square, enter what is squared instead"
                     .into(),
             );
         }
@@ -588,6 +590,20 @@ impl Sampler {
             StopReason::NoSurface if self.survey.absence == Absence::Proven => {
                 "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
             }
+            StopReason::NoSurface | StopReason::OneParticle
+                if !self.seeds.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
+            {
+                let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
+                let distance = |p: &&DVec3| (**p - middle).length_squared();
+                let nearest = self.seeds.singular().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let [x, y, z] = nearest.map_or([0.0; 3], |p| p.to_array()).map(rounded);
+                format!(
+                    "No surface that particles can cover: f comes to zero, for example near ({x}, {y}, {z}), but its gradient \
+                     vanishes there. This may be a point or a curve, as for x^2 + y^2 = 0, or a surface on which f is flat, as \
+                     a power is. For a surface around it enter a small number on the right, such as x^2 + y^2 = 0.01; if f is \
+                     a power, enter its base."
+                )
+            }
             StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
                 "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
                     .into()
@@ -767,6 +783,11 @@ impl Sampler {
 fn typical_radius(survey: &Survey, sizing: &Sizing, other: f64) -> f64 {
     let radius = (survey.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
     if radius > 0.0 && radius.is_finite() { radius } else { other }
+}
+
+/// A coordinate to three decimals, without a sign on 0.
+fn rounded(x: f64) -> f64 {
+    libm::round(x * 1_000.0) / 1_000.0 + 0.0
 }
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;

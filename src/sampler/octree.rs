@@ -29,6 +29,9 @@
 //! Their excess falls with the square of the width (Moore 1966). A product is searched factor by factor: near the zeros of
 //! one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
 //!
+//! Around a point where f has no gradient no cell can be decided. A [box](super::nodes) around it through whose boundary every
+//! piece in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the rest.
+//!
 //! What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
 //! where the gradient vanishes on the surface no interval decides.
 //!
@@ -39,6 +42,7 @@
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
+use super::nodes::{isolating_box, singular_point};
 use crate::field::{Enclosure, Field};
 use crate::math::Bounds;
 use glam::DVec3;
@@ -51,6 +55,11 @@ const IRREGULAR_DEPTH: u8 = 6;
 /// particle. Smooth surfaces of the gallery take a hundred to twelve thousand.
 const MOST_CELLS: usize = 4_096;
 const CELLS_PER_PARTICLE: f64 = 0.5;
+/// Halvings before singular points are looked for in a cell, and how many there are between two tries.
+const SINGULAR_FROM: u8 = 3;
+const SINGULAR_EVERY: u8 = 2;
+/// Most singular points that are kept.
+const MOST_SINGULAR: usize = 4_096;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
 const CHUNK: usize = 32;
 /// Units of work that a cell is charged for: on long formulas it takes as long as several particles.
@@ -145,6 +154,10 @@ pub(super) struct Octree {
     rises: Vec<Option<f64>>,
     /// Lines that meet the surface: index of the tall cell, lower and upper end, the place under way.
     lines: Vec<(usize, f64, f64, f64)>,
+    /// Boxes left out of the search of the part.
+    isolated: Vec<[DVec3; 2]>,
+    /// Points where f and its gradient vanish, some of them several times.
+    pub(super) singular: Vec<DVec3>,
     /// At least one on every piece of the surface.
     pub(super) witnesses: Vec<Witness>,
     /// Smallest and largest corners of the cells left undecided.
@@ -171,6 +184,7 @@ impl Octree {
     pub(super) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
         self.witnesses.clear();
         self.undecided.clear();
+        self.singular.clear();
         self.halves.clear();
         self.margin = MARGIN * (bounds.hi() - bounds.lo()).max_element();
         let margin = DVec3::splat(self.margin);
@@ -188,23 +202,9 @@ impl Octree {
         self.part = part;
         (self.next, self.cells) = (0, 0);
         self.level.clear();
-        // Each axis free, or pinned to either end.
-        for stratum in 0..27 {
-            let (mut lo, mut hi) = (self.lo, self.hi);
-            let mut rest = stratum;
-            for axis in 0..3 {
-                match rest % 3 {
-                    1 => hi[axis] = lo[axis],
-                    2 => lo[axis] = hi[axis],
-                    _ => {}
-                }
-                rest /= 3;
-            }
-            // A corner belongs to three edges.
-            if lo != hi {
-                self.level.push(Cell { lo, hi, level: 0 });
-            }
-        }
+        self.isolated.clear();
+        self.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
+        push_boundary(&mut self.level, [self.lo, self.hi]);
     }
 
     /// What the box is enlarged by.
@@ -255,21 +255,27 @@ impl Octree {
     }
 
     fn look_at(&mut self, field: &mut dyn Field, range: core::ops::Range<usize>) {
-        self.boxes.clear();
-        self.boxes.extend(self.level[range.clone()].iter().map(|cell| [cell.lo, cell.hi]));
-        self.enclose(field);
         self.open.clear();
-        for (k, at) in range.enumerate() {
-            let (cell, known) = (self.level[at], self.known[k]);
+        let isolated = &self.isolated;
+        let is_left = |cell: &&Cell| !isolated.iter().any(|around| is_inside(cell, around));
+        self.open.extend(self.level[range].iter().filter(is_left));
+        self.boxes.clear();
+        self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.enclose(field);
+        let mut kept = 0;
+        for k in 0..self.open.len() {
+            let (cell, known) = (self.open[k], self.known[k]);
             if !known.may_vanish {
                 continue;
             }
             if !(known.defined && known.continuous) {
                 self.halve(cell, IRREGULAR_DEPTH);
             } else if !is_discarded(&cell, &known) {
-                self.open.push(cell);
+                self.open[kept] = cell;
+                kept += 1;
             }
         }
+        self.open.truncate(kept);
         self.boxes.clear();
         self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
         self.refine(field);
@@ -285,12 +291,42 @@ impl Octree {
                 Some(t) if t <= MOST_RISE * height => {
                     self.tall.push((cell, RISE_ROOM * t + LEAST_RISE * height));
                 }
+                _ if self.is_isolated(field, &cell, &known) => {}
                 _ => self.halve(cell, DEPTH),
             }
         }
         if !self.tall.is_empty() {
             self.decide(field);
         }
+    }
+
+    /// Whether the cell lies in a box that is left out of the search: one there is already, or a new one around a singular
+    /// point in or near the cell.
+    fn is_isolated(&mut self, field: &mut dyn Field, cell: &Cell, known: &Enclosure) -> bool {
+        if self.isolated.iter().any(|around| is_inside(cell, around)) {
+            return true;
+        }
+        let (sides, _) = cell.axes();
+        let is_tried = cell.level >= SINGULAR_FROM
+            && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
+            && self.singular.len() < MOST_SINGULAR
+            && sides.iter().all(Option::is_some)
+            && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
+        if !is_tried {
+            return false;
+        }
+        let Some(at) = singular_point(field, cell.probe(), (cell.hi - cell.lo).length()) else {
+            return false;
+        };
+        self.singular.push(at);
+        let within = [self.lo, self.hi];
+        let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };
+        if !is_inside(cell, &around) {
+            return false;
+        }
+        self.isolated.push(around);
+        push_boundary(&mut self.halves, around);
+        true
     }
 
     /// Decides the cells in `tall`, or halves them.
@@ -448,6 +484,32 @@ impl Octree {
     }
 }
 
+/// Adds the faces and edges of a box to the cells of a level.
+fn push_boundary(level: &mut Vec<Cell>, [bottom, top]: [DVec3; 2]) {
+    // Each axis free, or pinned to either end.
+    for stratum in 1..27 {
+        let (mut lo, mut hi) = (bottom, top);
+        let mut rest = stratum;
+        for axis in 0..3 {
+            match rest % 3 {
+                1 => hi[axis] = lo[axis],
+                2 => lo[axis] = hi[axis],
+                _ => {}
+            }
+            rest /= 3;
+        }
+        // A corner belongs to three edges.
+        if lo != hi {
+            level.push(Cell { lo, hi, level: 0 });
+        }
+    }
+}
+
+/// Whether a cell lies in the interior of a box.
+fn is_inside(cell: &Cell, [lo, hi]: &[DVec3; 2]) -> bool {
+    cell.lo.cmpgt(*lo).all() && cell.hi.cmplt(*hi).all()
+}
+
 /// Whether no highest point lies in a cell on which f is defined and continuous.
 fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
     let (sides, _) = cell.axes();
@@ -473,7 +535,7 @@ fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
 fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &[[f64; 2]; 6], half: DVec3) {
     /// Entries of a row of second derivatives.
     const ROWS: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
-    for (axis, row) in ROWS.into_iter().enumerate() {
+    for (axis, row) in ROWS.into_iter().enumerate().filter(|_| known.smooth) {
         let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(second[row[k]]) * half[k]).sum();
         narrow(&mut known.gradient[axis], middle.gradient[axis], swing);
     }

@@ -185,6 +185,11 @@ impl Seeds {
         (witness, budget.saturating_sub(UNITS))
     }
 
+    /// Points where f and its gradient vanish together, as far as the search met them; some of them several times.
+    pub(super) fn singular(&self) -> &[DVec3] {
+        &self.octree.singular
+    }
+
     /// All witnesses.
     pub(super) fn points(&self) -> &[Seed] {
         &self.points

@@ -302,6 +302,7 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
         gradient: [x, y, z].map(slope),
         defined: flags & flags::DEFINED != 0,
         continuous: flags & flags::CONTINUOUS != 0,
+        smooth: flags & x.flags & y.flags & z.flags & flags::REGULAR == flags::REGULAR,
         may_vanish: !f.is_nonzero(),
     }
 }
