@@ -37,6 +37,8 @@ const SMALL: f64 = 1e-6;
 /// A point near `start`, not farther than `reach`, where f and its gradient vanish; found by Newton's method on the gradient.
 pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<DVec3> {
     let mut p = start;
+    // False for NaN.
+    let is_near = |offset: DVec3| offset.length_squared() <= reach * reach;
     for _ in 0..MOST_STEPS {
         let jet = field.jet(p);
         let hessian = matrix(&jet.hessian);
@@ -44,12 +46,8 @@ pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
         // The least squares solution of H δ = −∇f, which does not run along a curve of such points.
         let normal = hessian * hessian + DMat3::from_diagonal(DVec3::splat(SMALL * SMALL * size_sq));
         let step = normal.inverse() * (hessian * jet.gradient);
-        // Written so that NaN fails.
-        if !(step.length_squared() <= reach * reach) {
-            return None;
-        }
         p -= step;
-        if !((p - start).length_squared() <= reach * reach) {
+        if !is_near(step) || !is_near(p - start) {
             return None;
         }
         if step.length_squared() <= 1e-24 * reach * reach {

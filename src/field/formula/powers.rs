@@ -60,7 +60,7 @@ fn product(factors: &[(Factor, Expr)], with: impl Fn(Kind) -> Expr) -> Expr {
         match relation {
             Factor::Times => match reduced(factor).kind {
                 Kind::Product(inner) => {
-                    inner.into_iter().for_each(|(relation, factor)| add(relation, factor))
+                    inner.into_iter().for_each(|(relation, factor)| add(relation, factor));
                 }
                 kind => add(Factor::Times, Expr { kind, span: factor.span.clone() }),
             },
