@@ -10,6 +10,7 @@ mod arcs;
 mod front;
 mod gaps;
 mod laws;
+mod narrow;
 mod nodes;
 mod octree;
 mod pairs;

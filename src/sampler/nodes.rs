@@ -19,7 +19,10 @@ use glam::{DMat3, DVec3};
 /// Sizes of a box around a singular point that are tried: the largest is this share of the longest side of the whole box, each
 /// of the others half of the one before it.
 const LARGEST: f64 = 0.25;
-const SIZES: usize = 9;
+const SIZES: usize = 10;
+/// How many larger sizes are tried in pieces than one that does as a whole, and the pieces.
+const MOST_LARGER: usize = 2;
+const PIECES: usize = 27;
 /// How far the sides of such a box are from the point, in units of its size: not equally, because where they are, symmetric
 /// surfaces have more of their highest points in one place than can be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
@@ -27,15 +30,18 @@ const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
 /// Most Newton steps to a singular point: at a cusp each only halves the distance.
 const MOST_STEPS: u32 = 24;
-/// Most that f may be there, in what its second derivatives make of it over the distance to the point; far above what
-/// rounding leaves of a zero.
+/// Most that f may be at a singular point, in what its second derivatives make of it over the distance to the point: far above
+/// what rounding leaves of a zero.
 const LARGEST_VALUE: f64 = 1e-8;
+/// The same where it is as good as one for the search: the neck of a cone point that has just opened.
+const LARGEST_NECK: f64 = 1e-3;
 /// Where the second derivatives along a direction are smaller than this share of the largest, a singular point is looked for
 /// across that direction only.
 const SMALL: f64 = 1e-6;
 
-/// A point near `start`, not farther than `reach`, where f and its gradient vanish; found by Newton's method on the gradient.
-pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<DVec3> {
+/// A point near `start`, not farther than `reach`, where the gradient of f vanishes and f is nearly 0, and whether it is 0 there
+/// but for rounding; found by Newton's method on the gradient.
+pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<(DVec3, bool)> {
     let mut p = start;
     // False for NaN.
     let is_near = |offset: DVec3| offset.length_squared() <= reach * reach;
@@ -56,9 +62,9 @@ pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
     }
     let jet = field.jet(p);
     let size = size_sq(&matrix(&jet.hessian)).sqrt();
-    let vanishes = jet.value.abs() <= LARGEST_VALUE * size * reach * reach
-        && jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
-    vanishes.then_some(p)
+    let value = jet.value.abs() / (size * reach * reach);
+    let settled = jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
+    (settled && value <= LARGEST_NECK).then_some((p, value <= LARGEST_VALUE))
 }
 
 fn matrix(h: &Sym3<f64>) -> DMat3 {
@@ -78,25 +84,51 @@ pub(super) fn isolating_box(
     [lo, hi]: [DVec3; 2],
     taken: &[[DVec3; 2]],
 ) -> Option<[DVec3; 2]> {
-    let mut boxes = [[at; 2]; SIZES + 1];
-    let mut size = LARGEST * (hi - lo).max_element();
-    for around in &mut boxes[1..] {
-        *around = [at - size * BELOW, at + size * ABOVE];
-        size *= 0.5;
-    }
-    let mut known = [Enclosure::UNKNOWN; SIZES + 1];
-    let mut second = [[[0.0; 2]; 6]; SIZES + 1];
-    field.enclose(part, &boxes, &mut known);
-    field.enclose_second(part, &boxes, &mut second);
-    let here = second[0].map(|[lo, hi]| 0.5 * (lo + hi));
-    let [up, down] = extreme_directions(here)?;
-    (1..=SIZES).find_map(|k| {
-        let [bottom, top] = boxes[k];
+    let largest = LARGEST * (hi - lo).max_element();
+    let boxes: [[DVec3; 2]; SIZES] = core::array::from_fn(|k| {
+        let size = largest / f64::from(1_u32 << k);
+        [at - size * BELOW, at + size * ABOVE]
+    });
+    let fits = |&[bottom, top]: &[DVec3; 2]| {
         let is_free = |&[a, b]: &[DVec3; 2]| a.cmpgt(top).any() || b.cmplt(bottom).any();
-        let fits = bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free);
-        let regular = known[k].defined && known[k].continuous && known[k].smooth;
-        (fits && regular && along(&second[k], up)[0] > 0.0 && along(&second[k], down)[1] < 0.0)
-            .then_some(boxes[k])
+        bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
+    };
+    let as_one = has_no_extremum(field, part, &boxes).into_iter().position(|is_so| is_so)?;
+    // Larger ones may do in pieces: the bounds of each are tighter.
+    let in_pieces = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
+        fits(&boxes[k]) && has_no_extremum(field, part, &pieces(boxes[k])).into_iter().all(|is_so| is_so)
+    });
+    boxes[in_pieces.unwrap_or(as_one)..].iter().find(|around| fits(around)).copied()
+}
+
+/// A box cut into three along each axis.
+fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
+    let third = |k: usize| if k == 3 { hi } else { lo + (hi - lo) * (k as f64 / 3.0) };
+    core::array::from_fn(|i| {
+        let [x, y, z] = [i % 3, i / 3 % 3, i / 9];
+        [0, 1].map(|end| DVec3::new(third(x + end).x, third(y + end).y, third(z + end).z))
+    })
+}
+
+/// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
+/// second derivatives along two fixed directions have different signs.
+fn has_no_extremum<const N: usize>(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]; N]) -> [bool; N] {
+    let mut known = [Enclosure::UNKNOWN; N];
+    let mut second = [[[0.0; 2]; 6]; N];
+    field.enclose(part, boxes, &mut known);
+    field.enclose_second(part, boxes, &mut second);
+    core::array::from_fn(|k| {
+        let Enclosure { defined, continuous, smooth, gradient, .. } = known[k];
+        if !(defined && continuous) {
+            return false;
+        }
+        if gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0) {
+            return true;
+        }
+        let middle = second[k].map(|[lo, hi]| 0.5 * (lo + hi));
+        smooth
+            && extreme_directions(middle)
+                .is_some_and(|[up, down]| along(&second[k], up)[0] > 0.0 && along(&second[k], down)[1] < 0.0)
     })
 }
 

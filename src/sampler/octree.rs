@@ -32,7 +32,7 @@
 //! Around a point where f has no gradient no cell can be decided. A [box](super::nodes) around it through whose boundary every
 //! piece in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the rest.
 //!
-//! What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
+//! Of the others only the [part](super::narrow) is kept that can hold a highest point. What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
 //! where the gradient vanishes on the surface no interval decides.
 //!
 //! # What is proven
@@ -42,6 +42,7 @@
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
+use super::narrow::narrowed;
 use super::nodes::{isolating_box, singular_point};
 use crate::field::{Enclosure, Field};
 use crate::math::Bounds;
@@ -52,14 +53,17 @@ const DEPTH: u8 = 16;
 /// Halvings after which a cell is left undecided where f jumps or is not defined: such cells line up along curves and faces.
 const IRREGULAR_DEPTH: u8 = 6;
 /// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a third of a
-/// particle. Smooth surfaces of the gallery take a hundred to twelve thousand.
-const MOST_CELLS: usize = 4_096;
-const CELLS_PER_PARTICLE: f64 = 0.5;
+/// particle. Smooth surfaces of the gallery take a hundred to eight thousand, but for two that take sixty and seventy thousand,
+/// and those with up to sixteen cone points no more; the fifty of Barth's sextic take 36,000.
+const MOST_CELLS: usize = 16_384;
+const CELLS_PER_PARTICLE: f64 = 0.75;
 /// Halvings before singular points are looked for in a cell, and how many there are between two tries.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
 /// Most singular points that are kept.
 const MOST_SINGULAR: usize = 4_096;
+/// Singular points nearer to each other than this share of a cell are one.
+const SAME: f64 = 1e-6;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
 const CHUNK: usize = 32;
 /// Units of work that a cell is charged for: on long formulas it takes as long as several particles.
@@ -156,6 +160,8 @@ pub(super) struct Octree {
     lines: Vec<(usize, f64, f64, f64)>,
     /// Boxes left out of the search of the part.
     isolated: Vec<[DVec3; 2]>,
+    /// Points around which such a box was looked for.
+    tried: Vec<DVec3>,
     /// Points where f and its gradient vanish, some of them several times.
     pub(super) singular: Vec<DVec3>,
     /// At least one on every piece of the surface.
@@ -203,6 +209,7 @@ impl Octree {
         (self.next, self.cells) = (0, 0);
         self.level.clear();
         self.isolated.clear();
+        self.tried.clear();
         self.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
         push_boundary(&mut self.level, [self.lo, self.hi]);
     }
@@ -281,12 +288,17 @@ impl Octree {
         self.refine(field);
         self.tall.clear();
         for k in 0..self.open.len() {
-            let (cell, known) = (self.open[k], self.known[k]);
+            let (mut cell, known, middle) = (self.open[k], self.known[k], self.known[self.open.len() + k]);
             if is_discarded(&cell, &known) {
                 continue;
             }
+            let corners = [cell.lo, cell.hi];
+            let left = narrowed(corners, cell.axes(), &known, &middle, &self.second[k]);
+            let Some([lo, hi]) = left else { continue };
             let (_, up) = cell.axes();
+            // That of the whole cell: the part may be flat.
             let height = cell.hi[up] - cell.lo[up];
+            (cell.lo, cell.hi) = (lo, hi);
             match rise(&cell, &known) {
                 Some(t) if t <= MOST_RISE * height => {
                     self.tall.push((cell, RISE_ROOM * t + LEAST_RISE * height));
@@ -309,24 +321,27 @@ impl Octree {
         let (sides, _) = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
-            && self.singular.len() < MOST_SINGULAR
+            && self.tried.len() < MOST_SINGULAR
             && sides.iter().all(Option::is_some)
             && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
         if !is_tried {
             return false;
         }
-        let Some(at) = singular_point(field, cell.probe(), (cell.hi - cell.lo).length()) else {
-            return false;
-        };
-        self.singular.push(at);
-        let within = [self.lo, self.hi];
-        let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };
-        if !is_inside(cell, &around) {
+        let reach = (cell.hi - cell.lo).length();
+        let Some((at, vanishes)) = singular_point(field, cell.probe(), reach) else { return false };
+        let is_known = |p: &DVec3| (*p - at).length_squared() <= SAME * SAME * reach * reach;
+        if self.tried.iter().any(is_known) {
             return false;
         }
+        self.tried.push(at);
+        if vanishes {
+            self.singular.push(at);
+        }
+        let within = [self.lo, self.hi];
+        let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };
         self.isolated.push(around);
         push_boundary(&mut self.halves, around);
-        true
+        is_inside(cell, &around)
     }
 
     /// Decides the cells in `tall`, or halves them.

@@ -13,6 +13,8 @@ use glam::{DVec3, Vec3};
 const UNITS: u32 = 16;
 /// Particles that a witness is tried to be connected with.
 const MOST_TRIED: usize = 6;
+/// The same by a way of several pieces.
+const MOST_TRIED_BY_PIECES: usize = 3;
 /// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
 const MAX_STEPS: u32 = 12;
 /// Most steps that bring a witness in the margin outside the box to its piece within.
@@ -222,7 +224,10 @@ impl Seeds {
         }
         let mut place = Place::Bare;
         if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
-            || near.first().is_some_and(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack))
+            || near
+                .iter()
+                .take(MOST_TRIED_BY_PIECES)
+                .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack))
         {
             place = Place::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {

@@ -113,7 +113,7 @@ pub(super) fn are_connected(
 }
 
 /// Whether the way between two points of the surface, cut into pieces, is [connected](are_connected): for points too far from
-/// each other, as the surface bends, for one box.
+/// each other, as the surface bends, for one box. A piece that is not is cut in two, again and again.
 pub(super) fn is_connected_by_pieces(
     field: &mut dyn Field,
     part: usize,
@@ -121,18 +121,35 @@ pub(super) fn is_connected_by_pieces(
     to: DVec3,
     slack: f64,
 ) -> bool {
-    /// Numbers of pieces tried.
-    const PIECES: [usize; 2] = [4, TOGETHER];
-    PIECES.into_iter().any(|pieces| {
+    /// Most rounds of looking at pieces, and most pieces that wait.
+    const MOST_ROUNDS: u32 = 8;
+    const MOST_WAITING: usize = 3 * TOGETHER;
+    let mut waiting = [(from, to); MOST_WAITING];
+    let mut count = 1;
+    for _ in 0..MOST_ROUNDS {
+        let tried = count.min(TOGETHER);
+        count -= tried;
         let mut pairs = [(from, to); TOGETHER];
-        for k in 1..pieces {
-            let share = k as f64 / pieces as f64;
-            let Some(landing) = land(field, from.0 + (to - from.0) * share) else { return false };
-            pairs[k - 1].1 = landing.0;
-            pairs[k].0 = landing;
+        pairs[..tried].copy_from_slice(&waiting[count..count + tried]);
+        let connected = are_connected(field, part, &pairs[..tried], slack, None);
+        for k in (0..tried).filter(|&k| !connected[k]) {
+            let (start, end) = pairs[k];
+            let chord = end - start.0;
+            let Some(middle) = land(field, start.0 + 0.5 * chord) else { return false };
+            // Elsewhere than between the two.
+            let offset = middle.0 - (start.0 + 0.5 * chord);
+            if count + 2 > MOST_WAITING || offset.length_squared() > 0.25 * chord.length_squared() {
+                return false;
+            }
+            waiting[count] = (start, middle.0);
+            waiting[count + 1] = (middle, end);
+            count += 2;
         }
-        are_connected(field, part, &pairs[..pieces], slack, None)[..pieces].iter().all(|&connected| connected)
-    })
+        if count == 0 {
+            return true;
+        }
+    }
+    false
 }
 
 /// The surface near `p` by Newton's method along the gradient, and the unit normal there.
