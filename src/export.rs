@@ -6,7 +6,8 @@ use std::io::{self, Write};
 /// A file format for particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence.
+    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 next to a
+    /// singular point.
     Ply,
     /// Comma-separated values with a header line, the same columns as PLY.
     Csv,
@@ -56,10 +57,13 @@ fn ply(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result
     for name in ["x", "y", "z", "nx", "ny", "nz", "radius"] {
         writeln!(out, "property float {name}")?;
     }
-    write!(out, "property uint level\nproperty int parent\nproperty uchar valence\nend_header\n")?;
+    write!(
+        out,
+        "property uint level\nproperty int parent\nproperty uchar valence\nproperty uchar singular\nend_header\n"
+    )?;
     for i in 0..particles.len() {
         // One write per particle.
-        let mut record = [0_u8; 37];
+        let mut record = [0_u8; 38];
         let floats = particles.position[i]
             .to_array()
             .into_iter()
@@ -71,18 +75,21 @@ fn ply(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result
         record[28..32].copy_from_slice(&particles.level[i].to_le_bytes());
         record[32..36].copy_from_slice(&parent(particles, i).to_le_bytes());
         record[36] = valence.get(i).copied().unwrap_or(0);
+        record[37] = u8::from(particles.slots[i].is_singular());
         out.write_all(&record)?;
     }
     Ok(())
 }
 
 fn csv(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "x,y,z,nx,ny,nz,radius,level,parent,valence")?;
+    writeln!(out, "x,y,z,nx,ny,nz,radius,level,parent,valence,singular")?;
     for i in 0..particles.len() {
         let (p, n) = (particles.position[i], particles.normal[i]);
         let valence = valence.get(i).copied().unwrap_or(0);
         let (radius, level, parent) = (particles.radius[i], particles.level[i], parent(particles, i));
-        writeln!(out, "{},{},{},{},{},{},{radius},{level},{parent},{valence}", p.x, p.y, p.z, n.x, n.y, n.z)?;
+        let singular = u8::from(particles.slots[i].is_singular());
+        write!(out, "{},{},{},{},{},{},", p.x, p.y, p.z, n.x, n.y, n.z)?;
+        writeln!(out, "{radius},{level},{parent},{valence},{singular}")?;
     }
     Ok(())
 }
@@ -128,7 +135,7 @@ mod tests {
             radius: vec![0.25, 0.5],
             parent: vec![Particles::NO_PARENT, 0],
             level: vec![0, 1],
-            slots: vec![Slots::default(); 2],
+            slots: vec![Slots::default(), Slots(Slots::SINGULAR)],
         }
     }
 
@@ -161,23 +168,23 @@ mod tests {
         let data = &bytes[end..];
         assert_eq!(data.len(), 2 * size);
         assert_eq!(floats(&data[..28]), [0.1, -2.0, 1e-9, 0.0, 0.0, 1.0, 0.25]);
-        assert_eq!(data[28..37], [0, 0, 0, 0, 255, 255, 255, 255, 6]);
-        assert_eq!(data[size + 28..], [1, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(data[28..38], [0, 0, 0, 0, 255, 255, 255, 255, 6, 0]);
+        assert_eq!(data[size + 28..], [1, 0, 0, 0, 0, 0, 0, 0, 0, 1]);
     }
 
     #[test]
     fn csv_reads_back_to_the_same_bits() {
         let text = String::from_utf8(written(Format::Csv)).expect("text");
         let mut lines = text.lines();
-        assert_eq!(lines.next(), Some("x,y,z,nx,ny,nz,radius,level,parent,valence"));
-        assert_eq!(lines.next(), Some("0.1,-2,0.000000001,0,0,1,0.25,0,-1,6"));
+        assert_eq!(lines.next(), Some("x,y,z,nx,ny,nz,radius,level,parent,valence,singular"));
+        assert_eq!(lines.next(), Some("0.1,-2,0.000000001,0,0,1,0.25,0,-1,6,0"));
         let second: Vec<f32> = lines
             .next()
             .expect("a second row")
             .split(',')
             .map(|cell| cell.parse().expect("a number"))
             .collect();
-        assert_eq!(second, [1.0 / 3.0, 4.0, 5.0, 0.6, 0.8, 0.0, 0.5, 1.0, 0.0, 0.0]);
+        assert_eq!(second, [1.0 / 3.0, 4.0, 5.0, 0.6, 0.8, 0.0, 0.5, 1.0, 0.0, 0.0, 1.0]);
         assert_eq!(lines.next(), None);
     }
 

@@ -62,6 +62,16 @@ impl SlotFate {
 pub struct Slots(pub u32);
 
 impl Slots {
+    /// Set where the surface has a singular point within 2r: one without a gradient. The highest bit but one; the slots take
+    /// those below.
+    pub const SINGULAR: u32 = 1 << 30;
+
+    /// Whether the surface has a singular point within 2r of the particle.
+    #[must_use]
+    pub fn is_singular(self) -> bool {
+        self.0 & Self::SINGULAR != 0
+    }
+
     /// Fate of slot `k < 10`.
     #[must_use]
     pub fn get(self, k: usize) -> SlotFate {

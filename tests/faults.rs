@@ -2,6 +2,7 @@
 //! The sampler ends on all of them, places particles only on zeros, and says in words what it met.
 
 use glam::Vec3;
+use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Progress, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
@@ -97,6 +98,38 @@ fn a_singular_point_stops_its_neighbours_from_nothing() {
             "{formula}: {} particles are {share} of a cover",
             report.count
         );
+    }
+}
+
+#[test]
+fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
+    for (formula, half, points) in [
+        ("x^2 + y^2 = z^2", 1.0, 1),
+        ("4(x^2 + y^2 + z^2) + 16x y z = 1", 1.6, 4),
+        (gallery::find("kummer").expect("in the gallery").formula, 2.6, 16),
+        // Fifteen more are at infinity.
+        (gallery::find("barth-sextic").expect("in the gallery").formula, 1.9, 50),
+        // A cusp along a line, and planes that cross.
+        ("y^2 = x^3", 1.0, 1),
+        ("x^2 = y^2", 1.0, 1),
+        ("x^2 + y^2 + z^2 = 0.7", 1.0, 0),
+    ] {
+        let formula = formula.replace("mu", "(1.3)").replace("+ t", "");
+        let (session, _, report) = sampled(&formula, half, &coarse());
+        assert_eq!(report.singular_points, Some(points), "{formula}");
+        let columns = session.particles();
+        let marked = |i: usize| columns.slots[i].is_singular();
+        let count = (0..columns.len()).filter(|&i| marked(i)).count();
+        assert!(count < columns.len() / 2 && (count > 0) == (points > 0), "{formula}: {count} marked");
+        let distance = match formula.as_str() {
+            "x^2 + y^2 = z^2" => |p: Vec3| p.length(),
+            "y^2 = x^3" | "x^2 = y^2" => |p: Vec3| p.truncate().length(),
+            _ => continue,
+        };
+        for (i, &p) in columns.position.iter().enumerate() {
+            let share = distance(p) / (2.0 * columns.radius[i]);
+            assert!((share - 1.0).abs() < 0.01 || marked(i) == (share < 1.0), "{formula}: {p} at {share}");
+        }
     }
 }
 

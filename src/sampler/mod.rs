@@ -10,6 +10,7 @@ mod arcs;
 mod front;
 mod gaps;
 mod laws;
+mod message;
 mod narrow;
 mod nodes;
 mod octree;
@@ -40,7 +41,7 @@ use crate::particles::Particles;
 use crate::trace::Trace;
 use adaptive::Surface;
 use front::Front;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use pairs::Pairs;
 use project::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
@@ -264,6 +265,12 @@ impl Sampler {
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
         self.seeds.open_cells()
+    }
+
+    /// Places where f has no gradient on the surface, a curve of them counted as one; `None` where they were not looked for.
+    #[must_use]
+    pub fn singular_points(&self) -> Option<u64> {
+        self.seeds.open_cells().map(|_| nodes::places(self.seeds.singular()))
     }
 
     /// The settings of the run.
@@ -490,6 +497,7 @@ impl Sampler {
         let mut left = budget;
         let before = self.projector.evaluations;
         let relaxing = self.phase == Phase::Relaxation;
+        let is_running = !matches!(self.phase, Phase::Idle | Phase::Done);
         while left > 0 && (relaxing || self.phase != Phase::Relaxation) {
             match self.phase {
                 Phase::Idle | Phase::Done => break,
@@ -541,6 +549,10 @@ impl Sampler {
                 }
             }
         }
+        if is_running && self.phase == Phase::Done && !self.seeds.singular().is_empty() {
+            nodes::mark(field, self.seeds.singular(), &mut self.particles);
+            self.moved = true;
+        }
         debug_assert!(self.projector.evaluations >= before);
         self.progress()
     }
@@ -579,50 +591,6 @@ impl Sampler {
             radius: self.radius,
             moved: core::mem::take(&mut self.moved),
         }
-    }
-
-    fn message(&self) -> Option<String> {
-        Some(match self.stop_reason? {
-            StopReason::Complete | StopReason::Cancelled => return None,
-            StopReason::Cap => format!(
-                "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
-                self.settings.max_particles
-            ),
-            StopReason::NoSurface if self.survey.absence == Absence::Proven => {
-                "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
-            }
-            StopReason::NoSurface | StopReason::OneParticle
-                if !self.seeds.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
-            {
-                let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
-                let distance = |p: &&DVec3| (**p - middle).length_squared();
-                let nearest = self.seeds.singular().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-                let [x, y, z] = nearest.map_or([0.0; 3], |p| p.to_array()).map(rounded);
-                format!(
-                    "No surface that particles can cover: f comes to zero, for example near ({x}, {y}, {z}), but its gradient \
-                     vanishes there. This may be a point or a curve, as for x^2 + y^2 = 0, or a surface on which f is flat, as \
-                     a power is. For a surface around it enter a small number on the right, such as x^2 + y^2 = 0.01; if f is \
-                     a power, enter its base."
-                )
-            }
-            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
-                "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
-                    .into()
-            }
-            StopReason::NoSurface => {
-                "No surface found in this box: f changes its sign there, but only where it jumps, has a pole or \
-                 loses its gradient."
-                    .into()
-            }
-            StopReason::Constant => {
-                "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
-            }
-            StopReason::Undefined => "f has no value anywhere in the box.".into(),
-            StopReason::OneParticle => {
-                "The radius is too large for this surface: only one particle fits. Choose a smaller radius."
-                    .into()
-            }
-        })
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
@@ -784,11 +752,6 @@ impl Sampler {
 fn typical_radius(survey: &Survey, sizing: &Sizing, other: f64) -> f64 {
     let radius = (survey.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
     if radius > 0.0 && radius.is_finite() { radius } else { other }
-}
-
-/// A coordinate to three decimals, without a sign on 0.
-fn rounded(x: f64) -> f64 {
-    libm::round(x * 1_000.0) / 1_000.0 + 0.0
 }
 
 const SQRT_3: f64 = 1.732_050_807_568_877_2;

@@ -14,7 +14,9 @@
 
 use crate::field::{Enclosure, Field};
 use crate::math::Sym3;
-use glam::{DMat3, DVec3};
+use crate::particles::{Particles, Slots};
+use crate::spatial::tree::Tree;
+use glam::{DMat3, DVec3, Vec3};
 
 /// Sizes of a box around a singular point that are tried: the largest is this share of the longest side of the whole box, each
 /// of the others half of the one before it.
@@ -39,9 +41,20 @@ const LARGEST_NECK: f64 = 1e-3;
 /// across that direction only.
 const SMALL: f64 = 1e-6;
 
-/// A point near `start`, not farther than `reach`, where the gradient of f vanishes and f is nearly 0, and whether it is 0 there
-/// but for rounding; found by Newton's method on the gradient.
-pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<(DVec3, bool)> {
+/// A point where the gradient of f vanishes and f is 0, or nearly so.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Singular {
+    pub(super) position: DVec3,
+    /// How far around it was looked.
+    pub(super) reach: f64,
+    /// Whether f is 0 there but for rounding.
+    pub(super) is_zero: bool,
+    /// Whether it is alone: the second derivatives tell that the gradient vanishes nowhere else near it.
+    is_alone: bool,
+}
+
+/// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.
+pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
     let mut p = start;
     // False for NaN.
     let is_near = |offset: DVec3| offset.length_squared() <= reach * reach;
@@ -61,10 +74,60 @@ pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
         }
     }
     let jet = field.jet(p);
-    let size = size_sq(&matrix(&jet.hessian)).sqrt();
+    let hessian = matrix(&jet.hessian);
+    let size = size_sq(&hessian).sqrt();
     let value = jet.value.abs() / (size * reach * reach);
     let settled = jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
-    (settled && value <= LARGEST_NECK).then_some((p, value <= LARGEST_VALUE))
+    (settled && value <= LARGEST_NECK).then(|| Singular {
+        position: p,
+        reach,
+        is_zero: value <= LARGEST_VALUE,
+        is_alone: hessian.determinant().abs() > SMALL * size * size * size,
+    })
+}
+
+/// Number of places that the points are of: one for each that is alone, and one for all others that are linked by steps no longer
+/// than they looked around.
+pub(super) fn places(points: &[Singular]) -> u64 {
+    let alone = points.iter().filter(|point| point.is_alone).count();
+    let mut rest: Vec<Singular> = points.iter().filter(|point| !point.is_alone).copied().collect();
+    let mut groups = 0;
+    let mut linked = Vec::new();
+    while let Some(first) = rest.pop() {
+        groups += 1;
+        linked.push(first);
+        while let Some(point) = linked.pop() {
+            let is_linked = |other: &Singular| {
+                let most = point.reach.max(other.reach);
+                (other.position - point.position).length_squared() <= most * most
+            };
+            linked.extend(rest.iter().filter(|other| is_linked(other)).copied());
+            rest.retain(|other| !is_linked(other));
+        }
+    }
+    (alone + groups) as u64
+}
+
+/// Marks the particles within 2r of a singular point. Of a curve the `points` are a selection: near it each particle looks for
+/// itself.
+pub(super) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
+    let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
+    let tree = Tree::new(&places, 0..places.len() as u32);
+    let widest = points.iter().filter(|point| !point.is_alone).map(|point| point.reach).fold(0.0, f64::max);
+    let mut near = Vec::new();
+    for i in 0..particles.len() {
+        let (p, reach) = (particles.position[i], 2.0 * particles.radius[i]);
+        let around = Vec3::splat(reach + widest as f32);
+        near.clear();
+        tree.within_box(p - around, p + around, &mut near);
+        let is_within = near.iter().any(|&k| tree.position[k as usize].distance_squared(p) <= reach * reach);
+        let is_marked = is_within
+            || widest > 0.0
+                && !near.is_empty()
+                && singular_point(field, p.as_dvec3(), f64::from(reach)).is_some_and(|point| point.is_zero);
+        let slots = &mut particles.slots[i].0;
+        *slots = if is_marked { *slots | Slots::SINGULAR } else { *slots & !Slots::SINGULAR };
+    }
 }
 
 fn matrix(h: &Sym3<f64>) -> DMat3 {

@@ -43,7 +43,7 @@
 //! defined the surface may end, and nothing is concluded from slopes.
 
 use super::narrow::narrowed;
-use super::nodes::{isolating_box, singular_point};
+use super::nodes::{Singular, isolating_box, singular_point};
 use crate::field::{Enclosure, Field};
 use crate::math::Bounds;
 use glam::DVec3;
@@ -61,7 +61,7 @@ const CELLS_PER_PARTICLE: f64 = 0.75;
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
 /// Most singular points that are kept.
-const MOST_SINGULAR: usize = 4_096;
+const MOST_SINGULAR: usize = 1_024;
 /// Singular points nearer to each other than this share of a cell are one.
 const SAME: f64 = 1e-6;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
@@ -162,8 +162,8 @@ pub(super) struct Octree {
     isolated: Vec<[DVec3; 2]>,
     /// Points around which such a box was looked for.
     tried: Vec<DVec3>,
-    /// Points where f and its gradient vanish, some of them several times.
-    pub(super) singular: Vec<DVec3>,
+    /// Points where f and its gradient vanish; of curves of them a selection.
+    pub(super) singular: Vec<Singular>,
     /// At least one on every piece of the surface.
     pub(super) witnesses: Vec<Witness>,
     /// Smallest and largest corners of the cells left undecided.
@@ -328,14 +328,15 @@ impl Octree {
             return false;
         }
         let reach = (cell.hi - cell.lo).length();
-        let Some((at, vanishes)) = singular_point(field, cell.probe(), reach) else { return false };
+        let Some(point) = singular_point(field, cell.probe(), reach) else { return false };
+        let at = point.position;
         let is_known = |p: &DVec3| (*p - at).length_squared() <= SAME * SAME * reach * reach;
         if self.tried.iter().any(is_known) {
             return false;
         }
         self.tried.push(at);
-        if vanishes {
-            self.singular.push(at);
+        if point.is_zero && at.cmpge(self.lo).all() && at.cmple(self.hi).all() {
+            self.singular.push(point);
         }
         let within = [self.lo, self.hi];
         let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };

@@ -1,5 +1,6 @@
 //! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
 
+use super::nodes::Singular;
 use super::octree::{Octree, Witness};
 use super::project::{BATCH, Descent, Projector, Tolerance};
 use super::search::Search;
@@ -187,8 +188,8 @@ impl Seeds {
         (witness, budget.saturating_sub(UNITS))
     }
 
-    /// Points where f and its gradient vanish together, as far as the search met them; some of them several times.
-    pub(super) fn singular(&self) -> &[DVec3] {
+    /// Points where f and its gradient vanish together, as far as the search met them.
+    pub(super) fn singular(&self) -> &[Singular] {
         &self.octree.singular
     }
 

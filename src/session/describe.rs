@@ -567,6 +567,13 @@ const REPORT: &[ReportRow] = &[
         ("0", LOWER),
         "Cells of the box in which the proof could neither find a piece nor rule one out.",
     ),
+    row(
+        "singular_points",
+        "Singular points",
+        ("Surface", "", 0),
+        ("", None),
+        "Places where f has no gradient on the surface, such as the tip of a cone; a curve of them counts as one. Particles within 2r of one are marked in the exported files.",
+    ),
 ];
 
 const FATES: &[Fate] = &[

@@ -119,6 +119,8 @@ pub struct Report {
     pub search: Search,
     /// Cells of the box in which the proof could not decide; none where no proof was attempted.
     pub undecided_cells: Option<u64>,
+    /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
+    pub singular_points: Option<u64>,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,
     /// Repulsion radius.
@@ -504,6 +506,7 @@ impl Session {
             components: self.measured.figures.components,
             search: self.sampler.search(),
             undecided_cells: self.sampler.undecided_cells(),
+            singular_points: self.sampler.singular_points(),
             gaps_filled: counts.gaps_filled,
             radius: self.sampler.radius(),
             radius_min,

@@ -7,6 +7,8 @@
 
 /** Parent index of a seed, as the core writes it. */
 export const NO_PARENT = 0xffffffff;
+/** Set in `slots` where the surface has a singular point within 2r of the particle. */
+export const SINGULAR = 1 << 30;
 
 /**
  * A piece of the columns as the worker posts it: particles `first … first + n`, or with `slots` alone newer fates of

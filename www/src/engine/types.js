@@ -208,6 +208,7 @@
  * @property {number} radius_max
  * @property {number} components  connected pieces
  * @property {number | null} undecided_cells  cells of the box that may still hold surface; null where no proof was attempted
+ * @property {number | null} singular_points  places where f has no gradient on the surface; null where none were looked for
  * @property {'proven' | 'searched'} search  whether every piece is proven found, or a dense search found these
  * @property {number} evaluations
  * @property {number} evaluations_per_particle

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { Columns } from '../../src/engine/columns.js';
+import { Columns, SINGULAR } from '../../src/engine/columns.js';
 import { csv, ply } from '../../src/engine/share/exports.js';
 import { Glide } from '../../src/engine/view/glide.js';
 import { pick } from '../../src/engine/view/picking.js';
@@ -137,6 +137,7 @@ describe('exports', () => {
   test('PLY: header and body agree, to the byte', async () => {
     const columns = sphere(50);
     columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));
+    columns.slots[17] |= SINGULAR;
     const bytes = await ply(columns, { comment: 'x^2\nend_header\nevil' }).arrayBuffer();
     const text = Buffer.from(bytes).toString('latin1');
     const end = text.indexOf('end_header\n', text.indexOf('element vertex')) + 'end_header\n'.length;
@@ -164,6 +165,7 @@ describe('exports', () => {
         x: columns.positions[3 * i], y: columns.positions[3 * i + 1], z: columns.positions[3 * i + 2],
         nx: columns.normals[3 * i], ny: columns.normals[3 * i + 1], nz: columns.normals[3 * i + 2],
         radius: columns.radii[i], level: columns.levels[i], parent: i === 0 ? -1 : i >> 1, valence: 4 + (i % 4),
+        singular: i === 17 ? 1 : 0,
       });
     }
   });
@@ -175,13 +177,14 @@ describe('exports', () => {
 
   test('CSV: reading it gives the same single-precision values, on both sides of a block', async () => {
     const columns = sphere(9000);
+    columns.slots[8191] |= SINGULAR;
     const lines = (await csv(columns).text()).trimEnd().split('\n');
     expect(lines).toHaveLength(9001);
-    expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent');
+    expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent,singular');
     for (const i of [0, 8191, 8192, 8999]) {
       const row = lines[i + 1].split(',').map(Number);
       expect(row.slice(0, 3).map(Math.fround)).toEqual([...columns.positions.subarray(3 * i, 3 * i + 3)]);
-      expect(row.slice(7)).toEqual([columns.levels[i], i === 0 ? -1 : i >> 1]);
+      expect(row.slice(7)).toEqual([columns.levels[i], i === 0 ? -1 : i >> 1, i === 8191 ? 1 : 0]);
     }
   });
 });

@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { NO_PARENT } from '../columns.js';
+import { NO_PARENT, SINGULAR } from '../columns.js';
 
 /** @typedef {import('../columns.js').Columns} Columns */
 
@@ -12,8 +12,8 @@ import { NO_PARENT } from '../columns.js';
 const ROWS = 8192;
 
 /**
- * One vertex per particle: position, normal, radius, generation level, parent (−1 for a seed) and valence (only once the report
- * has counted it).
+ * One vertex per particle: position, normal, radius, generation level, parent (−1 for a seed), valence (only once the report
+ * has counted it) and 1 next to a singular point.
  * @param {Columns} columns
  * @param {{comment: string}} options  one line on what this is; line breaks are taken out
  * @returns {Blob}
@@ -23,9 +23,10 @@ export function ply(columns, { comment }) {
   const header = [
     'ply', 'format binary_little_endian 1.0', `comment ${comment.replace(/[\r\n]+/g, ' ')}`, `element vertex ${count}`,
     ...['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius'].map((name) => `property float ${name}`),
-    'property uint level', 'property int parent', ...(valence ? ['property uchar valence'] : []), 'end_header', '',
+    'property uint level', 'property int parent', ...(valence ? ['property uchar valence'] : []),
+    'property uchar singular', 'end_header', '',
   ].join('\n');
-  const stride = 7 * 4 + 4 + 4 + (valence ? 1 : 0);
+  const stride = 7 * 4 + 4 + 4 + (valence ? 2 : 1);
   const body = new DataView(new ArrayBuffer(count * stride));
   for (let i = 0, at = 0; i < count; i += 1, at += stride) {
     for (let k = 0; k < 3; k += 1) {
@@ -36,6 +37,7 @@ export function ply(columns, { comment }) {
     body.setUint32(at + 28, columns.levels[i], true);
     body.setInt32(at + 32, columns.parents[i] === NO_PARENT ? -1 : columns.parents[i], true);
     if (valence) body.setUint8(at + 36, valence[i]);
+    body.setUint8(at + stride - 1, columns.slots[i] & SINGULAR ? 1 : 0);
   }
   return new Blob([new TextEncoder().encode(header), body.buffer], { type: 'application/octet-stream' });
 }
@@ -47,9 +49,10 @@ export function ply(columns, { comment }) {
  * @returns {Blob}
  */
 export function csv(columns) {
-  const { count, positions, normals, radii, levels, parents, valence, nearest, residual } = columns;
+  const { count, positions, normals, radii, levels, parents, slots, valence, nearest, residual } = columns;
   const names = ['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius', 'level', 'parent'];
   if (valence && nearest && residual) names.push('valence', 'nearest', 'residual');
+  names.push('singular');
   const parts = [`${names.join(',')}\n`];
   /** @type {string[]} */
   let rows = [];
@@ -60,6 +63,7 @@ export function csv(columns) {
     for (let k = 0; k < 3; k += 1) row.push(single(normals[3 * i + k]));
     row.push(single(radii[i]), levels[i], parents[i] === NO_PARENT ? -1 : parents[i]);
     if (valence && nearest && residual) row.push(valence[i], single(nearest[i]), single(residual[i]));
+    row.push(slots[i] & SINGULAR ? 1 : 0);
     rows.push(row.join(','));
     if (rows.length === ROWS) {
       parts.push(`${rows.join('\n')}\n`);

@@ -1,0 +1,58 @@
+//! What a run that has ended tells its user.
+
+use super::survey::Absence;
+use super::{Sampler, StopReason};
+use glam::DVec3;
+
+impl Sampler {
+    /// A sentence for the user where the reason for the end needs one.
+    pub(super) fn message(&self) -> Option<String> {
+        Some(match self.stop_reason? {
+            StopReason::Complete | StopReason::Cancelled => return None,
+            StopReason::Cap => format!(
+                "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
+                self.settings.max_particles
+            ),
+            StopReason::NoSurface if self.survey.absence == Absence::Proven => {
+                "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
+            }
+            StopReason::NoSurface | StopReason::OneParticle
+                if !self.seeds.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
+            {
+                let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
+                let distance = |p: &DVec3| (*p - middle).length_squared();
+                let points = self.seeds.singular().iter().map(|point| point.position);
+                let nearest = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let [x, y, z] = nearest.unwrap_or_default().to_array().map(rounded);
+                format!(
+                    "No surface that particles can cover: f comes to zero, for example near ({x}, {y}, {z}), but its gradient \
+                     vanishes there. This may be a point or a curve, as for x^2 + y^2 = 0, or a surface on which f is flat, as \
+                     a power is. For a surface around it enter a small number on the right, such as x^2 + y^2 = 0.01; if f is \
+                     a power, enter its base."
+                )
+            }
+            StopReason::NoSurface if self.survey.absence == Absence::NotSeen => {
+                "No surface found in this box: f keeps one sign at every grid point. Enlarge or move the box."
+                    .into()
+            }
+            StopReason::NoSurface => {
+                "No surface found in this box: f changes its sign there, but only where it jumps, has a pole or \
+                 loses its gradient."
+                    .into()
+            }
+            StopReason::Constant => {
+                "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
+            }
+            StopReason::Undefined => "f has no value anywhere in the box.".into(),
+            StopReason::OneParticle => {
+                "The radius is too large for this surface: only one particle fits. Choose a smaller radius."
+                    .into()
+            }
+        })
+    }
+}
+
+/// A coordinate to three decimals, without a sign on 0.
+fn rounded(x: f64) -> f64 {
+    libm::round(x * 1_000.0) / 1_000.0 + 0.0
+}
