@@ -54,6 +54,7 @@
 //! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
 //! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
+//! * `pieces`: long work that can be left and gone on with, as measuring is.
 //! * [`trace`]: the log with which the adaptive front can be replayed.
 //! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
@@ -70,6 +71,7 @@ pub mod field;
 pub mod json;
 pub mod math;
 pub mod particles;
+mod pieces;
 #[cfg(feature = "points")]
 pub mod points;
 pub mod quality;

@@ -6,26 +6,29 @@ use std::path::{Path, PathBuf};
 
 /// Who may use whom. A module is named by its path under the crate; the longest entry that fits a file counts. What is
 /// not listed may not be used, and a module that is not listed has no place in the graph yet.
-const MAY_USE: [(&str, &[&str]); 17] = [
+const MAY_USE: [(&str, &[&str]); 18] = [
     ("math", &[]),
+    // Long work in pieces: of any kind.
+    ("pieces", &[]),
     ("json", &["math"]),
     ("field", &["math"]),
     ("differential", &["math", "field"]),
     // From a file to a field. The core that samples is built without it.
     ("points", &["math", "field", "spatial"]),
     // Particles and the search among them know no field: they hold whatever made them.
-    ("spatial", &["math"]),
+    ("spatial", &["math", "pieces"]),
     ("particles", &["math"]),
     ("trace", &["math", "particles"]),
     ("sampler", &["math", "field", "differential", "spatial", "particles", "trace"]),
     // Figures about a set of particles must not depend on what made them.
-    ("quality", &["math", "field", "differential", "spatial", "particles", "polygonize"]),
+    ("quality", &["math", "pieces", "field", "differential", "spatial", "particles", "polygonize"]),
     ("polygonize", &["math", "spatial", "particles"]),
     ("export", &["math", "spatial", "particles", "quality", "polygonize"]),
     (
         "session",
         &[
             "math",
+            "pieces",
             "field",
             "differential",
             "spatial",

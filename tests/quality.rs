@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 /// A field given by its jet alone.
 struct Analytic<F: Fn(DVec3) -> Jet>(F);
 
-impl<F: Fn(DVec3) -> Jet> Field for Analytic<F> {
+impl<F: Fn(DVec3) -> Jet + Send> Field for Analytic<F> {
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         for (p, value) in points.iter().zip(value) {
             *value = (self.0)(p.as_dvec3()).value as f32;
@@ -39,12 +39,12 @@ impl<F: Fn(DVec3) -> Jet> Field for Analytic<F> {
     }
 }
 
-fn plane() -> Analytic<impl Fn(DVec3) -> Jet> {
+fn plane() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
     Analytic(|p| Jet { value: p.z, gradient: DVec3::Z, ..Jet::default() })
 }
 
 /// |p|² − 1.
-fn sphere() -> Analytic<impl Fn(DVec3) -> Jet> {
+fn sphere() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
     Analytic(|p| Jet {
         value: p.length_squared() - 1.0,
         gradient: 2.0 * p,
@@ -53,7 +53,7 @@ fn sphere() -> Analytic<impl Fn(DVec3) -> Jet> {
 }
 
 /// (√(x² + y²) − 1)² + z² − 1/4, without its Hessian.
-fn torus() -> Analytic<impl Fn(DVec3) -> Jet> {
+fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
     Analytic(|p| {
         let ring = p.truncate().length();
         let out = ring - 1.0;

@@ -186,6 +186,30 @@ fn batches_agree_with_the_sum_in_double_precision() {
 }
 
 #[test]
+fn exact_gradients_are_those_of_the_jet() {
+    let fit = of_model("bunny");
+    let mut field = RbfField::new(fit.data.clone()).expect("a field");
+    let mut places = places(&fit);
+    // A centre, too, where single precision can name one.
+    let mut data = fit.data.clone();
+    data.centres[7] = [0.5, -0.25, 0.125];
+    places.push(Vec3::new(0.5, -0.25, 0.125));
+    let mut moved = RbfField::new(data.clone()).expect("a field");
+    for (field, data) in [(&mut field, &fit.data), (&mut moved, &data)] {
+        let mut value = vec![0.0; places.len()];
+        let mut gradient = vec![DVec3::ZERO; places.len()];
+        field.exact_gradients(&places, &mut value, &mut gradient);
+        for (i, &p) in places.iter().enumerate() {
+            let jet = data.jet(p.as_dvec3());
+            // Hundreds of terms cancel.
+            let size = 1e-11 * (1.0 + jet.value.abs() + jet.gradient.length());
+            assert!((value[i] - jet.value).abs() < size, "{} for {} at {p}", value[i], jet.value);
+            assert!(gradient[i].distance(jet.gradient) < size, "{} for {} at {p}", gradient[i], jet.gradient);
+        }
+    }
+}
+
+#[test]
 fn a_points_result_depends_on_nothing_but_the_point() {
     let fit = of_model("rabbit");
     let places = places(&fit);

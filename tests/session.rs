@@ -50,6 +50,54 @@ fn the_figures_of_the_front_do_not_depend_on_the_steps() {
 }
 
 #[test]
+fn a_report_cut_into_single_pieces_is_the_same_report() {
+    let text = |report| serde_json::to_string(&report).expect("a report can be written");
+    let mut session = Session::new();
+    run(&mut session, &sized(900), u32::MAX);
+    let whole = text(session.report());
+    let columns = session.measured().clone();
+    for budget in [1, 7, 500] {
+        let mut cut = Session::new();
+        run(&mut cut, &sized(900), u32::MAX);
+        let mut calls = 0;
+        let report = loop {
+            calls += 1;
+            if let Some(report) = cut.measure(budget) {
+                break report;
+            }
+        };
+        assert!(calls * budget > 100 && (calls > 2 || budget > 100), "{calls} calls of {budget}");
+        assert_eq!(text(report), whole);
+        // As text, because an undefined figure is not equal to itself.
+        assert_eq!(format!("{:?}", cut.measured()), format!("{columns:?}"));
+    }
+}
+
+#[test]
+fn a_report_that_something_comes_between_is_begun_anew() {
+    let mut session = Session::new();
+    run(&mut session, &sized(900), u32::MAX);
+    assert!(session.measure(300).is_none());
+    run(&mut session, &sized(500), u32::MAX);
+    let count = session.count();
+    assert!(session.measure(300).is_none());
+    session.relax(1);
+    while session.step(1_000).stop_reason.is_none() {}
+    let report = session.report();
+    assert_eq!((report.count, report.energy.len()), (count, 12));
+    assert_eq!(report.nearest_histogram.bins.iter().sum::<u32>() as usize, count);
+    assert!(
+        report.quality_before.is_some(),
+        "the front is measured though the first measurement was given up"
+    );
+    // On another field they are measured anew too.
+    let ball = request(r#"{"formula":"x^2+y^2+z^2-1"}"#);
+    assert!(session.measure(300).is_none());
+    session.set_field(&ball).unwrap();
+    assert!(session.report().quality.expect("particles").err_max > 1.0);
+}
+
+#[test]
 fn a_session_can_be_used_again_with_the_same_result() {
     let mut session = Session::new();
     run(&mut session, &sized(500), 1000);

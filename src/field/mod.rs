@@ -77,7 +77,7 @@ impl Enclosure {
 /// # Panics
 ///
 /// If an output is shorter than `points`.
-pub trait Field {
+pub trait Field: Send {
     /// f at each point.
     fn values(&mut self, points: &[Vec3], value: &mut [f32]);
 
@@ -95,6 +95,14 @@ pub trait Field {
 
     /// f, ∇f and ∇∇f at `p` in double precision: the oracle that the batched methods are held to.
     fn jet(&mut self, p: DVec3) -> Jet;
+
+    /// f and ∇f at each point in double precision: those of [`Field::jet`] up to rounding.
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        for (k, p) in points.iter().enumerate() {
+            let jet = self.jet(p.as_dvec3());
+            (value[k], gradient[k]) = (jet.value, jet.gradient);
+        }
+    }
 
     /// Bounds of f over the box from `lo` to `hi`, rounded outward: 0 outside the bounds proves that the box holds
     /// no point of the surface.

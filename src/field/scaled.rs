@@ -100,6 +100,15 @@ impl Field for Scaled<'_> {
         }
     }
 
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        self.field.exact_gradients(points, value, gradient);
+        if self.factor != 1.0 {
+            let factor = f64::from(self.factor);
+            value[..points.len()].iter_mut().for_each(|v| *v *= factor);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= factor);
+        }
+    }
+
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
         let factor = f64::from(self.factor);
         let range = self.field.interval(lo, hi);

@@ -49,7 +49,7 @@ impl Estimator {
         let local: Vec<DVec3> = points.iter().map(|p| (*p - middle) / unit).collect();
         let single: Vec<_> = local.iter().map(|p| p.as_vec3()).collect();
         Self {
-            tree: Tree::new(&single, 0..single.len() as u32),
+            tree: Tree::new(&single),
             per_point: NEIGHBOURS.min(points.len().saturating_sub(1)),
             local,
             neighbours: Vec::new(),

@@ -2,6 +2,7 @@
 
 use crate::field::Field;
 use crate::math::Bounds;
+use crate::pieces::piece;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
@@ -27,7 +28,7 @@ pub(super) struct Border {
 impl Border {
     /// Finds the border on the faces of `bounds` that one of the points of `tree` is near to; the points are spaced by
     /// about `d_hex`.
-    pub(super) fn new(field: &mut dyn Field, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
+    pub(super) async fn new(field: &mut dyn Field, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
         if bounds.is_valid() && margin > 0.0 && margin.is_finite() {
@@ -38,16 +39,17 @@ impl Border {
                 hi = hi.max(p.as_dvec3());
             }
             for axis in 0..3 {
-                if lo[axis] - bounds.min[axis] < margin {
-                    cross_face(field, bounds, axis, -1.0, d_hex, &mut curve);
-                }
-                if bounds.max[axis] - hi[axis] < margin {
-                    cross_face(field, bounds, axis, 1.0, d_hex, &mut curve);
+                let faces = [(lo[axis] - bounds.min[axis], -1.0), (bounds.max[axis] - hi[axis], 1.0)];
+                for (_, sign) in faces.into_iter().filter(|face| face.0 < margin) {
+                    let mut face = Face::new(bounds, axis, sign, d_hex);
+                    for row in 0..=face.rows {
+                        face.cross(field, row, &mut curve);
+                        piece().await;
+                    }
                 }
             }
         }
-        let count = curve.len() as u32;
-        Self { bounds: *bounds, margin, curve: Tree::new(&curve, 0..count) }
+        Self { bounds: *bounds, margin, curve: Tree::new(&curve) }
     }
 
     /// Whether `p`, a point of the surface, is within the margin of the border, or beyond it.
@@ -65,55 +67,76 @@ impl Border {
     }
 }
 
-/// Appends where the surface crosses the face of `bounds` with the outward direction `sign` along `axis`: on the edges of
-/// a grid, by sign changes.
-fn cross_face(
-    field: &mut dyn Field,
-    bounds: &Bounds,
+/// A face of a box with a grid on it, of which two rows are known at a time.
+struct Face {
     axis: usize,
+    /// Outward direction along the axis.
     sign: f64,
     d_hex: f64,
-    curve: &mut Vec<Vec3>,
-) {
-    let (along, across) = ((axis + 1) % 3, (axis + 2) % 3);
-    let size = bounds.hi() - bounds.lo();
-    let cells = |side: usize| (size[side] / (STEP * d_hex)).ceil().clamp(1.0, MOST_CELLS) as usize;
-    let (columns, rows) = (cells(along), cells(across));
-    let mut corner = bounds.lo();
-    corner[axis] = if sign < 0.0 { bounds.min[axis] } else { bounds.max[axis] };
-    let place = |column: usize, row: usize| {
-        let mut p = corner;
-        p[along] += size[along] * (column as f64 / columns as f64);
-        p[across] += size[across] * (row as f64 / rows as f64);
+    corner: DVec3,
+    size: DVec3,
+    columns: usize,
+    rows: usize,
+    points: Vec<Vec3>,
+    value: Vec<f32>,
+    above: Vec<f32>,
+}
+
+impl Face {
+    fn new(bounds: &Bounds, axis: usize, sign: f64, d_hex: f64) -> Self {
+        let size = bounds.hi() - bounds.lo();
+        let cells = |side: usize| (size[side] / (STEP * d_hex)).ceil().clamp(1.0, MOST_CELLS) as usize;
+        let (columns, rows) = (cells((axis + 1) % 3), cells((axis + 2) % 3));
+        let mut corner = bounds.lo();
+        corner[axis] = if sign < 0.0 { bounds.min[axis] } else { bounds.max[axis] };
+        let (points, value) = (vec![Vec3::ZERO; columns + 1], vec![0.0; columns + 1]);
+        Self {
+            axis,
+            sign,
+            d_hex,
+            corner,
+            size,
+            columns,
+            rows,
+            points,
+            value,
+            above: vec![f32::NAN; columns + 1],
+        }
+    }
+
+    fn place(&self, column: usize, row: usize) -> DVec3 {
+        let (along, across) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        let mut p = self.corner;
+        p[along] += self.size[along] * (column as f64 / self.columns as f64);
+        p[across] += self.size[across] * (row as f64 / self.rows as f64);
         p
-    };
-    let mut points = vec![Vec3::ZERO; columns + 1];
-    let mut value = vec![0.0_f32; columns + 1];
-    let mut above = vec![f32::NAN; columns + 1];
-    let mut crossing = |field: &mut dyn Field, a: DVec3, fa: f32, b: DVec3, fb: f32| {
-        // False where either is NaN.
-        if fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0 {
-            let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
-            if is_cut(field, p, (b - a).length(), axis, sign, d_hex) {
-                curve.push(p.as_vec3());
+    }
+
+    /// Appends where the surface crosses the edges of the grid along a row and from the row before, by sign changes.
+    fn cross(&mut self, field: &mut dyn Field, row: usize, curve: &mut Vec<Vec3>) {
+        for column in 0..=self.columns {
+            self.points[column] = self.place(column, row).as_vec3();
+        }
+        field.values(&self.points, &mut self.value);
+        let mut crossing = |a: DVec3, fa: f32, b: DVec3, fb: f32| {
+            // False where either is NaN.
+            if fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0 {
+                let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
+                if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
+                    curve.push(p.as_vec3());
+                }
             }
-        }
-    };
-    for row in 0..=rows {
-        for (column, point) in points.iter_mut().enumerate() {
-            *point = place(column, row).as_vec3();
-        }
-        field.values(&points, &mut value);
-        for column in 0..=columns {
-            let p = place(column, row);
+        };
+        for column in 0..=self.columns {
+            let p = self.place(column, row);
             if row > 0 {
-                crossing(field, place(column, row - 1), above[column], p, value[column]);
+                crossing(self.place(column, row - 1), self.above[column], p, self.value[column]);
             }
             if column > 0 {
-                crossing(field, place(column - 1, row), value[column - 1], p, value[column]);
+                crossing(self.place(column - 1, row), self.value[column - 1], p, self.value[column]);
             }
         }
-        core::mem::swap(&mut above, &mut value);
+        core::mem::swap(&mut self.above, &mut self.value);
     }
 }
 

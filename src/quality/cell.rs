@@ -54,7 +54,7 @@ impl Cell {
     #[inline]
     pub(super) fn clip(&mut self, q: DVec2, label: u32) {
         let n = self.count;
-        let offset = 0.5 * q.length_squared() * (1.0 + TOUCH);
+        let offset = 0.5 * q.length_squared();
         let mut worst = 0;
         for k in 0..n {
             self.side[k] = self.corner[k].dot(q) - offset;
@@ -63,7 +63,7 @@ impl Cell {
             }
         }
         // A cell with no room left keeps what it has; its other corners then stay uncertified or are right.
-        if self.side[worst] <= 0.0 || n + 1 >= CORNERS {
+        if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS {
             return;
         }
         // The corners cut off are one run of a convex polygon, from `first` to `last`.

@@ -3,6 +3,7 @@
 use super::Scene;
 use super::triangles::find;
 use crate::math::sort_few;
+use crate::pieces::{piece, ranges};
 
 /// Two points that a triangle joins, or natural neighbours one of which is in no triangle, are on one piece if they are nearer
 /// than this many times the spacing at either: across the gaps that a clip box cuts, triangles join what is not.
@@ -13,24 +14,29 @@ const NEAR: f32 = 2.0;
 const TELLING: usize = 3;
 const FARTHEST: f32 = 3.0;
 
+/// Points or triangles looked at in one piece of work.
+const PIECE: usize = 512;
+
 /// Label of a point that belongs to no piece: a non-finite position.
 pub(super) const NO_LABEL: u32 = u32::MAX;
 
 /// The piece of every point, in tree order: 0 for the one with most points, ties in the order of the points given; and the
 /// number of pieces.
-pub(super) fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
+pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
     let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
     let mut lengths = Vec::new();
-    let spacing: Vec<f32> = (0..n)
-        .map(|i| {
+    let mut spacing = Vec::with_capacity(n);
+    for range in ranges(n, PIECE) {
+        spacing.extend(range.map(|i| {
             lengths.clear();
             lengths.extend(scene.fans.of(i).map(|j| distance(i, j)));
             sort_few(&mut lengths, |a, b| a < b);
-            let nearest = lengths.first().copied().unwrap_or(0.0);
+            let nearest: f32 = lengths.first().copied().unwrap_or(0.0);
             lengths.get(TELLING - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
-        })
-        .collect();
+        }));
+        piece().await;
+    }
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut is_used = vec![false; n];
     let mut join = |i: usize, j: usize| {
@@ -39,12 +45,15 @@ pub(super) fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
             root[a.max(b) as usize] = a.min(b);
         }
     };
-    for triangle in mesh {
-        let [a, b, c] = triangle.map(|i| i as usize);
-        for (i, j) in [(a, b), (b, c), (c, a)] {
-            join(i, j);
-            is_used[i] = true;
+    for chunk in mesh.chunks(PIECE) {
+        for triangle in chunk {
+            let [a, b, c] = triangle.map(|i| i as usize);
+            for (i, j) in [(a, b), (b, c), (c, a)] {
+                join(i, j);
+                is_used[i] = true;
+            }
         }
+        piece().await;
     }
     for i in (0..n).filter(|&i| !is_used[i]) {
         scene.fans.of(i).for_each(|j| join(i, j));

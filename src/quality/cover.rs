@@ -1,39 +1,63 @@
 //! Places of the surface between the points: corners of the Voronoi cells, and random ones.
 
+use super::border::Border;
+use super::nearby::Nearby;
+use super::sizes::Wanted;
 use super::triangles::area_vector;
 use crate::field::Field;
+use crate::pieces::piece;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Places are projected this many at a time: the batch stays in the first-level cache.
-const BATCH: usize = 256;
-/// Newton steps of a projection. A place starts within d²κ/8 of the surface; two steps square that twice.
+/// Places looked at together, in one piece of work: the batch stays in the first-level cache.
+const BATCH: usize = 128;
+/// Most Newton steps of a projection.
 const STEPS: usize = 3;
+/// A step shorter than this share of the leash is the last one. It was the sagitta s = κℓ²/2 of the leash ℓ, as far as it had to
+/// be; then κs² = 2 s³/ℓ² is left, which changes the distance to a point ℓ away by 2 (s/ℓ)⁶ of it: 3·10⁻⁸.
+const LAST_STEP: f32 = 0.05;
 
-/// Moves each place to the surface along the gradient; one that would move farther than its `leash` stays.
-pub(super) fn project(field: &mut dyn Field, place: &mut [Vec3], leash: &[f32]) {
+/// Moves each place to the surface along the gradient, by [`STEPS`] steps or to one shorter than `last` of its `leash`; one
+/// that would move farther than that stays.
+pub(super) fn project(field: &mut dyn Field, place: &mut [Vec3], leash: &[f32], last: f32) {
+    for (place, leash) in place.chunks_mut(BATCH).zip(leash.chunks(BATCH)) {
+        project_batch(field, place, leash, last);
+    }
+}
+
+fn project_batch(field: &mut dyn Field, place: &mut [Vec3], leash: &[f32], last: f32) {
     let mut value = [0.0_f32; BATCH];
     let mut gradient = [Vec3::ZERO; BATCH];
     let mut moved = [Vec3::ZERO; BATCH];
-    for (place, leash) in place.chunks_mut(BATCH).zip(leash.chunks(BATCH)) {
-        let n = place.len();
-        moved[..n].copy_from_slice(place);
-        for _ in 0..STEPS {
-            field.gradients(&moved[..n], &mut value[..n], &mut gradient[..n]);
-            for k in 0..n {
-                let slope_sq = gradient[k].length_squared();
-                if slope_sq > 0.0 {
-                    moved[k] -= gradient[k] * (value[k] / slope_sq);
+    moved[..place.len()].copy_from_slice(place);
+    // Those under way, which stand first in `at`, and which they are.
+    let mut at = moved;
+    let mut under_way: [usize; BATCH] = core::array::from_fn(|k| k);
+    let mut count = place.len();
+    for _ in 0..STEPS {
+        field.gradients(&at[..count], &mut value, &mut gradient);
+        let mut left = 0;
+        for k in 0..count {
+            let i = under_way[k];
+            let slope_sq = gradient[k].length_squared();
+            if slope_sq > 0.0 {
+                let step = gradient[k] * (value[k] / slope_sq);
+                moved[i] -= step;
+                // False for NaN, from which no step leads away.
+                if step.length_squared() > last * last * leash[i] * leash[i] {
+                    (under_way[left], at[left]) = (i, moved[i]);
+                    left += 1;
                 }
             }
         }
-        for k in 0..n {
-            // False for NaN.
-            if (moved[k] - place[k]).length_squared() <= leash[k] * leash[k] {
-                place[k] = moved[k];
-            }
+        count = left;
+    }
+    for k in 0..place.len() {
+        // False for NaN.
+        if (moved[k] - place[k]).length_squared() <= leash[k] * leash[k] {
+            place[k] = moved[k];
         }
     }
 }
@@ -48,14 +72,34 @@ fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     offset.is_finite().then(|| (a + offset, offset.length()))
 }
 
-/// Where places are looked for, and which count.
+/// Where places are looked for, and what they are measured with.
 pub(super) struct Places<'a> {
     pub(super) tree: &'a Tree,
     pub(super) mesh: &'a [[u32; 3]],
+    pub(super) border: Option<&'a Border>,
+    pub(super) wanted: Option<&'a Wanted>,
+    /// Leash from which on the surroundings of a place hold too many points to be gathered.
+    pub(super) wide: f32,
+}
+
+impl Places<'_> {
     /// Whether a place counts.
-    pub(super) counts: &'a dyn Fn(Vec3) -> bool,
+    pub(super) fn counts(&self, p: Vec3) -> bool {
+        self.border.is_none_or(|border| !border.is_near(p))
+    }
+
     /// Radius of an ideal hole between some points; NaN where there is no ideal.
-    pub(super) ideal: &'a dyn Fn(&[u32]) -> f32,
+    pub(super) fn ideal(&self, points: &[u32]) -> f32 {
+        self.wanted.map_or(f32::NAN, |wanted| wanted.hole_between(points))
+    }
+
+    /// Squared distance from `p` to the nearest of some points.
+    fn nearest_of(&self, p: Vec3, points: &[u32]) -> f32 {
+        points
+            .iter()
+            .map(|&i| self.tree.position[i as usize].distance_squared(p))
+            .fold(f32::INFINITY, f32::min)
+    }
 }
 
 /// The largest holes.
@@ -73,109 +117,147 @@ impl Holes {
     }
 }
 
+/// Distances from places of the surface to their nearest point, as they come in.
+#[derive(Default)]
+pub(super) struct Gaps {
+    nearby: Nearby,
+    widest_sq: f32,
+    relative_sq: f32,
+    sum_sq: f64,
+    seen: usize,
+}
+
+impl Gaps {
+    /// The largest so far.
+    pub(super) fn holes(&self) -> Holes {
+        Holes { widest: f64::from(self.widest_sq).sqrt(), relative: f64::from(self.relative_sq).sqrt() }
+    }
+
+    /// Mean squared distance from the random places; NaN without one.
+    pub(super) fn mean_sq(&self) -> f64 {
+        self.sum_sq / self.seen as f64
+    }
+
+    fn exceeds(&self, gap_sq: f32, ideal_sq: f32) -> bool {
+        gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq
+    }
+
+    fn widen(&mut self, gap_sq: f32, ideal_sq: f32) {
+        self.widest_sq = self.widest_sq.max(gap_sq);
+        self.relative_sq = self.relative_sq.max(gap_sq / ideal_sq);
+    }
+
+    /// Takes in random places, given with their triangles and leashes.
+    fn add_random(&mut self, field: &mut dyn Field, places: &Places, batch: &mut Batch) {
+        project_batch(field, &mut batch.place, &batch.leash, LAST_STEP);
+        for ((&p, &leash), triangle) in batch.place.iter().zip(&batch.leash).zip(&batch.triangle) {
+            if places.counts(p) {
+                let bound_sq = places.nearest_of(p, triangle);
+                let gap_sq = if leash < places.wide {
+                    self.nearby.nearest_sq(places.tree, p, bound_sq, leash)
+                } else {
+                    places.tree.nearest_sq(p, u32::MAX, bound_sq)
+                };
+                let ideal = places.ideal(triangle);
+                self.widen(gap_sq, ideal * ideal);
+                self.sum_sq += f64::from(gap_sq);
+                self.seen += 1;
+            }
+        }
+        batch.clear();
+    }
+
+    /// Takes in the Voronoi corners of the surface, the projected circumcentres of the triangles.
+    pub(super) async fn add_corners(&mut self, field: &mut dyn Field, places: &Places<'_>) {
+        let mut batch = Batch::default();
+        for chunk in places.mesh.chunks(BATCH) {
+            for &triangle in chunk {
+                if let Some((centre, radius)) = circumcentre(&places.tree.position, triangle) {
+                    batch.push(centre.as_vec3(), radius as f32, triangle);
+                }
+            }
+            self.add_corner_batch(field, places, &mut batch);
+            piece().await;
+        }
+    }
+
+    fn add_corner_batch(&mut self, field: &mut dyn Field, places: &Places, batch: &mut Batch) {
+        project_batch(field, &mut batch.place, &batch.leash, LAST_STEP);
+        for (&p, triangle) in batch.place.iter().zip(&batch.triangle) {
+            // Corners that cannot beat the largest gaps so far are passed over.
+            let bound_sq = places.nearest_of(p, triangle);
+            let ideal = places.ideal(triangle);
+            let ideal_sq = ideal * ideal;
+            if self.exceeds(bound_sq, ideal_sq) {
+                let gap_sq = places.tree.nearest_sq(p, u32::MAX, bound_sq);
+                if self.exceeds(gap_sq, ideal_sq) && places.counts(p) {
+                    self.widen(gap_sq, ideal_sq);
+                }
+            }
+        }
+        batch.clear();
+    }
+
+    /// Takes in about `count` places, uniform over the area of the triangles (stratified: one in each equal share of it),
+    /// projected to the surface; those that count.
+    pub(super) async fn add_places(
+        &mut self,
+        field: &mut dyn Field,
+        places: &Places<'_>,
+        count: usize,
+        seed: u64,
+    ) {
+        let (position, triangles) = (&places.tree.position, places.mesh);
+        let total: f64 = triangles.iter().map(|&t| area_vector(position, t).length()).sum();
+        let share = total / count as f64;
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
+        let mut batch = Batch::default();
+        let mut passed = 0.0;
+        let mut next = share * unit();
+        let mut stratum = 1.0;
+        for &triangle in triangles {
+            passed += area_vector(position, triangle).length();
+            while next < passed && stratum <= count as f64 {
+                let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
+                // Uniform in the triangle: the square root undoes the crowding towards `a`.
+                let (s, t) = (unit().sqrt(), unit());
+                let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
+                // The nearest point is no farther than the nearest corner; a projection moves less than that.
+                let corner = (p - a).length().min((p - b).length()).min((p - c).length());
+                batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
+                if batch.place.len() == BATCH {
+                    self.add_random(field, places, &mut batch);
+                    piece().await;
+                }
+                next = share * (stratum + unit());
+                stratum += 1.0;
+            }
+        }
+        self.add_random(field, places, &mut batch);
+    }
+}
+
 /// Some places on their way to the surface.
 #[derive(Default)]
 struct Batch {
     place: Vec<Vec3>,
+    /// How far each may move.
     leash: Vec<f32>,
-    ideal: Vec<f32>,
+    /// Where each comes from.
+    triangle: Vec<[u32; 3]>,
 }
 
 impl Batch {
     fn clear(&mut self) {
         self.place.clear();
         self.leash.clear();
-        self.ideal.clear();
+        self.triangle.clear();
     }
 
-    fn push(&mut self, place: Vec3, leash: f32, ideal: f32) {
+    fn push(&mut self, place: Vec3, leash: f32, triangle: [u32; 3]) {
         self.place.push(place);
         self.leash.push(leash);
-        self.ideal.push(ideal);
+        self.triangle.push(triangle);
     }
-
-    fn project(&mut self, field: &mut dyn Field) -> impl Iterator<Item = (Vec3, f32, f32)> {
-        project(field, &mut self.place, &self.leash);
-        self.place.iter().zip(&self.leash).zip(&self.ideal).map(|((&p, &leash), &ideal)| (p, leash, ideal))
-    }
-}
-
-/// Holes around the Voronoi corners of the surface, the projected circumcentres of the triangles.
-pub(super) fn largest_gap(field: &mut dyn Field, places: &Places) -> Holes {
-    let mut batch = Batch::default();
-    let (mut widest_sq, mut relative_sq) = (0.0_f32, 0.0_f32);
-    for chunk in places.mesh.chunks(BATCH) {
-        batch.clear();
-        for &triangle in chunk {
-            if let Some((centre, radius)) = circumcentre(&places.tree.position, triangle) {
-                batch.push(centre.as_vec3(), radius as f32, (places.ideal)(&triangle));
-            }
-        }
-        for (p, radius, ideal) in batch.project(field) {
-            // A projected corner is about as far from its nearest point as the circumradius says; look no farther
-            // than twice that. Corners that cannot beat the largest gaps so far are passed over.
-            let (bound_sq, ideal_sq) = (4.0 * radius * radius, ideal * ideal);
-            if bound_sq > widest_sq || bound_sq > relative_sq * ideal_sq {
-                let gap_sq = places.tree.nearest_sq(p, u32::MAX, bound_sq);
-                if (gap_sq > widest_sq || gap_sq > relative_sq * ideal_sq) && (places.counts)(p) {
-                    widest_sq = widest_sq.max(gap_sq);
-                    relative_sq = relative_sq.max(gap_sq / ideal_sq);
-                }
-            }
-        }
-    }
-    Holes { widest: f64::from(widest_sq).sqrt(), relative: f64::from(relative_sq).sqrt() }
-}
-
-/// Distances from random places of the surface to their nearest point.
-pub(super) struct Gaps {
-    pub(super) holes: Holes,
-    /// Mean squared distance; NaN without a place.
-    pub(super) mean_sq: f64,
-}
-
-/// About `count` places, uniform over the area of the triangles (stratified: one in each equal share of it), projected
-/// to the surface; those that count.
-pub(super) fn random_gaps(field: &mut dyn Field, places: &Places, count: usize, seed: u64) -> Gaps {
-    let (tree, triangles) = (places.tree, places.mesh);
-    let total: f64 = triangles.iter().map(|&t| area_vector(&tree.position, t).length()).sum();
-    let share = total / count as f64;
-    let mut random = Pcg32::seed_from_u64(seed);
-    let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
-    let mut batch = Batch::default();
-    let (mut seen, mut sum, mut widest_sq, mut relative_sq) = (0_usize, 0.0_f64, 0.0_f32, 0.0_f32);
-    let mut measure = |batch: &mut Batch| {
-        for (p, leash, ideal) in batch.project(field).filter(|place| (places.counts)(place.0)) {
-            let gap_sq = tree.nearest_sq(p, u32::MAX, 4.0 * leash * leash);
-            widest_sq = widest_sq.max(gap_sq);
-            relative_sq = relative_sq.max(gap_sq / (ideal * ideal));
-            sum += f64::from(gap_sq);
-            seen += 1;
-        }
-        batch.clear();
-    };
-    let mut passed = 0.0;
-    let mut next = share * unit();
-    let mut stratum = 1.0;
-    for &triangle in triangles {
-        passed += area_vector(&tree.position, triangle).length();
-        while next < passed && stratum <= count as f64 {
-            let [a, b, c] = triangle.map(|i| tree.position[i as usize].as_dvec3());
-            // Uniform in the triangle: the square root undoes the crowding towards `a`.
-            let (s, t) = (unit().sqrt(), unit());
-            let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
-            // The nearest point is no farther than the nearest corner; a projection moves less than that.
-            let corner = (p - a).length().min((p - b).length()).min((p - c).length());
-            let leash = corner.max((b - c).length() * 0.5) as f32;
-            batch.push(p.as_vec3(), leash, (places.ideal)(&triangle));
-            if batch.place.len() == BATCH {
-                measure(&mut batch);
-            }
-            next = share * (stratum + unit());
-            stratum += 1.0;
-        }
-    }
-    measure(&mut batch);
-    let holes = Holes { widest: f64::from(widest_sq).sqrt(), relative: f64::from(relative_sq).sqrt() };
-    Gaps { holes, mean_sq: sum / seen as f64 }
 }

@@ -1,8 +1,11 @@
 //! The natural neighbours of every point, counter-clockwise round its normal.
 
 use super::cell::Cell;
-use crate::math::tangent_frame;
+use super::nearby::Nearby;
+use crate::math::{LANES, tangent_frame};
+use crate::pieces::piece;
 use crate::spatial::tree::{Tree, key, unkey};
+use core::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
 
 /// How many of the nearest points are tried in turn when a cell is not proven complete. The first try takes the
@@ -10,7 +13,7 @@ use glam::{DVec2, DVec3, Vec3};
 const TRIES: [usize; 3] = [24, 64, 200];
 /// Radius of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
 /// so the ball reaches about 2.5 d: 22 points of a perfect lattice.
-const BALL: f32 = 0.6;
+const BALL: f32 = 0.45;
 /// Largest mean of rise and sinking, over the distance, of two points of one sheet. It is of the second order in the distance
 /// over the radius of curvature: 1/12 where the curvature changes by its own size between the two.
 const MAX_LIFT: f32 = 0.2;
@@ -28,9 +31,16 @@ pub(super) struct Fans {
     pub(super) nearest: Vec<f32>,
 }
 
+/// What is used again from leaf to leaf.
+struct Scratch {
+    cell: Cell,
+    nearby: Nearby,
+    keys: Vec<u64>,
+}
+
 impl Fans {
     /// The fans of the points of `tree` with the unit `normal`s (in tree order).
-    pub(super) fn new(tree: &Tree, normal: &[Vec3]) -> Self {
+    pub(super) async fn new(tree: &Tree, normal: &[Vec3]) -> Self {
         let n = tree.len();
         let mut fans = Self {
             start: Vec::with_capacity(n + 1),
@@ -39,25 +49,31 @@ impl Fans {
             nearest: Vec::with_capacity(n),
         };
         fans.start.push(0);
-        let mut cell = Cell::new();
-        let mut candidates = Vec::new();
-        let mut local: Vec<Vec3> = Vec::new();
-        let mut distance_sq: Vec<f32> = Vec::new();
-        let mut keys = Vec::new();
-        for (range, lo, hi) in tree.leaves() {
-            let reach = BALL * (hi - lo).length();
-            let reach_sq = reach * reach;
-            candidates.clear();
-            tree.within_box(lo - reach, hi + reach, &mut candidates);
-            local.clear();
-            local.extend(candidates.iter().map(|&i| tree.position[i as usize]));
-            for i in range {
-                let p = tree.position[i];
-                distance_sq.clear();
-                distance_sq.extend(local.iter().map(|&other| (other - p).length_squared()));
-                let mut nearest_sq = reach_sq;
-                keys.clear();
-                for (&j, &d) in candidates.iter().zip(&distance_sq) {
+        let mut scratch = Scratch { cell: Cell::new(), nearby: Nearby::default(), keys: Vec::new() };
+        for leaf in tree.leaves() {
+            fans.add_leaf(tree, normal, leaf, &mut scratch);
+            piece().await;
+        }
+        fans
+    }
+
+    /// Adds the fans of the points of a leaf, given by its range and its box.
+    fn add_leaf(
+        &mut self,
+        tree: &Tree,
+        normal: &[Vec3],
+        (range, lo, hi): (Range<usize>, Vec3, Vec3),
+        Scratch { cell, nearby, keys }: &mut Scratch,
+    ) {
+        let reach = BALL * (hi - lo).length();
+        let reach_sq = reach * reach;
+        nearby.gather(tree, lo - reach, hi + reach);
+        for i in range {
+            let p = tree.position[i];
+            let mut nearest_sq = reach_sq;
+            keys.clear();
+            for (indices, distances_sq) in nearby.index.chunks(LANES).zip(nearby.distances_sq(p)) {
+                for (&j, &d) in indices.iter().zip(&distances_sq.0) {
                     if d < reach_sq && j as usize != i {
                         nearest_sq = nearest_sq.min(d);
                         if is_one_sheet(tree, normal, i, j as usize, d) {
@@ -65,36 +81,35 @@ impl Fans {
                         }
                     }
                 }
-                if nearest_sq >= reach_sq {
-                    nearest_sq = tree.nearest_sq(p, i as u32, f32::INFINITY);
-                }
-                fans.nearest.push(nearest_sq.sqrt());
-                keys.sort_unstable();
-                let mut known_sq = f64::from(reach_sq);
-                let mut closed = fill(&mut cell, tree, normal[i], i, &keys, known_sq);
-                for count in TRIES {
-                    // The ball may have held more points than this try would take.
-                    if closed || count <= keys.len() {
-                        continue;
-                    }
-                    let accept = |j: u32| {
-                        let distance_sq = (tree.position[j as usize] - p).length_squared();
-                        j as usize != i && is_one_sheet(tree, normal, i, j as usize, distance_sq)
-                    };
-                    tree.nearest_many(p, count, accept, &mut keys);
-                    known_sq = match keys.last() {
-                        Some(&last) if keys.len() == count => f64::from(unkey(last).0),
-                        _ => f64::INFINITY, // Every point of the set is known.
-                    };
-                    closed = fill(&mut cell, tree, normal[i], i, &keys, known_sq);
-                }
-                fans.neighbour
-                    .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
-                fans.closed.push(closed);
-                fans.start.push(fans.neighbour.len() as u32);
             }
+            if nearest_sq >= reach_sq {
+                nearest_sq = tree.nearest_sq(p, i as u32, f32::INFINITY);
+            }
+            self.nearest.push(nearest_sq.sqrt());
+            keys.sort_unstable();
+            let mut known_sq = f64::from(reach_sq);
+            let mut closed = fill(cell, tree, normal[i], i, keys, known_sq);
+            for count in TRIES {
+                // The ball may have held more points than this try would take.
+                if closed || count <= keys.len() {
+                    continue;
+                }
+                let accept = |j: u32| {
+                    let distance_sq = (tree.position[j as usize] - p).length_squared();
+                    j as usize != i && is_one_sheet(tree, normal, i, j as usize, distance_sq)
+                };
+                tree.nearest_many(p, count, accept, keys);
+                known_sq = match keys.last() {
+                    Some(&last) if keys.len() == count => f64::from(unkey(last).0),
+                    _ => f64::INFINITY, // Every point of the set is known.
+                };
+                closed = fill(cell, tree, normal[i], i, keys, known_sq);
+            }
+            self.neighbour
+                .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
+            self.closed.push(closed);
+            self.start.push(self.neighbour.len() as u32);
         }
-        fans
     }
 
     /// Number of points.

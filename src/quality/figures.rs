@@ -1,13 +1,14 @@
 //! The figures themselves.
 
 use super::border::Border;
-use super::cover::{Holes, Places};
+use super::cover::{Gaps, Holes, Places};
 use super::fans::unroll;
 use super::sizes::{Wanted, length, mutual};
-use super::triangles::{Triangles, area_vector, topology};
-use super::{Options, Scene, components, cover, probe};
+use super::triangles::{area_vector, topology};
+use super::{Options, Prepared, Scene, components, probe};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
+use crate::pieces::{piece, ranges};
 use crate::spatial::tree::{key, unkey};
 use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
@@ -17,6 +18,10 @@ const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
+/// Points, triangles or places looked at in one piece of work.
+const PIECE: usize = 256;
+/// Triangles are larger than this many d_hex only where holes are.
+const WIDE: f64 = 2.0;
 
 /// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -222,66 +227,99 @@ pub(super) fn area(scene: &Scene, mesh: &[[u32; 3]]) -> f64 {
 }
 
 /// The figures, and the connected piece of each point.
-pub(super) fn figures(
-    scene: &Scene,
-    triangles: &Triangles,
-    mesh: &[[u32; 3]],
+pub(super) async fn figures(
+    prepared: &Prepared,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
-    options: &Options,
-    duplicates: usize,
+    options: &Options<'_>,
 ) -> (Figures, Vec<u32>) {
-    let mut figures = Figures { dup: duplicates, ..Figures::default() };
+    let Prepared { scene, triangles, mesh, duplicates, not_finite, .. } = prepared;
+    let mut figures = Figures { dup: *duplicates, not_finite: *not_finite, ..Figures::default() };
     let n = scene.tree.len();
     if n == 0 {
         return (figures, Vec::new());
     }
     figures.area = options.area.unwrap_or_else(|| area(scene, mesh));
     figures.d_hex = d_hex(figures.area, n + duplicates);
+    piece().await;
     residuals(scene, &mut figures);
-    (figures.nrm_mean, figures.nrm_max) = scene.tilt;
+    (figures.nrm_mean, figures.nrm_max) = scene.tilt.figures();
 
-    let border = bounds.map(|bounds| Border::new(field, bounds, &scene.tree, figures.d_hex));
-    let is_inner = |p: Vec3| border.as_ref().is_none_or(|border| !border.is_near(p));
-    let inner: Vec<bool> = scene.tree.position.iter().map(|&p| is_inner(p)).collect();
-    figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
-
-    spacing(scene, &inner, &mut figures);
-    order(scene, &inner, &mut figures);
-    edges(scene, &inner, &mut figures);
-    let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area);
-    if let Some(wanted) = &wanted {
-        let (variation, least) = wanted.edges(scene, &inner);
-        figures.size_cv = variation;
-        figures.overlap_min = if duplicates > 0 { 0.0 } else { least };
+    let border = match bounds {
+        Some(bounds) => Some(Border::new(field, bounds, &scene.tree, figures.d_hex).await),
+        None => None,
+    };
+    let mut inner = vec![true; n];
+    if let Some(border) = &border {
+        for range in ranges(n, PIECE) {
+            range.for_each(|i| inner[i] = !border.is_near(scene.tree.position[i]));
+            piece().await;
+        }
     }
+    figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
+    piece().await;
+    spacing(scene, &inner, &mut figures);
+    piece().await;
+
+    let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
+    let mut order = Order::default();
+    let mut edge = Moments::default();
+    let mut sized = Sized::default();
+    for range in ranges(n, PIECE) {
+        for i in range.filter(|&i| inner[i]) {
+            order.add(scene, i);
+            mutual(scene, &inner, i).for_each(|j| edge.add(length(scene, i, j)));
+            wanted.iter().for_each(|wanted| sized.add(wanted, scene, &inner, i));
+        }
+        piece().await;
+    }
+    order.figures(&mut figures);
+    figures.edge_cv = edge.variation();
+    if wanted.is_some() {
+        figures.size_cv = sized.edge.variation();
+        figures.overlap_min = if *duplicates > 0 { 0.0 } else { sized.least };
+    }
+
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
-    let kept: Vec<[u32; 3]> = triangles.kept.iter().filter(away).copied().collect();
-    shapes(scene, &kept, &mut figures);
+    let mut shapes = Shapes::default();
+    let mut corners = 0;
+    for list in [&triangles.unanimous, &triangles.majority] {
+        for chunk in list.chunks(PIECE) {
+            chunk.iter().filter(away).for_each(|&triangle| shapes.add(scene, triangle));
+            corners += chunk.iter().flatten().filter(|&&i| inner[i as usize]).count();
+            piece().await;
+        }
+    }
+    shapes.figures(&mut figures);
     figures.euler = topology(n, mesh);
-    let (component, count) = components::label(scene, mesh);
+    piece().await;
+    let (component, count) = components::label(scene, mesh).await;
     figures.components = count;
-    let unanimous = triangles.kept[..triangles.unanimous].iter().filter(away).count();
-    figures.agree = share(unanimous, kept.len() + triangles.single.iter().filter(away).count());
+    let unanimous = triangles.unanimous.iter().filter(away).count();
+    figures.agree = share(unanimous, shapes.count + triangles.single.iter().filter(away).count());
     figures.tri_ok = if figures.boundary_excluded == 0 {
-        triangles.kept.len() as f64 / (2 * n as i64 - 2 * options.euler.unwrap_or(figures.euler)) as f64
+        triangles.kept().count() as f64 / (2 * n as i64 - 2 * options.euler.unwrap_or(figures.euler)) as f64
     } else {
-        filled(scene, triangles, &inner)
+        // Share of the sectors between consecutive neighbours of inner points that a kept triangle fills.
+        share(corners, (0..n).filter(|&i| inner[i]).map(|i| scene.fans.valence(i)).sum())
     };
     if !mesh.is_empty() {
+        let (border, wanted) = (border.as_ref(), wanted.as_ref());
+        let places = Places { tree: &scene.tree, mesh, border, wanted, wide: (WIDE * figures.d_hex) as f32 };
         let samples = n.max(options.samples).min(MOST_SAMPLES);
-        let ideal = |points: &[u32]| wanted.as_ref().map_or(f32::NAN, |wanted| wanted.hole_between(points));
-        let place = Places { tree: &scene.tree, mesh, counts: &is_inner, ideal: &ideal };
-        let gaps = cover::random_gaps(field, &place, samples, options.seed);
-        let holes = gaps.holes.or(cover::largest_gap(field, &place));
-        let missed =
-            bounds.map_or(Missed::default(), |bounds| missed(&place, field, bounds, options.seed, holes));
-        let holes = holes.or(missed.holes);
+        let mut gaps = Gaps::default();
+        gaps.add_places(field, &places, samples, options.seed).await;
+        gaps.add_corners(field, &places).await;
+        let missed = match bounds {
+            Some(bounds) => missed(&places, field, bounds, options.seed, gaps.holes()).await,
+            None => Missed::default(),
+        };
+        let holes = gaps.holes().or(missed.holes);
         figures.cover = holes.widest / (figures.d_hex / SQRT_3);
         if wanted.is_some() {
             figures.cover_local = holes.relative;
         }
-        let mean_sq = gaps.mean_sq * (1.0 - missed.share) + missed.sum_sq;
+        let mean_sq = gaps.mean_sq() * (1.0 - missed.share) + missed.sum_sq;
         figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + duplicates) as f64);
     }
     (figures, component)
@@ -297,29 +335,35 @@ struct Missed {
     holes: Holes,
 }
 
-fn missed(place: &Places, field: &mut dyn Field, bounds: &Bounds, seed: u64, spanned: Holes) -> Missed {
+async fn missed(
+    places: &Places<'_>,
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    seed: u64,
+    spanned: Holes,
+) -> Missed {
     let mut missed = Missed::default();
     let (mut all, mut far) = (0.0, 0.0);
     let mut nearest = Vec::new();
-    for p in probe::crossings(field, bounds, seed) {
-        if !(place.counts)(p) {
-            continue;
+    for chunk in probe::crossings(field, bounds, seed).await.chunks(PIECE) {
+        for &p in chunk.iter().filter(|&&p| places.counts(p)) {
+            all += 1.0;
+            places.tree.nearest_many(p, 1, |_| true, &mut nearest);
+            let Some(&near) = nearest.first() else { continue };
+            let (gap_sq, index) = unkey(near);
+            let gap = f64::from(gap_sq).sqrt();
+            let relative = gap / f64::from(places.ideal(&[index]));
+            // A hundredth more for the rounding of the places.
+            if gap > 1.01 * spanned.widest {
+                far += 1.0;
+                missed.sum_sq += gap * gap;
+                missed.holes.widest = missed.holes.widest.max(gap);
+            }
+            if relative > 1.01 * spanned.relative {
+                missed.holes.relative = missed.holes.relative.max(relative);
+            }
         }
-        all += 1.0;
-        place.tree.nearest_many(p, 1, |_| true, &mut nearest);
-        let Some(&near) = nearest.first() else { continue };
-        let (gap_sq, index) = unkey(near);
-        let gap = f64::from(gap_sq).sqrt();
-        let relative = gap / f64::from((place.ideal)(&[index]));
-        // A hundredth more for the rounding of the places.
-        if gap > 1.01 * spanned.widest {
-            far += 1.0;
-            missed.sum_sq += gap * gap;
-            missed.holes.widest = missed.holes.widest.max(gap);
-        }
-        if relative > 1.01 * spanned.relative {
-            missed.holes.relative = missed.holes.relative.max(relative);
-        }
+        piece().await;
     }
     if all > 0.0 {
         missed.share = far / all;
@@ -370,20 +414,28 @@ fn spacing(scene: &Scene, inner: &[bool], figures: &mut Figures) {
     figures.rho_1 = (below + (above - below) * place.fract()) / figures.d_hex;
 }
 
-fn order(scene: &Scene, inner: &[bool], figures: &mut Figures) {
-    let (mut six, mut five_seven, mut count) = (0, 0, 0);
-    let mut valence = Moments::default();
-    let mut psi6 = Moments::default();
-    for i in (0..inner.len()).filter(|&i| inner[i]) {
-        count += 1;
+/// Neighbours and their directions.
+#[derive(Default)]
+struct Order {
+    count: usize,
+    open: usize,
+    six: usize,
+    five_seven: usize,
+    valence: Moments,
+    psi6: Moments,
+}
+
+impl Order {
+    fn add(&mut self, scene: &Scene, i: usize) {
+        self.count += 1;
         if !scene.fans.closed[i] {
-            figures.open += 1;
-            continue;
+            self.open += 1;
+            return;
         }
         let neighbours = scene.fans.valence(i);
-        valence.add(neighbours as f64);
-        six += usize::from(neighbours == 6);
-        five_seven += usize::from(neighbours == 5 || neighbours == 7);
+        self.valence.add(neighbours as f64);
+        self.six += usize::from(neighbours == 6);
+        self.five_seven += usize::from(neighbours == 5 || neighbours == 7);
         let (u, v) = tangent_frame(scene.normal[i]);
         let (u, v) = (u.as_dvec3(), v.as_dvec3());
         let p = scene.tree.position[i].as_dvec3();
@@ -396,27 +448,54 @@ fn order(scene: &Scene, inner: &[bool], figures: &mut Figures) {
                 sum += square.rotate(square).rotate(square);
             }
         }
-        psi6.add(sum.length() / neighbours as f64);
+        self.psi6.add(sum.length() / neighbours as f64);
     }
-    figures.six = share(six, count);
-    figures.five_seven = share(five_seven, count);
-    figures.val_sd = valence.deviation();
-    figures.psi6 = psi6.mean();
+
+    fn figures(&self, figures: &mut Figures) {
+        figures.open = self.open;
+        figures.six = share(self.six, self.count);
+        figures.five_seven = share(self.five_seven, self.count);
+        figures.val_sd = self.valence.deviation();
+        figures.psi6 = self.psi6.mean();
+    }
 }
 
-fn edges(scene: &Scene, inner: &[bool], figures: &mut Figures) {
-    let mut edge = Moments::default();
-    for i in 0..inner.len() {
-        mutual(scene, inner, i).for_each(|j| edge.add(length(scene, i, j)));
-    }
-    figures.edge_cv = edge.variation();
+/// Edges in units of the wanted radii.
+struct Sized {
+    edge: Moments,
+    least: f64,
 }
 
-fn shapes(scene: &Scene, kept: &[[u32; 3]], figures: &mut Figures) {
-    let mut smallest = Moments::default();
-    let mut least = f64::NAN;
-    let (mut lt30, mut gt90, mut a_lt30, mut a_gt90) = (0, 0, 0, 0);
-    for &triangle in kept {
+impl Default for Sized {
+    fn default() -> Self {
+        Self { edge: Moments::default(), least: f64::NAN }
+    }
+}
+
+impl Sized {
+    fn add(&mut self, wanted: &Wanted, scene: &Scene, inner: &[bool], i: usize) {
+        mutual(scene, inner, i)
+            .map(|j| wanted.ratio(scene, i, j))
+            .filter(|ratio| ratio.is_finite())
+            .for_each(|ratio| self.edge.add(ratio));
+        self.least = scene.fans.of(i).map(|j| wanted.ratio(scene, i, j)).fold(self.least, f64::min);
+    }
+}
+
+/// Angles of triangles.
+#[derive(Default)]
+struct Shapes {
+    count: usize,
+    smallest: Moments,
+    least: Option<f64>,
+    lt30: usize,
+    gt90: usize,
+    a_lt30: usize,
+    a_gt90: usize,
+}
+
+impl Shapes {
+    fn add(&mut self, scene: &Scene, triangle: [u32; 3]) {
         let corner = triangle.map(|i| scene.tree.position[i as usize].as_dvec3());
         let twice_area = area_vector(&scene.tree.position, triangle).length();
         // At each corner the sides' product gives |a||b| cos; |a||b| sin is twice the area.
@@ -425,29 +504,25 @@ fn shapes(scene: &Scene, kept: &[[u32; 3]], figures: &mut Figures) {
         // With one sine, the smallest angle has the largest cosine; below 30° when tan < 1/√3.
         let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
         let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
-        a_lt30 += sharp;
-        a_gt90 += blunt;
-        lt30 += usize::from(sharp > 0);
-        gt90 += usize::from(blunt > 0);
+        self.count += 1;
+        self.a_lt30 += sharp;
+        self.a_gt90 += blunt;
+        self.lt30 += usize::from(sharp > 0);
+        self.gt90 += usize::from(blunt > 0);
         let largest_cosine = cosines[0].max(cosines[1]).max(cosines[2]);
         let angle = libm::atan2(twice_area, largest_cosine).to_degrees();
-        smallest.add(angle);
-        least = least.min(angle);
+        self.smallest.add(angle);
+        self.least = Some(self.least.unwrap_or(angle).min(angle));
     }
-    figures.ang_min = least;
-    figures.ang_min_mean = smallest.mean();
-    figures.lt30 = share(lt30, kept.len());
-    figures.gt90 = share(gt90, kept.len());
-    figures.a_lt30 = share(a_lt30, 3 * kept.len());
-    figures.a_gt90 = share(a_gt90, 3 * kept.len());
-}
 
-/// Share of the sectors between consecutive neighbours of inner points that a kept triangle fills.
-fn filled(scene: &Scene, triangles: &Triangles, inner: &[bool]) -> f64 {
-    let corners: usize =
-        triangles.kept.iter().map(|t| t.iter().filter(|&&i| inner[i as usize]).count()).sum();
-    let sectors: usize = (0..inner.len()).filter(|&i| inner[i]).map(|i| scene.fans.valence(i)).sum();
-    share(corners, sectors)
+    fn figures(&self, figures: &mut Figures) {
+        figures.ang_min = self.least.unwrap_or(f64::NAN);
+        figures.ang_min_mean = self.smallest.mean();
+        figures.lt30 = share(self.lt30, self.count);
+        figures.gt90 = share(self.gt90, self.count);
+        figures.a_lt30 = share(self.a_lt30, 3 * self.count);
+        figures.a_gt90 = share(self.a_gt90, 3 * self.count);
+    }
 }
 
 /// Angles between given normals and the gradient.

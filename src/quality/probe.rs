@@ -7,6 +7,7 @@
 use super::cover::project;
 use crate::field::Field;
 use crate::math::Bounds;
+use crate::pieces::piece;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -16,7 +17,7 @@ use rand_pcg::Pcg32;
 const LINES: usize = 4096;
 /// Places along a line at which the field is evaluated. Two crossings between two of them go unseen.
 const PLACES: usize = 64;
-/// Lines evaluated together.
+/// Lines evaluated together, in one piece of work.
 const BATCH: usize = 8;
 /// A crossing counts when the first-order distance to the surface after projection is below this share of the step along
 /// the line: poles and jumps have sign changes too.
@@ -25,50 +26,55 @@ const RESIDUAL: f32 = 1e-2;
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
 /// Random places of the surface in `bounds`, uniform over its area; at most a few per line.
-pub(super) fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Vec<Vec3> {
-    if !bounds.is_valid() {
-        return Vec::new();
+pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Vec<Vec3> {
+    let mut found = Vec::new();
+    if bounds.is_valid() {
+        let mut random = Pcg32::seed_from_u64(seed ^ STREAM);
+        for _ in 0..LINES / BATCH {
+            cross(field, bounds, &mut random, &mut found);
+            piece().await;
+        }
     }
-    let mut random = Pcg32::seed_from_u64(seed ^ STREAM);
+    found
+}
+
+/// Appends where the next [`BATCH`] lines cross the surface.
+fn cross(field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32, found: &mut Vec<Vec3>) {
     let mut places = [Vec3::ZERO; BATCH * PLACES];
     let mut values = [0.0_f32; BATCH * PLACES];
-    let mut found = Vec::with_capacity(2 * LINES);
-    let mut leash = Vec::with_capacity(2 * LINES);
-    let mut ends = Vec::with_capacity(2 * LINES);
-    for _ in 0..LINES / BATCH {
-        for line in places.chunks_exact_mut(PLACES) {
-            let (from, to) = chord(&mut random, bounds);
-            for (k, place) in line.iter_mut().enumerate() {
-                *place = from.lerp(to, (k as f64 + 0.5) / PLACES as f64).as_vec3();
-            }
+    for line in places.chunks_exact_mut(PLACES) {
+        let (from, to) = chord(random, bounds);
+        for (k, place) in line.iter_mut().enumerate() {
+            *place = from.lerp(to, (k as f64 + 0.5) / PLACES as f64).as_vec3();
         }
-        field.values(&places, &mut values);
-        for (line, value) in places.chunks_exact(PLACES).zip(values.chunks_exact(PLACES)) {
-            for k in 1..PLACES {
-                let (a, b) = (value[k - 1], value[k]);
-                // False where either is NaN.
-                if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
-                    let share = a / (a - b);
-                    found.push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
-                    leash.push((line[k] - line[k - 1]).length());
-                    ends.push(a.abs().max(b.abs()));
-                }
+    }
+    field.values(&places, &mut values);
+    let (mut crossing, mut leash, mut ends) = (Vec::new(), Vec::new(), Vec::new());
+    for (line, value) in places.chunks_exact(PLACES).zip(values.chunks_exact(PLACES)) {
+        for k in 1..PLACES {
+            let (a, b) = (value[k - 1], value[k]);
+            // False where either is NaN.
+            if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
+                let share = a / (a - b);
+                crossing.push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
+                leash.push((line[k] - line[k - 1]).length());
+                ends.push(a.abs().max(b.abs()));
             }
         }
     }
-    project(field, &mut found, &leash);
-    let mut value = vec![0.0; found.len()];
-    let mut gradient = vec![Vec3::ZERO; found.len()];
-    field.gradients(&found, &mut value, &mut gradient);
-    let mut k = 0;
-    found.retain(|&p| {
+    // Every step is taken: from a pole the steps lead away, as far again each time.
+    project(field, &mut crossing, &leash, 0.0);
+    let mut value = vec![0.0; crossing.len()];
+    let mut gradient = vec![Vec3::ZERO; crossing.len()];
+    field.gradients(&crossing, &mut value, &mut gradient);
+    for (k, &p) in crossing.iter().enumerate() {
         // Towards a pole f grows beyond its values at the ends, however small |f|/|∇f| becomes.
         let on_surface =
             value[k].abs() <= RESIDUAL * leash[k] * gradient[k].length() && value[k].abs() <= ends[k];
-        k += 1;
-        on_surface && bounds.contains(p)
-    });
-    found
+        if on_surface && bounds.contains(p) {
+            found.push(p);
+        }
+    }
 }
 
 /// The ends of a chord of the box, uniform in the measure of lines: a uniform place of its boundary, and a direction inward

@@ -4,6 +4,7 @@ use super::figures::Moments;
 use super::{Scene, Sizes};
 use crate::differential::exact_curvature;
 use crate::field::Field;
+use crate::pieces::{piece, ranges};
 use glam::Vec3;
 
 /// Area of a point's cell in a hexagonal lattice of radius 1: 2√3.
@@ -11,6 +12,9 @@ const CELL_AREA: f64 = 2.0 * SQRT_3;
 /// Radius of a hole in that lattice.
 const HOLE: f64 = 2.0 / SQRT_3;
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+/// Points whose radii are found in one piece of work.
+const PIECE: usize = 64;
 
 /// The wanted radii, in tree order; NaN where there is none.
 pub(super) struct Wanted {
@@ -31,11 +35,11 @@ pub(super) fn length(scene: &Scene, i: usize, j: usize) -> f64 {
 
 impl Wanted {
     /// The radii that `sizes` names, for points on a surface of this `area`.
-    pub(super) fn new(
+    pub(super) async fn new(
         scene: &Scene,
         inner: &[bool],
         field: &mut dyn Field,
-        sizes: Sizes,
+        sizes: Sizes<'_>,
         area: f64,
     ) -> Option<Self> {
         let n = scene.tree.len();
@@ -47,12 +51,15 @@ impl Wanted {
             }
             Sizes::Local => {
                 let mut own = vec![Moments::default(); n];
-                for i in 0..n {
-                    for j in mutual(scene, inner, i) {
-                        let half = 0.5 * length(scene, i, j);
-                        own[i].add(half);
-                        own[j].add(half);
+                for range in ranges(n, PIECE) {
+                    for i in range {
+                        for j in mutual(scene, inner, i) {
+                            let half = 0.5 * length(scene, i, j);
+                            own[i].add(half);
+                            own[j].add(half);
+                        }
                     }
+                    piece().await;
                 }
                 own.iter().map(Moments::mean).collect()
             }
@@ -61,27 +68,21 @@ impl Wanted {
                     let curvature = exact_curvature(&field.jet(p.as_dvec3())).max_abs();
                     1.0 / curvature.max(lowest).min(highest)
                 };
-                scene.tree.position.iter().map(&mut of).collect()
+                let mut radius = Vec::with_capacity(n);
+                for chunk in scene.tree.position.chunks(PIECE) {
+                    radius.extend(chunk.iter().map(&mut of));
+                    piece().await;
+                }
+                radius
             }
         };
         let cells: f64 = radius.iter().filter(|r| r.is_finite()).map(|r| CELL_AREA * r * r).sum();
         Some(Self { radius, hole: HOLE * (area / cells).sqrt() })
     }
 
-    /// Variation of edge length over the sum of the radii, and the least of that ratio among all natural neighbours.
-    pub(super) fn edges(&self, scene: &Scene, inner: &[bool]) -> (f64, f64) {
-        let ratio = |i: usize, j: usize| length(scene, i, j) / (self.radius[i] + self.radius[j]);
-        let mut size = Moments::default();
-        let mut least = f64::NAN;
-        for i in 0..inner.len() {
-            for relative in mutual(scene, inner, i).map(|j| ratio(i, j)).filter(|r| r.is_finite()) {
-                size.add(relative);
-            }
-            if inner[i] {
-                least = scene.fans.of(i).map(|j| ratio(i, j)).fold(least, f64::min);
-            }
-        }
-        (size.variation(), least)
+    /// Distance of two points over the sum of their radii.
+    pub(super) fn ratio(&self, scene: &Scene, i: usize, j: usize) -> f64 {
+        length(scene, i, j) / (self.radius[i] + self.radius[j])
     }
 
     /// Radius of an ideal hole between some points; NaN if one of them has no radius.

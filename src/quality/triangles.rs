@@ -1,43 +1,54 @@
 //! Triangles of natural neighbours that their corners agree on, and what they add up to.
 
 use super::fans::Fans;
+use crate::pieces::{piece, ranges};
 use crate::spatial::tree::{key, unkey};
 use glam::{DVec3, Vec3};
 
+/// Points whose triangles are found in one piece of work.
+const PIECE: usize = 64;
+
 /// The triangles of a set of points; indices in tree order, counter-clockwise round the normal of the first corner.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Triangles {
-    /// Kept triangles: at least two of their three corners see them. All three do for the first `unanimous` ones.
-    pub(super) kept: Vec<[u32; 3]>,
-    /// Number of triangles that all three corners see.
-    pub(super) unanimous: usize,
-    /// Triangles that one corner alone sees.
+    /// Those that all three corners see.
+    pub(super) unanimous: Vec<[u32; 3]>,
+    /// Those that two of the three corners see.
+    pub(super) majority: Vec<[u32; 3]>,
+    /// Those that one corner alone sees.
     pub(super) single: Vec<[u32; 3]>,
 }
 
 impl Triangles {
     /// Counts, for each triangle that a corner sees, how many of its corners do.
-    pub(super) fn new(fans: &Fans) -> Self {
-        let mut kept = Vec::with_capacity(2 * fans.len());
-        let (mut majority, mut single) = (Vec::new(), Vec::new());
-        for i in 0..fans.len() {
-            for (a, b) in fans.pairs(i) {
-                let (by_a, by_b) = (fans.sees(a, b, i), fans.sees(b, i, a));
-                // The smallest corner that sees a triangle accounts for it.
-                if by_a && a < i || by_b && b < i {
-                    continue;
-                }
-                let triangle = [i as u32, a as u32, b as u32];
-                match u8::from(by_a) + u8::from(by_b) {
-                    2 => kept.push(triangle),
-                    1 => majority.push(triangle),
-                    _ => single.push(triangle),
-                }
-            }
+    pub(super) async fn new(fans: &Fans) -> Self {
+        let mut triangles = Self { unanimous: Vec::with_capacity(2 * fans.len()), ..Self::default() };
+        for range in ranges(fans.len(), PIECE) {
+            range.for_each(|i| triangles.add(fans, i));
+            piece().await;
         }
-        let unanimous = kept.len();
-        kept.extend(majority);
-        Self { kept, unanimous, single }
+        triangles
+    }
+
+    /// Adds the triangles that point `i` accounts for: those of which it is the smallest corner that sees them.
+    fn add(&mut self, fans: &Fans, i: usize) {
+        for (a, b) in fans.pairs(i) {
+            let (by_a, by_b) = (fans.sees(a, b, i), fans.sees(b, i, a));
+            if by_a && a < i || by_b && b < i {
+                continue;
+            }
+            let list = match u8::from(by_a) + u8::from(by_b) {
+                2 => &mut self.unanimous,
+                1 => &mut self.majority,
+                _ => &mut self.single,
+            };
+            list.push([i as u32, a as u32, b as u32]);
+        }
+    }
+
+    /// The triangles that count: at least two of their three corners see them.
+    pub(super) fn kept(&self) -> impl Iterator<Item = &[u32; 3]> {
+        self.unanimous.iter().chain(&self.majority)
     }
 
     /// The kept triangles with the quarrels settled: no directed edge belongs to two of them.
@@ -47,20 +58,18 @@ impl Triangles {
     /// others follow, those with short edges first, if their directed edges are free; then those that one
     /// corner alone sees, if at least two of their sides are still open.
     pub(super) fn settled(&self, position: &[Vec3]) -> Vec<[u32; 3]> {
-        let majority = &self.kept[self.unanimous..];
-        let mut mesh = self.kept[..self.unanimous].to_vec();
-        if majority.is_empty() && self.single.is_empty() {
+        let mut mesh = self.unanimous.clone();
+        if self.majority.is_empty() && self.single.is_empty() {
             return mesh;
         }
         // Only edges between corners of disputed triangles can matter.
         let mut hot = vec![false; position.len()];
-        for &i in majority.iter().chain(&self.single).flatten() {
+        for &i in self.majority.iter().chain(&self.single).flatten() {
             hot[i as usize] = true;
         }
         let between = |&(a, b): &(u32, u32)| hot[a as usize] && hot[b as usize];
-        let undisputed =
-            || self.kept[..self.unanimous].iter().flat_map(|&triangle| sides(triangle)).filter(between);
-        let mut taken = Sides::new(undisputed().count() + 3 * (majority.len() + self.single.len()));
+        let undisputed = || self.unanimous.iter().flat_map(|&triangle| sides(triangle)).filter(between);
+        let mut taken = Sides::new(undisputed().count() + 3 * (self.majority.len() + self.single.len()));
         undisputed().for_each(|side| taken.insert(side));
         let longest = |triangle: [u32; 3]| {
             sides(triangle)
@@ -68,7 +77,7 @@ impl Triangles {
                 .into_iter()
                 .fold(0.0, f32::max)
         };
-        for (disputed, needed) in [(majority, 0), (&self.single[..], 2)] {
+        for (disputed, needed) in [(&self.majority, 0), (&self.single, 2)] {
             let mut order: Vec<u64> =
                 disputed.iter().enumerate().map(|(k, &triangle)| key(longest(triangle), k as u32)).collect();
             order.sort_unstable();

@@ -112,7 +112,7 @@ pub(super) fn places(points: &[Singular]) -> u64 {
 /// itself.
 pub(super) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
-    let tree = Tree::new(&places, 0..places.len() as u32);
+    let tree = Tree::new(&places);
     let widest = points.iter().filter(|point| !point.is_alone).map(|point| point.reach).fold(0.0, f64::max);
     let mut near = Vec::new();
     for i in 0..particles.len() {

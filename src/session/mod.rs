@@ -16,6 +16,7 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::Particles;
+use crate::pieces::{self, Work};
 use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
     FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, Start, StopReason,
@@ -23,13 +24,14 @@ use crate::sampler::{
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
 const MAX_KEPT: usize = 400_000;
 
-/// Memory of a run as a share of what it takes with the positions kept and the report: 120 of 120 + 24 + 240 bytes per
+/// Memory of a run as a share of what it takes with the positions kept and the report: 120 of 120 + 28 + 225 bytes per
 /// particle, the last as measured.
-const SHARE_OF_RUN: f64 = 0.31;
+const SHARE_OF_RUN: f64 = 0.32;
 
 /// What a caller asks of the field; everything is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -154,6 +156,7 @@ pub struct Report {
 }
 
 /// The field of a session.
+#[derive(Clone)]
 #[expect(clippy::large_enum_variant, reason = "there is one in a session")]
 enum Source {
     Formula(FormulaField),
@@ -187,27 +190,44 @@ pub struct Session {
     sampler: Sampler,
     warnings: Vec<String>,
     last: Option<Progress>,
-    /// The particles after the front.
-    front: Kept,
+    /// The particles after the front, until they are measured.
+    front: Option<Arc<Kept>>,
     front_figures: Option<Figures>,
+    /// The measurement under way.
+    measuring: Option<Work<Measured>>,
     measured: quality::Report,
 }
 
 /// What is kept of particles for a later look at them.
-#[derive(Default)]
 struct Kept {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
-    /// Empty where all are of one size.
     radius: Vec<f32>,
 }
 
 impl Kept {
-    fn clear(&mut self) {
-        self.position.clear();
-        self.normal.clear();
-        self.radius.clear();
+    fn of(particles: &Particles) -> Self {
+        let Particles { position, normal, radius, .. } = particles;
+        Self { position: position.clone(), normal: normal.clone(), radius: radius.clone() }
     }
+
+    /// [`quality::measure`], a piece at a time.
+    async fn measure(&self, field: &mut dyn Field, bounds: &Bounds, sampling: Sampling) -> quality::Report {
+        let sizes = match sampling {
+            Sampling::Uniform => Sizes::None,
+            Sampling::Adaptive => Sizes::Given(&self.radius),
+        };
+        let options = quality::Options { sizes, ..quality::Options::default() };
+        quality::in_pieces(&self.position, &self.normal, field, Some(bounds), &options).await
+    }
+}
+
+/// What a measurement gives.
+struct Measured {
+    front: Option<Figures>,
+    now: quality::Report,
+    /// Particles that face another sheet.
+    facing: usize,
 }
 
 impl Default for Session {
@@ -230,8 +250,9 @@ impl Session {
             sampler: Sampler::new(),
             warnings: Vec::new(),
             last: None,
-            front: Kept::default(),
+            front: None,
             front_figures: None,
+            measuring: None,
             measured: quality::Report::default(),
         }
     }
@@ -349,6 +370,7 @@ impl Session {
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
         self.source = Source::Formula(field);
+        self.measuring = None;
         self.declared = declared;
         self.bounds = bounds;
         Ok(self.answer())
@@ -380,6 +402,7 @@ impl Session {
             }
         };
         self.is_surveyed &= is_same && bounds == self.bounds;
+        self.measuring = None;
         self.surface = None;
         self.declared.clear();
         self.bounds = bounds;
@@ -407,8 +430,9 @@ impl Session {
         self.warnings
             .extend(self.source.formula().and_then(FormulaField::evaluated_as).map(warnings::about_powers));
         self.last = None;
-        self.front.clear();
+        self.front = None;
         self.front_figures = None;
+        self.measuring = None;
         self.measured = quality::Report::default();
         Ok(start)
     }
@@ -418,16 +442,12 @@ impl Session {
         let progress = self.sampler.step(self.source.field(), budget);
         let particles = self.sampler.particles();
         if progress.phase == Phase::Relaxation
-            && self.front.position.is_empty()
+            && self.front.is_none()
             && progress.relax_step == 0
             && progress.relax_steps > 0
             && progress.particles <= MAX_KEPT
         {
-            self.front.position.extend_from_slice(&particles.position);
-            self.front.normal.extend_from_slice(&particles.normal);
-            if self.sampler.settings().sampling == Sampling::Adaptive {
-                self.front.radius.extend_from_slice(&particles.radius);
-            }
+            self.front = Some(Arc::new(Kept::of(particles)));
         }
         self.remember(progress)
     }
@@ -447,6 +467,7 @@ impl Session {
     }
 
     fn remember(&mut self, progress: Progress) -> Progress {
+        self.measuring = None;
         self.last = Some(progress.clone());
         progress
     }
@@ -460,30 +481,45 @@ impl Session {
         curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
-    /// The first half of [`Session::report`], which does it where it has not been done: measures the particles as the front
-    /// left them.
-    pub fn measure_front(&mut self) {
-        if self.front_figures.is_none() && !self.front.position.is_empty() {
-            let Kept { position, normal, radius } = &self.front;
-            let options = options(self.sampler.settings(), radius);
-            let before =
-                quality::measure(position, normal, self.source.field(), Some(&self.bounds), &options);
-            self.front_figures = Some(before.figures);
+    /// Measures the particles, before and after the relaxation: up to `budget` pieces of the work, some 10 to 50 microseconds
+    /// each; the report, once it is complete. Call it when the run has ended. A measurement that anything comes between is
+    /// given up, and the next call begins anew.
+    pub fn measure(&mut self, budget: u32) -> Option<Report> {
+        let work = self.measuring.get_or_insert_with(|| {
+            let front = self.front.clone().filter(|_| self.front_figures.is_none());
+            let (now, mut source, bounds) =
+                (Kept::of(self.sampler.particles()), self.source.clone(), self.bounds);
+            let sampling = self.sampler.settings().sampling;
+            Box::pin(async move {
+                let front = match front {
+                    Some(front) => Some(front.measure(source.field(), &bounds, sampling).await.figures),
+                    None => None,
+                };
+                let report = now.measure(source.field(), &bounds, sampling).await;
+                Measured { front, now: report, facing: warnings::facing_another_sheet(&now).await }
+            })
+        });
+        let Measured { front, now, facing } = pieces::advance(work.as_mut(), budget)?;
+        self.measuring = None;
+        if front.is_some() {
+            (self.front, self.front_figures) = (None, front);
+        }
+        self.measured = now;
+        Some(self.reported(facing))
+    }
+
+    /// [`Session::measure`] to its end.
+    pub fn report(&mut self) -> Report {
+        loop {
+            if let Some(report) = self.measure(u32::MAX) {
+                return report;
+            }
         }
     }
 
-    /// Measures the particles: a few microseconds each. Call it when the run has ended.
-    pub fn report(&mut self) -> Report {
-        self.measure_front();
+    fn reported(&self, facing: usize) -> Report {
         let particles = self.sampler.particles();
         let count = particles.len();
-        self.measured = quality::measure(
-            &particles.position,
-            &particles.normal,
-            self.source.field(),
-            Some(&self.bounds),
-            &options(self.sampler.settings(), &particles.radius),
-        );
         let mut level_counts = Vec::new();
         for &level in &particles.level {
             if level_counts.len() <= level as usize {
@@ -498,7 +534,7 @@ impl Session {
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
         let mut warnings = self.warnings.clone();
-        warnings.extend(warnings::about(particles, &counts));
+        warnings.extend(warnings::about(count, facing, &counts));
         Report {
             count,
             levels: level_counts.len() as u32,
@@ -525,18 +561,9 @@ impl Session {
         }
     }
 
-    /// Per-particle columns of the last [`Session::report`].
+    /// Per-particle columns of the last report.
     #[must_use]
     pub fn measured(&self) -> &quality::Report {
         &self.measured
-    }
-}
-
-/// How the particles of a run are measured.
-fn options<'a>(settings: &Settings, radius: &'a [f32]) -> quality::Options<'a> {
-    let adaptive = settings.sampling == Sampling::Adaptive;
-    quality::Options {
-        sizes: if adaptive { Sizes::Given(radius) } else { Sizes::None },
-        ..quality::Options::default()
     }
 }

@@ -1,6 +1,7 @@
 //! What a user should know about a run, in words.
 
-use crate::particles::Particles;
+use super::Kept;
+use crate::pieces::{piece, ranges};
 use crate::sampler::{Counts, FateCounts};
 use crate::spatial::tree::Tree;
 
@@ -16,8 +17,8 @@ pub(super) fn about_powers(equation: String) -> String {
     )
 }
 
-/// Warnings about what became of the particles.
-pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
+/// Warnings about what became of `total` particles, of which `close` face another sheet.
+pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> {
     let mut warnings = Vec::new();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
     let FateCounts { not_converged, undefined, .. } = counts.fates;
@@ -34,8 +35,7 @@ pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
             troubles.join(" and ")
         ));
     }
-    let close = facing_another_sheet(particles);
-    if close >= CLOSE_COUNT && close as f64 >= CLOSE_SHARE * particles.len() as f64 {
+    if close >= CLOSE_COUNT && close as f64 >= CLOSE_SHARE * total as f64 {
         warnings.push(format!(
             "{close} particles face another sheet of the surface within 2r. The sheets are kept apart, but the particles are \
              too large to tell them apart by position alone: choose a smaller radius."
@@ -51,22 +51,30 @@ pub(super) fn about(particles: &Particles, counts: &Counts) -> Vec<String> {
     warnings
 }
 
-/// Particles nearer than 2r to one that faces the other way.
-fn facing_another_sheet(particles: &Particles) -> usize {
+/// Number of particles nearer than 2r to one that faces the other way.
+pub(super) async fn facing_another_sheet(particles: &Kept) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
-    let tree = Tree::new(&particles.position, 0..particles.len() as u32);
+    /// Particles looked at in one piece of work.
+    const PIECE: usize = 64;
+    let tree = Tree::in_pieces(particles.position.iter().copied().zip(0..).collect()).await;
     let mut near = Vec::new();
-    (0..particles.len())
-        .filter(|&i| {
+    let mut count = 0;
+    for range in ranges(tree.len(), PIECE) {
+        // In tree order: near particles look at the same memory.
+        for k in range {
+            let i = tree.origin[k] as usize;
             let (p, n) = (particles.position[i], particles.normal[i]);
             let reach = 2.0 * particles.radius[i];
             near.clear();
             tree.within_box(p - reach, p + reach, &mut near);
-            near.iter().any(|&k| {
+            let is_facing = near.iter().any(|&k| {
                 particles.normal[tree.origin[k as usize] as usize].dot(n) < FACING
                     && tree.position[k as usize].distance_squared(p) < reach * reach
-            })
-        })
-        .count()
+            });
+            count += usize::from(is_facing);
+        }
+        piece().await;
+    }
+    count
 }

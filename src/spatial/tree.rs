@@ -1,11 +1,15 @@
 //! A balanced box tree over points: nearest neighbours at a cost that depends neither on how the points are spread
 //! nor on stray ones far away.
 
+use crate::math::sort_few;
+use crate::pieces::{self, piece};
 use glam::Vec3;
 
 /// Most points in a leaf. Leaves hold half as many to this many, so that the candidates of a whole leaf are
 /// gathered once and scanned together; 16 was fastest of 8, 16 and 32 for the cells of 50,000 points.
 const LEAF: usize = 16;
+/// Points whose nodes are made in one piece of work.
+const PIECE: usize = 1024;
 /// Depth of the traversal stack: a balanced tree over 2³² points is less than 33 levels deep.
 const STACK: usize = 64;
 
@@ -32,7 +36,7 @@ impl Node {
 pub(crate) struct Tree {
     /// The points, in tree order.
     pub(crate) position: Vec<Vec3>,
-    /// Tree order → index given to [`Tree::new`].
+    /// Tree order → index given.
     pub(crate) origin: Vec<u32>,
     nodes: Vec<Node>,
 }
@@ -51,13 +55,38 @@ pub(crate) fn unkey(key: u64) -> (f32, u32) {
 }
 
 impl Tree {
-    /// The tree over those `points` that `keep` names; they must be finite. The result depends on the points and
-    /// their indices alone.
-    pub(crate) fn new(points: &[Vec3], keep: impl Iterator<Item = u32>) -> Self {
-        let mut items: Vec<(Vec3, u32)> = keep.map(|i| (points[i as usize], i)).collect();
+    /// The tree over `points`, which must be finite.
+    pub(crate) fn new(points: &[Vec3]) -> Self {
+        pieces::complete(Self::in_pieces(points.iter().copied().zip(0..).collect()))
+    }
+
+    /// The tree over points with their indices, made a piece at a time; the largest piece takes as long as a look at all of
+    /// them. The points must be finite; the result depends on them and their indices alone.
+    pub(crate) async fn in_pieces(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
-        if !items.is_empty() {
-            split(&mut items, 0, &mut nodes);
+        // Ranges still to become nodes, and the node whose second child each one is.
+        let mut open = vec![(0..items.len(), None)];
+        let mut seen = 0;
+        while let Some((range, parent)) = open.pop().filter(|(range, _)| !range.is_empty()) {
+            let node = nodes.len();
+            if let Some(parent) = parent {
+                let parent: &mut Node = &mut nodes[parent];
+                parent.second = node as u32;
+            }
+            nodes.push(node_of(&items[range.clone()], range.start));
+            seen += range.len();
+            if range.len() > LEAF {
+                let middle = range.start + split(&mut items[range.clone()], &nodes[node]);
+                open.push((middle..range.end, Some(node)));
+                open.push((range.start..middle, None));
+            } else {
+                // The median search leaves an order that is the library's business; this one, by index, is ours.
+                sort_few(&mut items[range], |a, b| a.1 < b.1);
+            }
+            if seen >= PIECE {
+                seen = 0;
+                piece().await;
+            }
         }
         let (position, origin) = items.into_iter().unzip();
         Self { position, origin, nodes }
@@ -177,28 +206,20 @@ impl Tree {
     }
 }
 
-/// Orders `items` by splitting at the median of the longest side, and appends their nodes in preorder.
-fn split(items: &mut [(Vec3, u32)], first: usize, nodes: &mut Vec<Node>) {
+/// The node over `items`, which begin at `first`, as a leaf.
+fn node_of(items: &[(Vec3, u32)], first: usize) -> Node {
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
-    for (p, _) in items.iter() {
+    for (p, _) in items {
         lo = lo.min(*p);
         hi = hi.max(*p);
     }
-    let node = nodes.len();
-    nodes.push(Node { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 });
-    if items.len() <= LEAF {
-        // The median search leaves an order that is the library's business; this one, by index, is ours.
-        for k in 1..items.len() {
-            let mut place = k;
-            while place > 0 && items[place - 1].1 > items[place].1 {
-                items.swap(place - 1, place);
-                place -= 1;
-            }
-        }
-        return;
-    }
-    let side = hi - lo;
+    Node { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
+}
+
+/// Parts the `items` of `node` at the median of its longest side; where the second part begins.
+fn split(items: &mut [(Vec3, u32)], node: &Node) -> usize {
+    let side = node.hi - node.lo;
     let axis = if side.x >= side.y && side.x >= side.z {
         0
     } else if side.y >= side.z {
@@ -208,8 +229,5 @@ fn split(items: &mut [(Vec3, u32)], first: usize, nodes: &mut Vec<Node>) {
     };
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
-    let (left, right) = items.split_at_mut(middle);
-    split(left, first, nodes);
-    nodes[node].second = nodes.len() as u32;
-    split(right, first + middle, nodes);
+    middle
 }

@@ -174,14 +174,9 @@ impl Core {
         self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
-    /// Does the first half of [`Core::report`]: measures the particles as the front left them.
-    pub fn measure_front(&mut self) {
-        self.session.measure_front();
-    }
-
-    /// Measures the particles: `Report`.
-    pub fn report(&mut self) -> String {
-        text(&self.session.report())
+    /// Measures the particles, up to `budget` pieces of the work: `Report` once it is complete, nothing before.
+    pub fn measure(&mut self, budget: u32) -> Option<String> {
+        self.session.measure(budget).map(|report| text(&report))
     }
 
     /// Natural neighbours per particle, as of the last report.

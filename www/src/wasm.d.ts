@@ -22,8 +22,7 @@ declare module '*/wasm/core/core.js' {
     parents(from: number): Uint32Array<ArrayBuffer>;
     slots(from: number): Uint32Array<ArrayBuffer>;
     radii(from: number): Float32Array<ArrayBuffer>;
-    measure_front(): void;
-    report(): string;
+    measure(budget: number): string | undefined;
     valence(): Uint8Array<ArrayBuffer>;
     nearest(): Float32Array<ArrayBuffer>;
     residual(): Float32Array<ArrayBuffer>;

@@ -2,12 +2,15 @@
 
 use crate::field::Jet;
 use crate::math::Sym3;
-use glam::DVec3;
+use core::array;
+use glam::{DVec3, Vec3};
 
 /// First bytes of the byte form, with its version.
 const MAGIC: [u8; 8] = *b"mp-hrbf1";
 /// Numbers per centre: position, α, β.
 const NUMBERS: usize = 7;
+/// Points that are evaluated together in double precision.
+const QUAD: usize = 4;
 /// More centres than this are refused: each point of each batch visits every centre.
 const MOST_CENTRES: usize = 100_000;
 
@@ -143,5 +146,43 @@ impl RbfData {
             zz += identity + entry(2, 2);
         }
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
+    }
+
+    /// f and ∇f at each of the `points`, as [`RbfData::jet`] has them up to rounding: four points at a time.
+    pub(super) fn gradients(&self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        for ((points, value), gradient) in
+            points.chunks(QUAD).zip(value.chunks_mut(QUAD)).zip(gradient.chunks_mut(QUAD))
+        {
+            let last = points.len() - 1;
+            let sums =
+                self.sums(&[0, 1, 2].map(|axis| array::from_fn(|k| f64::from(points[k.min(last)][axis]))));
+            for k in 0..points.len() {
+                value[k] = sums[0][k];
+                gradient[k] = DVec3::new(sums[1][k], sums[2][k], sums[3][k]);
+            }
+        }
+    }
+
+    /// f and the entries of ∇f at four points.
+    #[inline(never)]
+    fn sums(&self, [x, y, z]: &[[f64; QUAD]; 3]) -> [[f64; QUAD]; 4] {
+        let mut sums = [[0.0; QUAD]; 4];
+        let coefficients = self.alpha.iter().zip(&self.beta);
+        for ([cx, cy, cz], (alpha, [bx, by, bz])) in self.centres.iter().zip(coefficients) {
+            for k in 0..QUAD {
+                let (dx, dy, dz) = (x[k] - cx, y[k] - cy, z[k] - cz);
+                let square = dx * dx + dy * dy + dz * dz;
+                let r = square.sqrt();
+                let along = bx * dx + by * dy + bz * dz;
+                // At a centre, 0 · 10³⁰⁰ is 0, its part there.
+                let inverse = 1.0 / if r > 1e-300 { r } else { 1e-300 };
+                let common = alpha * r + along * inverse;
+                sums[0][k] += r * (alpha * square + 3.0 * along);
+                sums[1][k] += 3.0 * (common * dx + r * bx);
+                sums[2][k] += 3.0 * (common * dy + r * by);
+                sums[3][k] += 3.0 * (common * dz + r * bz);
+            }
+        }
+        sums
     }
 }

@@ -72,6 +72,10 @@ impl Field for RbfField {
         self.data.jet(p)
     }
 
+    fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
+        self.data.gradients(points, value, gradient);
+    }
+
     fn interval(&mut self, _lo: DVec3, _hi: DVec3) -> Interval {
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: true }
     }

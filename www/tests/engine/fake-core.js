@@ -8,8 +8,10 @@
  * @param {number} [options.particles]
  * @param {number} [options.relax_steps]
  * @param {number} [options.us_per_unit]
+ * @param {number} [options.pieces]  of a measurement
+ * @param {number} [options.us_per_piece]
  */
-export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 } = {}) {
+export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10, pieces = 1000, us_per_piece = 50 } = {}) {
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -19,6 +21,7 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
   /** @type {import('../../src/engine/types.js').StopReason} */
   let stop = null;
   let moves = 0;
+  let measured = 0;
   const progress = (moved = false) => JSON.stringify({
     phase: stop ? 'done' : count < target ? 'generation' : 'relaxation', particles: count, level: Math.floor(Math.sqrt(count)), relax_step: step,
     relax_steps: steps, evaluations: 2 * count, fraction: 0, stop_reason: stop, message: null, radius: 0.01, moved,
@@ -50,6 +53,7 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
       count = 0;
       step = 0;
       stop = null;
+      measured = 0;
       return JSON.stringify({ ok: true, radius: 0.01, predicted_count: target, warnings: [] });
     },
     /** @param {number} budget */
@@ -91,11 +95,13 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10 }
       return column(from, 2, Float32Array);
     },
     component: () => new Uint32Array(count),
-    measure_front() {},
-    report() {
-      calls.push('report');
-      clock.ms += 50;
-      return JSON.stringify({ count, digest: 'd' });
+    /** @param {number} budget */
+    measure(budget) {
+      calls.push('measure');
+      const n = Math.min(budget, pieces - measured);
+      measured += n;
+      clock.ms += (n * us_per_piece) / 1000;
+      return measured === pieces ? JSON.stringify({ count, digest: 'd' }) : undefined;
     },
     valence: () => new Uint8Array(count).fill(6),
     nearest: () => new Float32Array(count),

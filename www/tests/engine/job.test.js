@@ -111,6 +111,32 @@ describe('a job', () => {
     expect(memory.held).toBe(0);
   });
 
+  test('a measurement ends no call later than 50 ms after it began, on a fast machine and on a slow one', async () => {
+    for (const us_per_piece of [5, 50, 1000]) {
+      const core = fakeCore({ pieces: 5000, us_per_piece });
+      let longest = 0;
+      const measure = core.measure.bind(core);
+      core.measure = (budget) => {
+        const before = core.clock.ms;
+        const out = measure(budget);
+        longest = Math.max(longest, core.clock.ms - before);
+        return out;
+      };
+      const { posted } = await run(core, sampleJob());
+      expect(of(posted, 'report')).toHaveLength(1);
+      expect(longest, `at ${us_per_piece} µs per piece`).toBeLessThan(50);
+    }
+  });
+
+  test('a newer job ends a measurement, and a long one lets itself be heard', async () => {
+    const core = fakeCore({ pieces: 100_000, us_per_piece: 50 });
+    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null) });
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'complete', report_follows: true });
+    expect(of(posted, 'beat')).toHaveLength(3);
+    expect(of(posted, 'report')).toHaveLength(0);
+    expect(memory.held).toBe(7);
+  });
+
   test('a page that does not draw is not flooded', async () => {
     const core = fakeCore({ particles: 200_000, relax_steps: 5, us_per_unit: 5 });
     const { posted } = await run(core, sampleJob(), { room: (p) => of(p, 'columns').length < 2 });
@@ -181,10 +207,12 @@ describe('a job', () => {
     expect(core.calls.filter((call) => call === 'curvature 0').length).toBeLessThanOrEqual(3);
   });
 
-  test('brings the curvature also when it is asked for during the report', async () => {
-    const core = fakeCore({ particles: 500 });
-    const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'done') });
-    expect(posted.at(-1)).toMatchObject({ type: 'columns', first: 500, total: 500, curvature_from: 0, progress: null });
+  test('brings the curvature at once when it is asked for during the measurement', async () => {
+    const core = fakeCore({ particles: 500, pieces: 6000 });
+    const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'beat') });
+    const types = posted.map((m) => m.type);
+    expect(types.slice(types.indexOf('beat'))).toEqual(['beat', 'columns', 'report']);
+    expect(posted.at(-2)).toMatchObject({ type: 'columns', first: 500, total: 500, curvature_from: 0, progress: null });
   });
 
   test('relaxing goes on from the particles at hand, and only from those', async () => {

@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { PROGRESS_MS } from './protocol.js';
+import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').Job} Job
@@ -30,8 +30,7 @@ import { PROGRESS_MS } from './protocol.js';
  * @property {(from: number) => Uint32Array} parents
  * @property {(from: number) => Uint32Array} slots
  * @property {(from: number) => Float32Array} curvature  two per particle
- * @property {() => void} measure_front  the first half of a report
- * @property {() => string} report
+ * @property {(budget: number) => string | undefined} measure  the report, once it is complete
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
@@ -54,18 +53,11 @@ const STEP_MS = 6;
  * placement on a model, takes a third of a millisecond: a Stop is heard within 100 ms also then.
  */
 const FIRST_BUDGET = 256;
+/** The same of a measurement, whose pieces take up to a tenth of a millisecond. */
+const FIRST_PIECES = 32;
 const LARGEST_BUDGET = 1 << 22;
 /** One picture at 60 Hz. */
 const PICTURE_MS = 15;
-/** A report is begun only after this much quiet, so that a drag that follows at once does not wait for it. */
-const QUIET_MS = 40;
-/**
- * Generous bounds on the time of a report. On a fast machine it takes 0.4 s for any model, for the places at which it looks, and
- * 10 to 25 µs per particle; a slow one takes ten times that.
- */
-const REPORT_MS = 6000;
-const REPORT_MS_PER_PARTICLE = 0.3;
-
 /** Which of the four clocks a phase of the core runs on. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
   if (phase === 'relaxation') return 'relaxation';
@@ -240,22 +232,23 @@ export async function runJob(core, job, env, memory) {
   done(stopped ? 'stopped' : 'complete', '', reported);
   if (!reported) return;
 
-  const quiet_until = env.now_ms() + QUIET_MS;
-  while (env.now_ms() < quiet_until) {
+  let pieces = FIRST_PIECES;
+  /** @type {string | undefined} */
+  let report;
+  do {
     await env.pause();
     if (env.interrupt() === 'replace') return;
-  }
-  env.post({ type: 'beat', allow_ms: REPORT_MS + core.count() * REPORT_MS_PER_PARTICLE });
-  const front_ms = env.now_ms();
-  core.measure_front();
-  seconds.quality = (env.now_ms() - front_ms) / 1000;
-  // A drag that has begun meanwhile need not wait for the other half.
-  await env.pause();
-  if (env.interrupt() === 'replace') return;
-  const before = env.now_ms();
-  const report = JSON.parse(core.report());
-  seconds.quality += (env.now_ms() - before) / 1000;
+    tellCurvature();
+    const before = env.now_ms();
+    report = core.measure(pieces);
+    const took = env.now_ms() - before;
+    seconds.quality += took / 1000;
+    pieces = nextBudget(pieces, took);
+    if (env.now_ms() - beat_ms > BEAT_MS) {
+      env.post({ type: 'beat' });
+      beat_ms = env.now_ms();
+    }
+  } while (report === undefined);
   const figures = { valence: core.valence(), nearest: core.nearest(), residual: core.residual(), component: core.component() };
-  env.post({ type: 'report', id, report: { ...report, seconds: { ...seconds } }, ...figures }, Object.values(figures).map((c) => c.buffer));
-  tellCurvature();
+  env.post({ type: 'report', id, report: { ...JSON.parse(report), seconds: { ...seconds } }, ...figures }, Object.values(figures).map((c) => c.buffer));
 }

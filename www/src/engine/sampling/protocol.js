@@ -97,7 +97,7 @@
 /**
  * @typedef {{type: 'ready', description: Description}
  *   | {type: 'failed', fault: LoadFault, message: string}
- *   | {type: 'beat', allow_ms: number}
+ *   | {type: 'beat'}
  *   | {type: 'field', id: number, answer: FieldAnswer}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
@@ -107,7 +107,7 @@
 
 /** A job without columns to show tells how far it is at this pace. */
 export const PROGRESS_MS = 60;
-/** The worker speaks at least this often while it loads. */
+/** The worker speaks at least this often while it loads or measures. */
 export const BEAT_MS = 250;
 /** Silence after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;

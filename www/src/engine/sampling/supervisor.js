@@ -114,8 +114,7 @@ export class Supervisor {
   /** @param {FromWorker} message */
   receive(message) {
     this.heard = true;
-    const allow = message.type === 'beat' ? message.allow_ms : 0;
-    this.deadline = this.clock.now() + Math.max(SILENCE_MS, allow);
+    this.deadline = this.clock.now() + SILENCE_MS;
     if (message.type === 'ready') this.state = 'up';
     if (message.type === 'failed') {
       this.drop();

@@ -161,7 +161,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
 };
 
 async function boot() {
-  const beat = setInterval(() => post({ type: 'beat', allow_ms: 0 }), BEAT_MS);
+  const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
   try {
     const module = await loadModule(wasmUrl);
     try {

@@ -1,0 +1,63 @@
+//! Long work, done a bounded piece at a time.
+//!
+//! The work is an `async` function that awaits [`piece`] wherever it may be left: the compiler makes the state machine of it.
+//! Nothing in it waits for anything, so nobody is ever woken. Whoever holds it does as many pieces as there is time for, and
+//! gives it up by dropping it; what comes out does not depend on how the pieces were grouped.
+
+use core::future::poll_fn;
+use core::ops::Range;
+use core::pin::{Pin, pin};
+use core::task::{Context, Poll, Waker};
+
+/// Work under way.
+pub(crate) type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
+
+/// Ends a piece of the work: some 10 to 50 microseconds' worth natively.
+pub(crate) fn piece() -> impl Future<Output = ()> + Send {
+    let mut is_over = false;
+    poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })
+}
+
+/// 0 .. `count` in ranges of `size`, for a piece each.
+pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
+    (0..count).step_by(size).map(move |first| first..(first + size).min(count))
+}
+
+/// Does up to `budget` pieces; the result, once the last one is done. The work must not be asked again then.
+pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
+    let mut context = Context::from_waker(Waker::noop());
+    (0..budget).find_map(|_| match work.as_mut().poll(&mut context) {
+        Poll::Ready(result) => Some(result),
+        Poll::Pending => None,
+    })
+}
+
+/// Does all pieces.
+pub(crate) fn complete<T>(work: impl Future<Output = T>) -> T {
+    let mut work = pin!(work);
+    loop {
+        if let Some(result) = advance(work.as_mut(), u32::MAX) {
+            return result;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_budget_is_a_number_of_pieces() {
+        let mut work: Work<u32> = Box::pin(async {
+            for _ in 0..5 {
+                piece().await;
+            }
+            7
+        });
+        assert_eq!(advance(work.as_mut(), 0), None);
+        assert_eq!(advance(work.as_mut(), 2), None);
+        assert_eq!(advance(work.as_mut(), 3), None);
+        assert_eq!(advance(work.as_mut(), 1), Some(7));
+        assert_eq!(complete(async { piece().await }), ());
+    }
+}

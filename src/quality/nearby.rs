@@ -1,0 +1,62 @@
+//! The points in a box, side by side in lanes: who asks about one place asks about places near it next.
+
+use crate::math::{LANES, Lanes};
+use crate::spatial::tree::Tree;
+use glam::Vec3;
+
+/// Half-width of the box that is gathered round a place, in units of the width of the place's own surroundings: wide enough
+/// that those of the next places lie in it too.
+const REACH: f32 = 4.0;
+
+/// The points of a tree in a box.
+#[derive(Debug, Default)]
+pub(super) struct Nearby {
+    lo: Vec3,
+    hi: Vec3,
+    /// Their indices in tree order.
+    pub(super) index: Vec<u32>,
+    /// Their coordinates; the last lanes are filled up with points infinitely far away.
+    place: Vec<[Lanes; 3]>,
+}
+
+impl Nearby {
+    /// Replaces the content by the points in the closed box from `lo` to `hi`.
+    pub(super) fn gather(&mut self, tree: &Tree, lo: Vec3, hi: Vec3) {
+        (self.lo, self.hi) = (lo, hi);
+        self.index.clear();
+        tree.within_box(lo, hi, &mut self.index);
+        self.place.clear();
+        self.place.extend(self.index.chunks(LANES).map(|chunk| {
+            let mut lanes = [Lanes::splat(f32::INFINITY); 3];
+            for (k, &i) in chunk.iter().enumerate() {
+                let p = tree.position[i as usize];
+                (lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]) = (p.x, p.y, p.z);
+            }
+            lanes
+        }));
+    }
+
+    /// Squared distances from `p`, in the order of the points, with some infinite ones after them.
+    #[inline]
+    pub(super) fn distances_sq(&self, p: Vec3) -> impl Iterator<Item = Lanes> {
+        self.place.iter().map(move |[x, y, z]| {
+            let (dx, dy, dz) = (*x - Lanes::splat(p.x), *y - Lanes::splat(p.y), *z - Lanes::splat(p.z));
+            dx * dx + dy * dy + dz * dz
+        })
+    }
+
+    /// Squared distance from `p` to the nearest point of `tree`, if it is below `bound_sq`, else `bound_sq`; `width` is the
+    /// distance in which there are a few points. The points that are held are used where they suffice, else replaced.
+    pub(super) fn nearest_sq(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> f32 {
+        let bound = bound_sq.sqrt();
+        if !((p - bound).cmpge(self.lo).all() && (p + bound).cmple(self.hi).all()) {
+            let reach = bound + REACH * width;
+            self.gather(tree, p - reach, p + reach);
+        }
+        let mut best = Lanes::splat(bound_sq);
+        for distance_sq in self.distances_sq(p) {
+            best = best.zip(distance_sq, |best, other| if other < best { other } else { best });
+        }
+        best.0.into_iter().fold(bound_sq, f32::min)
+    }
+}
