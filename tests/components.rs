@@ -3,6 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::FormulaField;
+use marching_particles::field::gallery;
 use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
@@ -169,6 +170,29 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
     let (_, report) = sampled(formula, 6.3, 0.006);
     is_proven(&report, formula);
     assert!((1..=report.components_seeded as usize).contains(&report.components), "{report:?}");
+}
+
+#[test]
+fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
+    /// More cells than the search may look at: thin parts of high degree, and long formulas with blends.
+    const LONG: [&str; 2] = ["decocube", "drilled-block"];
+    for surface in gallery::SURFACES {
+        for share in [0.02, 0.006] {
+            let mut session = Session::new();
+            let request = FieldRequest { surface: Some(surface.id.into()), ..FieldRequest::default() };
+            session.set_field(&request).unwrap();
+            session.start(&Settings { radius_share: share, ..Settings::default() }).unwrap();
+            while session.step(50_000).stop_reason.is_none() {}
+            let report = session.report();
+            let context = format!("{} at {share}", surface.id);
+            if surface.id == "cayley" || surface.smooth && !LONG.contains(&surface.id) {
+                is_proven(&report, &context);
+            }
+            let mut counts = vec![0; report.components];
+            session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
+            assert!(!surface.smooth || counts.iter().all(|&count| count > 2), "{context}: {counts:?}");
+        }
+    }
 }
 
 #[test]

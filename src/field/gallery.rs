@@ -272,7 +272,8 @@ pub static SURFACES: &[Surface] = &[
         name: "Gyroid",
         formula: "sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x) = t",
         parameters: &[parameter("t", "Level", 0.0, [-1.3, 1.3, 0.01])],
-        bounds: Bounds::cube(6.3),
+        // Two periods, 4π, less what makes slivers at the corners.
+        bounds: Bounds::cube(6.2),
         degree: None,
         genus: None,
         smooth: true,
@@ -299,7 +300,8 @@ pub static SURFACES: &[Surface] = &[
         name: "Schwarz D",
         formula: "sin(x) sin(y) sin(z) + sin(x) cos(y) cos(z) + cos(x) sin(y) cos(z) + cos(x) cos(y) sin(z) = t",
         parameters: &[parameter("t", "Level", 0.0, [-0.9, 0.9, 0.01])],
-        bounds: Bounds::cube(3.2),
+        // A period, 2π, less what makes slivers at the corners.
+        bounds: Bounds::cube(3.1),
         degree: None,
         genus: None,
         smooth: true,

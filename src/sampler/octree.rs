@@ -56,12 +56,15 @@ const IRREGULAR_DEPTH: u8 = 6;
 /// particle. Smooth surfaces of the gallery take a hundred to eight thousand, but for two that take sixty and seventy thousand,
 /// and those with up to sixteen cone points no more; the fifty of Barth's sextic take 36,000.
 const MOST_CELLS: usize = 16_384;
-const CELLS_PER_PARTICLE: f64 = 0.75;
+const CELLS_PER_PARTICLE: f64 = 0.5;
+/// Most cells looked at where each level has hardly more of them than the one before it, so that the end is near.
+const MOST_AT_THE_END: usize = 65_536;
+const HARDLY_MORE: f64 = 1.3;
 /// Halvings before singular points are looked for in a cell, and how many there are between two tries.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Most singular points that are kept.
-const MOST_SINGULAR: usize = 1_024;
+/// Most cells in which they are looked for, in a part: there are more where they form a curve.
+const MOST_TRIED: usize = 1_024;
 /// Singular points nearer to each other than this share of a cell are one.
 const SAME: f64 = 1e-6;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
@@ -142,6 +145,8 @@ pub(super) struct Octree {
     /// Cells of the level under way, and how many have been looked at.
     level: Vec<Cell>,
     next: usize,
+    /// Whether the level has hardly more cells than the one before it.
+    is_ending: bool,
     /// Cells of the level after it.
     halves: Vec<Cell>,
     /// Cells of the part looked at, and how many it may take.
@@ -160,6 +165,8 @@ pub(super) struct Octree {
     lines: Vec<(usize, f64, f64, f64)>,
     /// Boxes left out of the search of the part.
     isolated: Vec<[DVec3; 2]>,
+    /// Cells in which singular points were looked for.
+    tries: usize,
     /// Points around which such a box was looked for.
     tried: Vec<DVec3>,
     /// Points where f and its gradient vanish; of curves of them a selection.
@@ -206,10 +213,11 @@ impl Octree {
 
     fn begin_part(&mut self, part: usize) {
         self.part = part;
-        (self.next, self.cells) = (0, 0);
+        (self.next, self.cells, self.is_ending) = (0, 0, false);
         self.level.clear();
         self.isolated.clear();
         self.tried.clear();
+        self.tries = 0;
         self.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
         push_boundary(&mut self.level, [self.lo, self.hi]);
     }
@@ -222,6 +230,12 @@ impl Octree {
     /// Says how many particles the run will have, which decides how many cells are looked at.
     pub(super) fn expect(&mut self, particles: f64) {
         self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
+    }
+
+    /// How many cells of the part may be looked at.
+    fn allowed(&self) -> usize {
+        let most = if self.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
+        most / self.parts
     }
 
     /// Whether the field can be searched by bounds.
@@ -243,11 +257,12 @@ impl Octree {
             self.cells += count;
             budget = budget.saturating_sub(UNITS * CHUNK as u32);
             if self.next == self.level.len() {
+                self.is_ending = (self.halves.len() as f64) < HARDLY_MORE * self.level.len() as f64;
                 self.level.clear();
                 core::mem::swap(&mut self.level, &mut self.halves);
                 self.next = 0;
             }
-            if self.level.is_empty() || self.cells >= self.most / self.parts {
+            if self.level.is_empty() || self.cells >= self.allowed() {
                 let open = self.level[self.next..].iter().chain(&self.halves);
                 self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
                 self.halves.clear();
@@ -321,12 +336,13 @@ impl Octree {
         let (sides, _) = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
-            && self.tried.len() < MOST_SINGULAR
+            && self.tries < MOST_TRIED
             && sides.iter().all(Option::is_some)
             && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
         if !is_tried {
             return false;
         }
+        self.tries += 1;
         let reach = (cell.hi - cell.lo).length();
         let Some(point) = singular_point(field, cell.probe(), reach) else { return false };
         let at = point.position;

@@ -551,7 +551,7 @@ const REPORT: &[ReportRow] = &[
         "Connected pieces",
         ("Surface", "", 0),
         ("", None),
-        "Pieces of the mesh of natural neighbours.",
+        "Pieces of the mesh of natural neighbours; those that only a singular point joins count apart.",
     ),
     row(
         "search",
