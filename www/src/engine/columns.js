@@ -28,6 +28,10 @@ export class Columns {
     this.count = 0;
     /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
     this.adaptive = false;
+    /** The last generation level that there is. */
+    this.last_level = 0;
+    /** Whether these are the particles of an earlier field, shown for want of others: the present one has no surface. */
+    this.stale = false;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
@@ -52,6 +56,8 @@ export class Columns {
     this.count = 0;
     this.curved = 0;
     this.adaptive = adaptive;
+    this.last_level = 0;
+    this.stale = false;
     this.forget();
   }
 

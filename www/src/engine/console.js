@@ -54,7 +54,7 @@ export const CAMERA_MS = 120;
  * @property {() => void} hang  sends the worker into an endless loop
  * @property {(reason?: string) => void} loseDevice
  * @property {(id: number) => void} stale  hands the page a message of another run
- * @property {() => {frames: number, opened: number, restarts: number, stale: number}} counts
+ * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number}} counts
  */
 
 /**
@@ -112,7 +112,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
     relax: (steps = 1) => after(() => engine.relax(steps)),
     report: () => structuredClone(engine.report.value),
     particles: () => {
-      const { count } = columns;
+      const count = columns.stale ? 0 : columns.count;
       return {
         count,
         positions: columns.positions.slice(0, 3 * count),
@@ -135,6 +135,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
       progress: { ...engine.progress.value },
       partial: engine.partial.value,
       empty: engine.empty.value,
+      dimmed: viewer.dimmed.to > 0,
       fieldError: engine.fieldError.value,
       loading: engine.loading.value,
       loadingError: engine.loadingError.value,
@@ -158,7 +159,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
         sampling.receive({ type: 'progress', id, progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 } });
       },
       counts: () => ({
-        frames: viewer.frames, opened: viewer.keeper.opened, restarts: sampling.supervisor.restarts.length, stale: sampling.stale,
+        frames: viewer.frames, uploads: viewer.uploads, opened: viewer.keeper.opened, restarts: sampling.supervisor.restarts.length, stale: sampling.stale,
       }),
     },
   };

@@ -26,6 +26,8 @@ import { Viewer } from './view/viewer.js';
 
 /** After a drag has rested this long the full run is made, also when the control never says that it was let go. */
 const REST_MS = 250;
+/** After so long without a key the formula counts as written: the camera comes to its surface. */
+const TYPING_MS = 900;
 /** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
 const ADDRESS_MS = 500;
 /** Ceiling for particles that a person may confirm. */
@@ -42,6 +44,8 @@ export function createEngine({ canvasHost }) {
   const first = BACKENDS.find((kind) => kind === query.get('backend')) ?? null;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let rest_timer;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let fit_timer;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let address_timer;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -282,6 +286,8 @@ export function createEngine({ canvasHost }) {
   }
   dark.addEventListener('change', showLook);
 
+  /** When the formula was changed, until the camera comes to its surface. */
+  let typed_ms = NaN;
   /** The camera shows the whole box, for want of a surface. */
   let box_shown = false;
   const effects = [
@@ -298,8 +304,17 @@ export function createEngine({ canvasHost }) {
       viewer.growing = store.busy.value;
     }),
     effect(() => {
+      if (!store.report.value || Number.isNaN(typed_ms)) return;
+      clearTimeout(fit_timer);
+      // Once the typing rests: the picture stands still meanwhile.
+      fit_timer = setTimeout(() => {
+        typed_ms = NaN;
+        if (store.report.value && viewer.camera.state.fit) viewer.fit();
+      }, typed_ms + TYPING_MS - performance.now());
+    }),
+    effect(() => {
       // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
-      const [none, rests] = [store.empty.value, !store.busy.value && !store.progress.value.live];
+      const [none, rests] = [store.empty.value && columns.count === 0, !store.busy.value && !store.progress.value.live];
       if (!rests || none === box_shown) return;
       box_shown = none;
       queueMicrotask(() => {
@@ -335,6 +350,8 @@ export function createEngine({ canvasHost }) {
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;
       change({ parameters: { ...store.state.value.parameters, [name]: value } });
+      typed_ms = performance.now();
+      clearTimeout(fit_timer);
       resample(live);
     },
     resetParameter(name) {
@@ -427,9 +444,10 @@ export function createEngine({ canvasHost }) {
     dismissNotice() {
       store.notice.value = null;
     },
+      if (store.empty.value) throw new Error('There is no surface.');
     pick: (x, y) => viewer.pick(x, y),
     destroy() {
-      for (const timer of [rest_timer, address_timer, camera_timer]) clearTimeout(timer);
+      for (const timer of [rest_timer, fit_timer, address_timer, camera_timer]) clearTimeout(timer);
       for (const stop of effects) stop();
       removeEventListener('hashchange', onHashChange);
       dark.removeEventListener('change', showLook);

@@ -39,6 +39,7 @@ export function createStore() {
     reveal: cell(/** @type {import('./types.js').Reveal | null} */ (null)),
     busy: cell(false),
     partial: cell(false),
+    revision: cell(0),
     empty: cell(false),
     lastDrag: cell(/** @type {import('./types.js').LastDrag | null} */ (null)),
     loading: cell(/** @type {import('./types.js').Loading | null} */ (null)),

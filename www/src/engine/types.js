@@ -350,6 +350,8 @@
  * @property {ReadonlySignal<Hover | null>} hover
  * @property {ReadonlySignal<Legend | null>} legend
  * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
+ * @property {ReadonlySignal<number>} revision  goes up whenever the particles, their fates or their figures change
+ * @property {import('./columns.js').Columns} columns  the particles, to be read only
  * @property {ReadonlySignal<boolean>} busy  a run is under way and can be stopped
  * @property {ReadonlySignal<boolean>} partial  the picture is a run that was stopped or capped
  * @property {ReadonlySignal<boolean>} empty  the last run found no surface

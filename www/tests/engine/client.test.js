@@ -125,7 +125,7 @@ describe('a run', () => {
     expect(store.report.value?.count).toBe(5);
     expect(store.progress.value.phase).toBe('done');
     expect(columns.valence).toHaveLength(5);
-    expect(told).toEqual(['ready', 'clear', 'grow', 'changed 0..5', 'fit']);
+    expect(told).toEqual(['ready', 'grow', 'clear', 'changed 0..5', 'fit']);
   });
 
   test('asked for twice is made once', () => {
@@ -165,20 +165,53 @@ describe('a run', () => {
     expect(store.partial.value).toBe(false);
   });
 
-  test('without a surface empties the picture, and the next brings it back', () => {
+  test('without a surface keeps the last one, dimmed and of no account, until there is another', () => {
     const { client, store, columns, say } = page();
     client.sample(request('x'));
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     client.sample(request('y'));
+    say({ type: 'field', id: 2, answer: answer('y') });
+    // The worker sends what fates there are, also of no particle.
+    say(columnsMessage(2, 0));
     say({ ...done(2, 'complete', 0), progress: progress(0, { phase: 'done', stop_reason: 'no_surface' }) });
-    expect(columns.count).toBe(0);
+    expect(columns).toMatchObject({ count: 7, stale: true });
     expect(store.empty.value).toBe(true);
+    expect(told.at(-1)).toBe('dim');
+    // A mistake after that, and an empty editor, change nothing of it.
+    for (const [id, kind] of /** @type {const} */ ([[3, 'syntax'], [4, 'empty']])) {
+      client.sample(request(''));
+      say({ type: 'field', id, answer: { ok: false, error: { kind, message: '', start: 0, end: 0, suggestion: null, names: [] } } });
+      say(done(id, 'field_error'));
+      expect(told.at(-1)).toBe('dim');
+    }
+    expect(columns.stale).toBe(true);
     client.sample(request('x'));
-    say(columnsMessage(3, 7));
-    say(done(3, 'complete', 7));
+    expect(told.at(-1)).toBe('dim');
+    say(columnsMessage(5, 5));
     expect(store.empty.value).toBe(false);
-    expect(columns.count).toBe(7);
+    expect(told).toContain('clear');
+    say(done(5, 'complete', 5));
+    expect(columns).toMatchObject({ count: 5, stale: false });
+    expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
+  });
+
+  test('that brings a surface back while the formula has a fault leaves it dimmed', () => {
+    const { client, say } = page();
+    client.sample(request('x', { restoring: true }));
+    say(columnsMessage(1, 7));
+    expect(told).not.toContain('clear');
+  });
+
+  test('counts up with every piece that may change what is told of the particles', () => {
+    const { client, store, say } = page();
+    const seen = [store.revision.value];
+    client.sample(request('x'));
+    for (const message of [columnsMessage(1, 7), done(1, 'complete', 7)]) {
+      say(message);
+      seen.push(store.revision.value);
+    }
+    expect(seen).toEqual([...new Set(seen)]);
   });
 
   test('that needs more particles than agreed is asked about, once', () => {

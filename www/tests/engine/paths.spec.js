@@ -272,13 +272,24 @@ test('a mistake in the formula keeps the last surface, dimmed; mending it brings
   expect((await picture(page)).drawn).not.toBe(clear.drawn);
 });
 
-test('a formula without a surface empties the picture and says why', async ({ page }) => {
+test('a formula without a surface leaves the last one, dimmed, says why, and takes nothing for its own', async ({ page }) => {
   await open(page);
   await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 + 1"), 0)');
   await expect.poll(async () => (await status(page)).empty).toBe(true);
   expect((await status(page)).progress.message).toBeTruthy();
+  expect((await status(page)).dimmed).toBe(true);
+  expect((await picture(page)).drawn).toBeGreaterThan(0.12);
+  expect(await on(page, 'p.particles().count')).toBe(0);
+  expect(await on(page, 'p.engine.exportFile("csv").then(() => "written", () => "refused")')).toBe('refused');
+  // Also a mistake after that, and an editor emptied.
+  for (const text of ['x^2 +', '']) {
+    await on(page, `(p.engine.setFormula(${JSON.stringify(text)}), 0)`);
+    await expect.poll(async () => (await status(page)).fieldError).toBeTruthy();
+    expect((await status(page)).dimmed).toBe(true);
+  }
   await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 = 1"), 0)');
   await expect.poll(async () => (await status(page)).empty).toBe(false);
+  expect((await status(page)).dimmed).toBe(false);
 });
 
 test('a lost WebGL context is replaced, with the same picture', async ({ page }) => {

@@ -256,30 +256,39 @@ export class SamplingClient {
         store.fieldError.value = null;
         store.fieldPreview.value = answer.mathml;
       });
-      this.picture.dim(false);
     } else if (!restoring) {
       batch(() => {
         store.fieldError.value = answer.error;
         store.fieldPreview.value = answer.mathml ?? null;
       });
-      // An empty editor is no mistake: nothing is dimmed.
-      this.picture.dim(answer.error.kind !== 'empty');
+      // An empty editor is no mistake: nothing is dimmed for it.
+      this.picture.dim(this.columns.stale || answer.error.kind !== 'empty');
     }
   }
 
   /** @param {import('./protocol.js').ColumnsMessage} message @param {NonNullable<SamplingClient['current']>} current */
   takeColumns(message, current) {
     const { columns, picture } = this;
+    const drawn = () => this.supervisor.post({ type: 'drawn', id: message.id });
+    if (message.total === 0) {
+      // No particle takes the place of those of the last surface: whether there will be one the end of the run tells.
+      drawn();
+      return;
+    }
     if (!current.begun) {
       current.begun = true;
       this.interrupted = null;
       if (current.request.kind === 'sample') {
         columns.clear(current.request.settings.sampling === 'adaptive');
         picture.begin({ grow: current.request.grow });
-        this.store.hover.value = null;
+        batch(() => {
+          this.store.hover.value = null;
+          this.store.empty.value = false;
+        });
+        // A surface that comes back while the formula has a fault is still not that formula's.
+        if (!current.request.restoring) picture.dim(false);
       }
     }
-    const drawn = () => this.supervisor.post({ type: 'drawn', id: message.id });
     const n = message.radii.length;
     if (!columns.write(message)) {
       drawn();
@@ -294,6 +303,7 @@ export class SamplingClient {
     else drawn();
     picture.recolour(message.slots_from, columns.count);
     if (message.progress) this.showProgress(message.progress);
+    this.store.revision.value += 1;
   }
 
   /** @param {import('./protocol.js').DoneMessage} message @param {NonNullable<SamplingClient['current']>} current */
@@ -306,13 +316,16 @@ export class SamplingClient {
       store.busy.value = false;
       if (outcome === 'complete' || outcome === 'stopped') {
         const particles = progress?.particles ?? 0;
-        if (request.kind === 'sample' && particles === 0 && outcome === 'complete') {
-          columns.clear();
-          picture.begin({ grow: false });
-          picture.changed(0, 0, () => {});
+        const none = outcome === 'complete' && particles === 0;
+        if (none) {
+          // The last surface stays until there is another, dimmed, and is nothing to measure or to take away.
+          columns.stale = columns.count > 0;
+          picture.dim(columns.stale);
+          store.hover.value = null;
         }
         this.held = particles > 0 ? current.id : 0;
-        store.empty.value = outcome === 'complete' && particles === 0;
+        store.empty.value = none;
+        store.revision.value += 1;
         store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
         if (progress) store.progress.value = { ...progress, run: current.id, live: request.live, phase: message.report_follows ? 'quality' : 'done' };
         this.note(seconds, particles, progress?.relax_step ?? 0, progress?.radius ?? 0, current);
@@ -379,6 +392,7 @@ export class SamplingClient {
     const total = seconds.seeding + seconds.generation + seconds.relaxation + seconds.quality;
     batch(() => {
       store.report.value = message.report;
+      store.revision.value += 1;
       store.progress.value = { ...store.progress.value, phase: 'done' };
       store.timing.value = { total, seconds, us_per_particle: ((total - seconds.quality) * 1e6) / Math.max(1, count), particles: count, live: false };
     });

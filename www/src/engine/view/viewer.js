@@ -93,6 +93,8 @@ export class Viewer {
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.retry = undefined;
     this.last_s = 0;
+    /** Times that particles were told to the device. */
+    this.uploads = 0;
     this.asked = 0;
     this.width = 0;
     this.height = 0;
@@ -376,6 +378,7 @@ export class Viewer {
   /** The ramp's ends follow the particles; when they move by more than can be seen, every colour is another. */
   follow() {
     const range = rangeOf(this.colour, this.columns);
+        this.uploads += 1;
     const old = this.range;
     const slack = RANGE_SLACK * (range ? range[1] - range[0] : 0);
     if (range && old && Math.abs(range[0] - old[0]) <= slack && Math.abs(range[1] - old[1]) <= slack) return;
@@ -384,6 +387,7 @@ export class Viewer {
   }
 
   /**
+      this.uploads += 1;
    * Writes the model's points behind the particles, as discs that face the eye, and so anew for every picture.
    * @param {Device['renderer']} renderer @param {View} view @param {number} count  of particles
    * @returns {number} discs written
@@ -478,7 +482,7 @@ export class Viewer {
   /** Index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
   pick(x, y) {
     const { columns, css_width, css_height } = this;
-    if (columns.count === 0 || css_width === 0 || css_height === 0) return null;
+    if (columns.count === 0 || columns.stale || css_width === 0 || css_height === 0) return null;
     const view = this.currentView();
     return pick(columns, view.eye, rayThrough(view, x, y, css_width, css_height), this.size, PICK_PX * view.world_per_px);
   }

@@ -40,7 +40,8 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
 
   hintUntilUsed(hint, stage, settled);
 
-  const lost = computed(() => engine.empty.value && !engine.busy.value);
+  // What is wrong with the formula as it stands is said beside it.
+  const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
   effect(() => {
     empty.hidden = !lost.value;
     if (lost.value) fill(empty, ...emptyState(engine));
@@ -50,6 +51,12 @@ export function mountOverlay(view, engine, { stage, poster, start }) {
 
 /** How long the sampling itself took, without the figures. @param {import('../../engine/types.js').Timing | null} timing */
 const secondsOf = (timing) => timing && timing.seconds.seeding + timing.seconds.generation + timing.seconds.relaxation;
+
+/** What there is instead of a surface, and what to do. @type {Record<string, [string, string] | undefined>} */
+const EMPTY = {
+  constant: ['The formula is constant', 'Let it change with x, y or z.'],
+  undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
+};
 
 /** @param {Engine} engine */
 function emptyState(engine) {
@@ -63,7 +70,7 @@ function emptyState(engine) {
     }));
     engine.setBounds({ min: grow(-1), max: grow(1) });
   };
-  const title = stop_reason === 'constant' ? 'The formula is constant' : stop_reason === 'undefined' ? 'The formula is undefined in the box' : 'No surface inside the box';
+  const [title, remedy] = EMPTY[stop_reason ?? ''] ?? ['No surface inside the box', 'Change the formula, or widen the box.'];
   return [
     h('h2', null, title),
     message ? h('p', { class: 'quiet' }, message) : null,
