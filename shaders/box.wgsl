@@ -20,6 +20,9 @@ struct Frame {
     box_max: vec3<f32>,
     light_ground: f32,
     box_colour: vec4<f32>,
+    level: f32,
+    mute: f32,
+    unused: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

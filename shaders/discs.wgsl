@@ -20,6 +20,9 @@ struct Frame {
     box_max: vec3<f32>,
     light_ground: f32,
     box_colour: vec4<f32>,
+    level: f32,
+    mute: f32,
+    unused: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -30,7 +33,8 @@ struct Particle {
     @location(1) radius: f32,
     @location(2) normal_oct: vec2<f32>,
     @location(3) birth: f32,
-    @location(4) colour: vec4<f32>,
+    @location(4) level: f32,
+    @location(5) colour: vec4<f32>,
 }
 
 struct Disc {
@@ -45,6 +49,8 @@ struct Disc {
     @location(3) @interpolate(flat) sky: vec4<f32>,
     // Half axes on the screen in pixels: along t, along b.
     @location(4) @interpolate(flat) axes_px: vec2<f32>,
+    // How far the disc fades towards the ground: all of them, and those before the newest level.
+    @location(5) @interpolate(flat) faded: f32,
 }
 
 // How far past the rim the quad reaches on the screen, in pixels: half a pixel of edge and half a pixel to spare,
@@ -139,7 +145,7 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let appear = age * age * (3.0 - 2.0 * age);
     let opacity = appear * particle.colour.a;
     let centre = frame.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || opacity <= NOTHING || centre.w <= 0.0 {
+    if particle.radius <= 0.0 || particle.level > frame.level || opacity <= NOTHING || centre.w <= 0.0 {
         return out;
     }
 
@@ -180,6 +186,8 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let edge_on = 1.0 - dot(n, v);
     out.sky = vec4<f32>(dot(frame.sky, t), dot(frame.sky, b), dot(frame.sky, n), edge_on);
     out.axes_px = axes;
+    let older = particle.level >= 0.0 && particle.level < frame.level;
+    out.faded = max(frame.dim, select(0.0, frame.mute, older));
     return out;
 }
 
@@ -218,7 +226,7 @@ fn shade(disc: Disc) -> vec3<f32> {
     light *= 1.0 - 0.30 * disc.sky.w * disc.sky.w * disc.sky.w;
     let front = disc.colour.rgb * light;
     let seen = fade_to(front, frame.background.rgb, disc.key.w * frame.dim_backfaces);
-    return fade_to(seen, frame.background.rgb, frame.dim);
+    return fade_to(seen, frame.background.rgb, disc.faded);
 }
 
 // How much a disc is wide enough to cover pixels wholly.

@@ -4,10 +4,10 @@
 use bytemuck::{Pod, Zeroable};
 use core::mem::offset_of;
 
-/// What the vertex stage reads per particle, apart from its colour: 24 bytes.
+/// What the vertex stage reads per particle, apart from its colour: 28 bytes.
 ///
 /// The colour lies in a buffer of its own (see [`COLOUR_STRIDE`]), so that colouring by something else uploads 4 bytes
-/// a particle instead of 28 and no copy of the records has to be kept.
+/// a particle instead of 32 and no copy of the records has to be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
@@ -19,6 +19,8 @@ pub struct Record {
     pub normal: [i16; 2],
     /// Time of birth in seconds on the renderer's own clock.
     pub birth: f32,
+    /// Generation level; −1 for what belongs to none and is always drawn. Single precision holds 2²⁴ levels.
+    pub level: f32,
 }
 
 /// Bytes of one colour: red, green, blue, opacity; sRGB, 8 bits each.
@@ -28,15 +30,16 @@ impl Record {
     /// Packs one particle.
     ///
     /// `normal` need not have unit length. A non-finite position or radius, or a radius that is not positive, gives a
-    /// record that is not drawn; a zero or non-finite normal gives +z.
+    /// record that is not drawn; a zero or non-finite normal gives +z. `u32::MAX` stands for no level.
     #[must_use]
-    pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32) -> Self {
+    pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32, level: u32) -> Self {
         let drawable = radius > 0.0 && radius.is_finite() && position.iter().all(|c| c.is_finite());
         Self {
             position: if drawable { position } else { [0.0; 3] },
             radius: if drawable { radius } else { 0.0 },
             normal: oct_encode(normal),
             birth,
+            level: if level == u32::MAX { -1.0 } else { level as f32 },
         }
     }
 }
@@ -112,6 +115,12 @@ pub struct Frame {
     pub light_ground: f32,
     /// Colour of the box's edges, linear, not multiplied by its opacity.
     pub box_colour: [f32; 4],
+    /// Newest generation level drawn; later ones are hidden. Beyond every level where all are drawn.
+    pub level: f32,
+    /// How far levels before the newest fade towards the background, 0 to 1.
+    pub mute: f32,
+    /// Uniform blocks come in multiples of 16 bytes.
+    pub unused: [f32; 2],
 }
 
 macro_rules! offsets {
@@ -122,7 +131,7 @@ impl Frame {
     /// Name and byte offset of every field, in order.
     pub const FIELDS: &'static [(&'static str, usize)] = offsets!(Frame:
         clip_from_world, eye, perspective, forward, disc_scale, key_light, dim_backfaces, sky, dim,
-        background, viewport, pixel_ratio, time, box_min, fade, box_max, light_ground, box_colour,
+        background, viewport, pixel_ratio, time, box_min, fade, box_max, light_ground, box_colour, level, mute, unused,
     );
 }
 
@@ -173,16 +182,17 @@ pub struct Attribute {
 }
 
 /// The attributes of a [`Record`].
-pub const RECORD_ATTRIBUTES: [Attribute; 4] = [
+pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
     Attribute { location: 0, offset: offset_of!(Record, position), format: Format::Float32x3 },
     Attribute { location: 1, offset: offset_of!(Record, radius), format: Format::Float32 },
     Attribute { location: 2, offset: offset_of!(Record, normal), format: Format::Snorm16x2 },
     Attribute { location: 3, offset: offset_of!(Record, birth), format: Format::Float32 },
+    Attribute { location: 4, offset: offset_of!(Record, level), format: Format::Float32 },
 ];
 
 /// The attribute of the colour buffer.
 pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
-    [Attribute { location: 4, offset: 0, format: Format::Unorm8x4 }];
+    [Attribute { location: 5, offset: 0, format: Format::Unorm8x4 }];
 
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the tests go round circles; nothing depends on the last bits")]
@@ -221,12 +231,16 @@ mod tests {
             ([0.0; 3], f32::NAN),
             ([0.0; 3], f32::INFINITY),
         ] {
-            let record = Record::new(position, normal, radius, 0.0);
+            let record = Record::new(position, normal, radius, 0.0, 0);
             assert_eq!(record.radius, 0.0, "{position:?} {radius}");
             assert!(record.position.iter().all(|c| c.is_finite()));
         }
         for bad in [[0.0; 3], [f32::NAN, 1.0, 0.0], [f32::INFINITY, 0.0, 0.0]] {
-            assert_eq!(oct_decode(Record::new([0.0; 3], bad, 1.0, 0.0).normal), [0.0, 0.0, 1.0], "{bad:?}");
+            assert_eq!(
+                oct_decode(Record::new([0.0; 3], bad, 1.0, 0.0, 0).normal),
+                [0.0, 0.0, 1.0],
+                "{bad:?}"
+            );
         }
     }
 

@@ -244,12 +244,14 @@ impl Renderer {
     /// # Panics
     ///
     /// If the columns disagree in length or end beyond [`Renderer::MAX_PARTICLES`].
+    #[allow(clippy::too_many_arguments, reason = "one column each; a struct would only be taken apart again")]
     pub fn write(
         &mut self,
         first: u32,
         positions: &[f32],
         normals: &[f32],
         radii: &[f32],
+        levels: &[u32],
         colours: &[u32],
         birth_s: f64,
     ) {
@@ -259,7 +261,7 @@ impl Renderer {
         let end = first as usize + radii.len();
         assert!(end <= Self::MAX_PARTICLES as usize, "particle {end} of at most {}", Self::MAX_PARTICLES);
         let birth = self.clock(birth_s);
-        let columns = Columns { positions, normals, radii, colours, birth };
+        let columns = Columns { positions, normals, radii, levels, colours, birth };
         self.store.write(&self.device, &self.queue, first, columns);
         self.count = self.count.max(end as u32);
     }

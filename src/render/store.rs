@@ -3,7 +3,7 @@
 use super::layout::{COLOUR_STRIDE, Record};
 use core::ops::Range;
 
-/// Particles per chunk: 6 MiB of records and 1 MiB of colours, far below every device's largest buffer, and few
+/// Particles per chunk: 7 MiB of records and 1 MiB of colours, far below every device's largest buffer, and few
 /// enough draw calls (4 per pass for a million).
 const CHUNK: u32 = 1 << 18;
 /// Capacity of the first chunk before it grows.
@@ -35,12 +35,13 @@ pub(super) struct Columns<'a> {
     pub(super) positions: &'a [f32],
     pub(super) normals: &'a [f32],
     pub(super) radii: &'a [f32],
+    pub(super) levels: &'a [u32],
     pub(super) colours: &'a [u32],
     pub(super) birth: f32,
 }
 
 impl Store {
-    /// Largest number of particles: 112 MiB on the GPU.
+    /// Largest number of particles: 128 MiB on the GPU.
     pub(super) const MAX: u32 = 1 << 22;
 
     /// Packs and uploads particles `first..`; buffers grow as needed.
@@ -57,19 +58,22 @@ impl Store {
     ) {
         let count = columns.radii.len();
         assert!(
-            columns.positions.len() == 3 * count && columns.normals.len() == 3 * count,
-            "columns of {count} radii, {} positions, {} normals",
+            columns.positions.len() == 3 * count
+                && columns.normals.len() == 3 * count
+                && columns.levels.len() == count,
+            "columns of {count} radii, {} positions, {} normals, {} levels",
             columns.positions.len() / 3,
-            columns.normals.len() / 3
+            columns.normals.len() / 3,
+            columns.levels.len()
         );
         self.reserve(device, queue, first + count as u32);
         let positions = columns.positions.as_chunks::<3>().0;
         let normals = columns.normals.as_chunks::<3>().0;
         for (chunk, local, span) in pieces(first, count as u32) {
             self.scratch.clear();
-            self.scratch.extend(
-                span.clone().map(|i| Record::new(positions[i], normals[i], columns.radii[i], columns.birth)),
-            );
+            self.scratch.extend(span.clone().map(|i| {
+                Record::new(positions[i], normals[i], columns.radii[i], columns.birth, columns.levels[i])
+            }));
             let offset = u64::from(local) * size_of::<Record>() as u64;
             queue.write_buffer(&self.chunks[chunk].records, offset, bytemuck::cast_slice(&self.scratch));
         }

@@ -21,6 +21,11 @@ pub struct Style {
     pub dim_backfaces: f32,
     /// Seconds that a new particle takes to appear; 0 = at once.
     pub fade_s: f32,
+    /// Newest generation level drawn: particles of later ones are hidden, those of earlier ones fade by `mute`. All
+    /// levels alike where there is none.
+    pub level: Option<u32>,
+    /// How far earlier levels fade towards the background.
+    pub mute: f32,
     /// Particle with a ring around it.
     pub outline: Option<u32>,
     /// The clip box, drawn by its edges.
@@ -49,6 +54,8 @@ impl Default for Style {
             dim: 0.0,
             dim_backfaces: 0.55,
             fade_s: 0.12,
+            level: None,
+            mute: 0.5,
             outline: None,
             clip_box: None,
             pixel_ratio: 1.0,
@@ -95,9 +102,15 @@ impl Style {
             box_max: clip_box.max,
             light_ground: if luminance(background) > LIGHT_GROUND { 1.0 } else { 0.0 },
             box_colour: linear(clip_box.colour),
+            level: self.level.map_or(ALL_LEVELS, |level| level as f32),
+            mute: if self.level.is_some() { share(self.mute) } else { 0.0 },
+            unused: [0.0; 2],
         }
     }
 }
+
+/// Beyond every level of 2³² particles.
+const ALL_LEVELS: f32 = 1e10;
 
 /// Luminance at which black and white contrast equally with a ground (WCAG: √(1.05 · 0.05) − 0.05).
 const LIGHT_GROUND: f32 = 0.179;
@@ -128,6 +141,8 @@ mod tests {
             dim: nan,
             dim_backfaces: -3.0,
             fade_s: nan,
+            level: Some(7),
+            mute: nan,
             outline: None,
             clip_box: None,
             pixel_ratio: nan,
@@ -135,7 +150,7 @@ mod tests {
         let target = Target { canvas: [0, 0], size: [0, 0], time: 0.0 };
         let frame = style.frame(&View::default(), target);
         assert!(bytemuck::cast_slice::<Frame, f32>(&[frame]).iter().all(|c| c.is_finite()), "{frame:?}");
-        assert_eq!((frame.dim, frame.dim_backfaces), (0.0, 0.0));
+        assert_eq!((frame.dim, frame.dim_backfaces, frame.mute), (0.0, 0.0, 0.0));
         assert!(frame.disc_scale > 0.0);
     }
 
@@ -146,6 +161,17 @@ mod tests {
         let print = style.frame(&view, Target { canvas: [640, 480], size: [1280, 960], time: 0.0 });
         assert_eq!(print.pixel_ratio, 2.0 * screen.pixel_ratio);
         assert_eq!(print.clip_from_world, screen.clip_from_world);
+    }
+
+    #[test]
+    fn without_a_level_no_particle_is_hidden_or_muted() {
+        let frame = |level| {
+            let style = Style { level, ..Style::default() };
+            style.frame(&View::default(), Target { canvas: [1, 1], size: [1, 1], time: 0.0 })
+        };
+        let (all, seventh) = (frame(None), frame(Some(7)));
+        assert!(all.level > u32::MAX as f32 && all.mute == 0.0, "{all:?}");
+        assert!(seventh.level == 7.0 && seventh.mute > 0.0, "{seventh:?}");
     }
 
     #[test]

@@ -40,6 +40,7 @@ struct Scratch {
     positions: Vec<f32>,
     normals: Vec<f32>,
     radii: Vec<f32>,
+    levels: Vec<u32>,
     colours: Vec<u32>,
 }
 
@@ -107,41 +108,50 @@ impl Renderer {
 
     /// Appends or overwrites particles `first..first + radii.length`; the number drawn grows to their end.
     ///
-    /// Three numbers per particle in `positions` and `normals`; `colours` are 0xAABBGGRR, sRGB. They begin to appear
-    /// at `birth_s` on the clock of `draw`; -Infinity shows them at once.
+    /// Three numbers per particle in `positions` and `normals`; a level of 4294967295 stands for none, and such a
+    /// particle is always drawn; `colours` are 0xAABBGGRR, sRGB. They begin to appear at `birth_s` on the clock of `draw`;
+    /// -Infinity shows them at once.
     ///
     /// # Errors
     ///
     /// Throws where the columns disagree in length or there are more particles than `max_particles()`.
+    #[allow(clippy::too_many_arguments, reason = "JavaScript hands over one typed array for each column")]
     pub fn write(
         &self,
         first: u32,
         positions: &Float32Array,
         normals: &Float32Array,
         radii: &Float32Array,
+        levels: &Uint32Array,
         colours: &Uint32Array,
         birth_s: f64,
     ) -> Result<(), JsError> {
         let count = radii.length();
-        if positions.length() != 3 * count || normals.length() != 3 * count || colours.length() != count {
+        if positions.length() != 3 * count
+            || normals.length() != 3 * count
+            || levels.length() != count
+            || colours.length() != count
+        {
             return Err(JsError::new(&format!(
-                "columns disagree: {} numbers of positions, {} of normals, {count} radii, {} colours",
+                "columns disagree: {} numbers of positions, {} of normals, {count} radii, {} levels, {} colours",
                 positions.length(),
                 normals.length(),
+                levels.length(),
                 colours.length()
             )));
         }
         check_end(first, count)?;
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { positions: p, normals: n, radii: r, colours: c } = &mut *scratch;
+        let Scratch { positions: p, normals: n, radii: r, levels: l, colours: c } = &mut *scratch;
         for from in (0..count).step_by(PIECE as usize) {
             let to = count.min(from + PIECE);
             copy(&positions.subarray(3 * from, 3 * to), p);
             copy(&normals.subarray(3 * from, 3 * to), n);
             copy(&radii.subarray(from, to), r);
-            copy_colours(&colours.subarray(from, to), c);
-            inner.write(first + from, p, n, r, c, birth_s);
+            copy_words(&levels.subarray(from, to), l);
+            copy_words(&colours.subarray(from, to), c);
+            inner.write(first + from, p, n, r, l, c, birth_s);
         }
         Ok(())
     }
@@ -158,7 +168,7 @@ impl Renderer {
         let mut scratch = self.scratch.borrow_mut();
         for from in (0..count).step_by(PIECE as usize) {
             let to = count.min(from + PIECE);
-            copy_colours(&colours.subarray(from, to), &mut scratch.colours);
+            copy_words(&colours.subarray(from, to), &mut scratch.colours);
             inner.write_colours(first + from, &scratch.colours);
         }
         Ok(())
@@ -183,7 +193,7 @@ impl Renderer {
     /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
     ///
     /// `background` [r, g, b, a] · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
-    /// `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
+    /// `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
     /// `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
     ///
     /// # Errors
@@ -300,7 +310,7 @@ fn copy(from: &Float32Array, to: &mut Vec<f32>) {
     from.copy_to(to);
 }
 
-fn copy_colours(from: &Uint32Array, to: &mut Vec<u32>) {
+fn copy_words(from: &Uint32Array, to: &mut Vec<u32>) {
     to.resize(from.length() as usize, 0);
     from.copy_to(to);
 }
@@ -316,6 +326,7 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     read(&value, "dim_backfaces", core::array::from_mut(&mut style.dim_backfaces))?;
     read(&value, "fade_s", core::array::from_mut(&mut style.fade_s))?;
     read(&value, "pixel_ratio", core::array::from_mut(&mut style.pixel_ratio))?;
+    style.level = get(&value, "level")?.as_f64().map(|level| level as u32);
     if let Some(index) = get(&value, "outline")?.as_f64() {
         style.outline = (index >= 0.0).then_some(index as u32);
     }

@@ -9,6 +9,8 @@
 export const NO_PARENT = 0xffffffff;
 /** Set in `slots` where the surface has a singular point within 2r of the particle. */
 export const SINGULAR = 1 << 30;
+/** Level of what is drawn with the particles and is none of them. */
+export const NO_LEVEL = 0xffffffff;
 
 /**
  * A piece of the columns as the worker posts it: particles `first … first + n`, or with `slots` alone newer fates of
@@ -26,12 +28,12 @@ export const SINGULAR = 1 << 30;
 export class Columns {
   constructor() {
     this.count = 0;
-    /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
-    this.adaptive = false;
     /** The last generation level that there is. */
     this.last_level = 0;
     /** Whether these are the particles of an earlier field, shown for want of others: the present one has no surface. */
     this.stale = false;
+    /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
+    this.adaptive = false;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
@@ -54,10 +56,10 @@ export class Columns {
   /** Another run begins. @param {boolean} [adaptive] */
   clear(adaptive = false) {
     this.count = 0;
-    this.curved = 0;
-    this.adaptive = adaptive;
     this.last_level = 0;
     this.stale = false;
+    this.curved = 0;
+    this.adaptive = adaptive;
     this.forget();
   }
 
@@ -104,6 +106,7 @@ export class Columns {
     this.parents.set(piece.parents, first);
     this.slots.fill(0, Math.max(first, this.count), first + n);
     this.count = total;
+    for (const level of piece.levels) if (level > this.last_level) this.last_level = level;
     if (n > 0) this.forget();
     return true;
   }

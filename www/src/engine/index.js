@@ -281,7 +281,7 @@ export function createEngine({ canvasHost }) {
     store.theme.value = theme;
     const box = bounds ?? store.field.value?.bounds ?? null;
     const solved = view.points && store.field.value?.kind === 'points' ? loader.client.get(sampling.accepted?.field.points) : undefined;
-    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null, points: solved?.centres ?? null });
+    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null, points: solved?.centres ?? null, level: view.level });
     sampling.showCurvature(view.colour === 'curvature');
   }
   dark.addEventListener('change', showLook);
@@ -323,6 +323,10 @@ export function createEngine({ canvasHost }) {
       });
     }),
   ];
+  /** What is sampled anew is seen growing, all of it. */
+  function allLevels() {
+    if (store.state.value.view.level !== null) commands.setView({ level: null });
+  }
   function showLookLater() {
     queueMicrotask(showLook);
   }
@@ -334,6 +338,7 @@ export function createEngine({ canvasHost }) {
     setSurface(id) {
       const surface = surfaceOf(store.description.value, id);
       if (!surface && !modelOf(store.description.value, id) && !(id === FILE_SURFACE && loader.has_file)) return;
+      allLevels();
       change(shapeOf(id, surface?.formula));
       choose({ grow: true, fit: true });
     },
@@ -345,13 +350,13 @@ export function createEngine({ canvasHost }) {
       // A model has no formula to change: the one typed starts from the default surface.
       if (fromPoints(store.description.value, surface)) change(shapeOf(description().default_surface, text));
       else change({ formula: text });
+      typed_ms = performance.now();
+      clearTimeout(fit_timer);
       choose();
     },
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;
       change({ parameters: { ...store.state.value.parameters, [name]: value } });
-      typed_ms = performance.now();
-      clearTimeout(fit_timer);
       resample(live);
     },
     resetParameter(name) {
@@ -390,6 +395,7 @@ export function createEngine({ canvasHost }) {
       choose({ grow: another, fit: another });
     },
     run() {
+      allLevels();
       resample(false, { grow: true });
     },
     stop() {
@@ -409,6 +415,7 @@ export function createEngine({ canvasHost }) {
       if (patch.camera) viewer.camera.set(view.camera);
       change({ view });
       showLook();
+      if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) showHover(null, 0, 0);
     },
     fit: () => viewer.fit(),
     zoom(factor) {
@@ -437,6 +444,7 @@ export function createEngine({ canvasHost }) {
       return png(picture.width, picture.height, picture.pixels);
     },
     async exportFile(format) {
+      if (store.empty.value) throw new Error('There is no surface.');
       const { field, model } = store;
       const what = model.value ? `${model.value.name}, interpolated from ${model.value.centres} points` : `f = ${field.value?.formula ?? ''}`;
       return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
@@ -444,7 +452,6 @@ export function createEngine({ canvasHost }) {
     dismissNotice() {
       store.notice.value = null;
     },
-      if (store.empty.value) throw new Error('There is no surface.');
     pick: (x, y) => viewer.pick(x, y),
     destroy() {
       for (const timer of [rest_timer, fit_timer, address_timer, camera_timer]) clearTimeout(timer);
@@ -458,7 +465,7 @@ export function createEngine({ canvasHost }) {
     },
   };
 
-  const engine = { ...store, ...commands };
+  const engine = { ...store, columns, ...commands };
   installConsole({
     engine,
     viewer,

@@ -239,6 +239,7 @@
  * @property {'auto' | 'light' | 'dark'} theme
  * @property {boolean} box  draw the clip box
  * @property {boolean} points  draw the points that a model interpolates
+ * @property {number | null} level  the newest generation level drawn, null for all of them; a level beyond the last counts as the last
  * @property {CameraState} camera
  */
 /**
@@ -349,9 +350,9 @@
  * @property {ReadonlySignal<Notice | null>} notice
  * @property {ReadonlySignal<Hover | null>} hover
  * @property {ReadonlySignal<Legend | null>} legend
- * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
  * @property {ReadonlySignal<number>} revision  goes up whenever the particles, their fates or their figures change
  * @property {import('./columns.js').Columns} columns  the particles, to be read only
+ * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
  * @property {ReadonlySignal<boolean>} busy  a run is under way and can be stopped
  * @property {ReadonlySignal<boolean>} partial  the picture is a run that was stopped or capped
  * @property {ReadonlySignal<boolean>} empty  the last run found no surface

@@ -1,5 +1,5 @@
 /** Puts the interface together over an engine. */
-import { computed, effect } from '@preact/signals-core';
+import { computed, effect, signal } from '@preact/signals-core';
 import { byId, h, once } from './dom.js';
 import { explain } from './explain.js';
 import { mountField } from './field/panel.js';
@@ -21,7 +21,7 @@ import { createToolbar } from './view/toolbar.js';
 /** @param {Engine} engine */
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
-  const [field, sampling, report] = [byId('panel-field'), byId('panel-sampling'), byId('panel-report')];
+  const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
   const toast = mountToasts(byId('toasts'), engine, ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility());
   const samplingTools = h('div', { class: 'sampling-tools' });
   const head = (/** @type {HTMLElement} */ panel) => /** @type {HTMLElement} */ (panel.querySelector('.panel-head'));
@@ -32,11 +32,16 @@ export function mountInterface(engine) {
     panels: [
       { id: 'field', title: 'Field', panel: field, head: head(field) },
       { id: 'sampling', title: 'Sampling', panel: sampling, head: samplingTools },
+      { id: 'levels', title: 'Levels', panel: levels },
       { id: 'report', title: 'Report', panel: report, head: head(report) },
     ],
     inset: (insets) => engine.setInsets(insets),
   });
   const history = createHistory(engine);
+  /** @type {import('./levels/timeline.js').Timeline | null} */
+  let timeline = null;
+  /** The generation level chosen on the timeline, in words. */
+  const told = signal(/** @type {import('./levels/timeline.js').Told | null} */ (null));
   const shortcuts = mountShortcuts([
     { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
     { keys: ['Escape'], shown: 'Esc', label: 'Stop', act: () => { if (engine.busy.peek() || engine.loading.peek()) engine.stop(); } },
@@ -44,6 +49,11 @@ export function mountInterface(engine) {
     { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
     { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
     { keys: ['e', 'E'], shown: 'E', label: 'Relax one step', act: () => { if (!engine.busy.peek()) engine.relax(1); } },
+    { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the levels', act: () => timeline?.toggle() },
+    { keys: [','], shown: ',', label: 'Level back', act: () => timeline?.back() },
+    { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline?.forward() },
+    { keys: ['<'], shown: '<', label: 'First level', act: () => timeline?.first() },
+    { keys: ['>'], shown: '>', label: 'All levels', act: () => timeline?.all() },
     { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
     { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
     { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
@@ -72,7 +82,7 @@ export function mountInterface(engine) {
 
   head(field).querySelector('.fold')?.before(historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo), historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo));
   mountDrop(engine, toast);
-  mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start') });
+  mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   mountHover(stage, engine);
   byId('tabs').append(goButton(engine));
 
@@ -86,6 +96,11 @@ export function mountInterface(engine) {
     mountReport(byId('report-body'), engine, description);
     view.prepend(createLegend(engine, description), createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
     shell.dataset.ready = '';
+    import('./levels/timeline.js').then(
+      ({ createTimeline }) => { timeline = createTimeline(byId('levels-body'), engine, told); },
+      // Without it the page does everything else.
+      () => { levels.hidden = true; },
+    );
   });
 }
 

@@ -28,13 +28,16 @@ const PATHS = /** @type {const} */ ({
  * A decorative icon; whatever holds it carries the name.
  * @param {IconName} name
  */
-export function icon(name) {
+export const icon = (name) => drawIcon(PATHS[name]);
+
+/** @param {string} shape  a path on the same grid */
+export function drawIcon(shape) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   svg.setAttribute('viewBox', '0 0 16 16');
   svg.setAttribute('aria-hidden', 'true');
   svg.setAttribute('class', 'icon');
   const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-  path.setAttribute('d', PATHS[name]);
+  path.setAttribute('d', shape);
   svg.append(path);
   return svg;
 }

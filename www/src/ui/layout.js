@@ -6,7 +6,7 @@ import { icon } from './icons.js';
 /** Below this width the report starts folded, so that the picture has room. */
 const NARROW = '(max-width: 1079px)';
 
-/** @typedef {{ id: string, title: string, panel: HTMLElement, head: HTMLElement }} Panel */
+/** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
 
 /**
  * @param {object} parts
@@ -17,8 +17,7 @@ const NARROW = '(max-width: 1079px)';
  * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
  */
 export function mountLayout({ shell, view, nav, panels, inset }) {
-  const folds = panels.map((panel) => createFold(panel));
-  for (const { button, host } of folds) host.append(button);
+  const folds = panels.flatMap(({ title, panel, head }) => (head ? [createFold(title, panel, head)] : []));
   if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
 
   const tabs = panels.map(({ title, panel }) => h('button', {
@@ -60,8 +59,8 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   };
 }
 
-/** @param {Panel} panel */
-function createFold({ title, panel, head }) {
+/** @param {string} title @param {HTMLElement} panel @param {HTMLElement} head */
+function createFold(title, panel, head) {
   const button = h('button', { type: 'button', class: 'button plain square fold', 'aria-controls': panel.id });
   let folded = false;
   /** @param {boolean} next */
@@ -75,5 +74,6 @@ function createFold({ title, panel, head }) {
   button.addEventListener('click', () => set(!folded));
   explain(button, () => ({ text: folded ? 'Unfold' : 'Fold' }));
   set(false);
-  return { button, host: head, set };
+  head.append(button);
+  return { set };
 }

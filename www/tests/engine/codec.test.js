@@ -15,7 +15,7 @@ const elaborate = () => ({
   declared: [{ name: 'k', label: 'k', value: 1, min: -3, max: 3, step: 0.01 }],
   bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
   settings: { radius_share: 0.012, relax_steps: 20 },
-  view: { colour: 'valence', size: 0.8, theme: 'dark', box: true, points: false, camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false } },
+  view: { colour: 'valence', size: 0.8, theme: 'dark', box: true, points: false, level: 12, camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false } },
 });
 
 const inLink = (/** @type {unknown} */ value, kind = 'j') =>

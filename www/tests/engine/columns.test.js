@@ -50,6 +50,16 @@ describe('columns', () => {
     expect(columns.valence).not.toBe(null);
   });
 
+  test('know their last level, also where the last particles are of an earlier one', () => {
+    const columns = sphere(100);
+    expect(columns.last_level).toBe(9);
+    const one = { positions: new Float32Array(3), normals: new Float32Array(3), radii: new Float32Array(1), parents: new Uint32Array(1) };
+    columns.write({ first: 100, total: 101, ...one, levels: Uint32Array.of(4) });
+    expect(columns.last_level).toBe(9);
+    columns.clear();
+    expect(columns.last_level).toBe(0);
+  });
+
   test('grow piece by piece and are overwritten in place', () => {
     const whole = sphere(5000);
     const columns = new Columns();
@@ -105,6 +115,15 @@ describe('picking', () => {
     }
     return best;
   }
+
+  test('sees through particles of later levels', () => {
+    const eye = /** @type {const} */ ([0, 0, -5]);
+    const near = pick(columns, [...eye], [0, 0, 1], 0.92, 0);
+    expect(near).toBeGreaterThan(1900);
+    // The sphere's levels go from the far pole to the near one.
+    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, 3)).toBeLessThan(16);
+    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.last_level)).toBe(near);
+  });
 
   test('finds the disc that the definition finds, from anywhere', () => {
     let hits = 0;

@@ -44,7 +44,7 @@ export function difference(state, description) {
   if (Object.keys(settings).length) out.settings = settings;
   /** @type {Record<string, unknown>} */
   const look = {};
-  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box', 'points'])) if (view[key] !== home.view[key]) look[key] = view[key];
+  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box', 'points', 'level'])) if (view[key] !== home.view[key]) look[key] = view[key];
   const { camera } = view;
   const rounded = {
     target: camera.target.map((v) => short(v)), distance: short(camera.distance), yaw: short(camera.yaw, 5), pitch: short(camera.pitch, 5), fit: camera.fit,

@@ -23,6 +23,8 @@ export const LONGEST_FORMULA = 4096;
 const MOST_PARAMETERS = 64;
 /** Coordinates beyond this leave single precision no room for a surface. */
 const FARTHEST = 1e6;
+/** No run has so many generation levels. */
+const LAST_LEVEL = 1e6;
 const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
@@ -30,7 +32,7 @@ export const COLOUR_MODES = ['level', 'fate', 'valence', 'nearest', 'radius', 'c
 export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
 /** @returns {import('../types.js').ViewState} */
-const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, points: true, camera: homeCamera() });
+const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, points: true, level: null, camera: homeCamera() });
 
 /** The state before the core has told which surfaces there are. @returns {State} */
 export const emptyState = () => ({
@@ -229,6 +231,11 @@ export function validView(raw, view, reset = []) {
     if (raw[key] === undefined) continue;
     if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);
     else reset.push(name);
+  }
+  if (raw.level !== undefined) {
+    const level = raw.level === null ? null : within(raw.level, 0, LAST_LEVEL);
+    if (level === undefined) reset.push('generation level');
+    else out.level = level === null ? null : Math.round(level);
   }
   if (raw.camera !== undefined) {
     const c = isRecord(raw.camera) ? raw.camera : {};

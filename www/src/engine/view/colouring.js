@@ -204,7 +204,7 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
   switch (mode) {
     case 'level':
-      return { title: 'Generation level', unit: '', kind: 'cyclic', range: [0, lastLevel(columns)], colours: [...palette.levels].map(hexFromPacked) };
+      return { title: 'Generation level', unit: '', kind: 'cyclic', range: [0, columns.last_level], colours: [...palette.levels].map(hexFromPacked) };
     case 'fate': {
       const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) => classOfSlots(columns.slots[i], columns.adaptive));
       return { title: 'Slots', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
@@ -255,13 +255,6 @@ function pieces(component, palette) {
     entries.push({ label: `${rest.length} more, in the same colours`, colour: hexFromPacked(palette.plain), count: rest.reduce((sum, n) => sum + (n ?? 0), 0) });
   }
   return entries;
-}
-
-/** @param {Columns} columns */
-function lastLevel({ levels, count }) {
-  let last = 0;
-  for (let i = 0; i < count; i += 1) if (levels[i] > last) last = levels[i];
-  return last;
 }
 
 /** The colours of the three axes, up and down, as `coloursOf` paints them. */

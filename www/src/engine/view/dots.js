@@ -7,6 +7,7 @@
  *
  * @module
  */
+import { NO_LEVEL } from '../columns.js';
 
 /** Radius of the ink, and what the casing adds, in page pixels. */
 const INK_PX = 1.7;
@@ -48,5 +49,5 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
       colours[j] = colour;
     }
   }
-  return { positions, normals, radii, colours };
+  return { positions, normals, radii, levels: new Uint32Array(2 * n).fill(NO_LEVEL), colours };
 }

@@ -6,6 +6,7 @@
  *
  * @module
  */
+import { NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 
 /** Byte → linear light, and linear light in 1/1023 steps → byte. */
@@ -17,8 +18,8 @@ const POINT_PX = 0.7;
 
 /** Discs larger than this on screen have a darker rim. */
 const RIM_FROM_PX = 4;
-/** How far discs seen from behind fade towards the ground. */
-const DIM_BACKFACES = 0.55;
+/** How far discs before the newest level fade towards the ground. */
+const MUTE = 0.5;
 
 /**
  * @typedef {object} Style
@@ -26,8 +27,9 @@ const DIM_BACKFACES = 0.55;
  * @property {number} disc_scale
  * @property {[number, number, number]} key_light_view
  * @property {number} dim
- * @property {boolean | number} [dim_backfaces]
+ * @property {number} dim_backfaces  how far discs seen from behind fade towards the ground
  * @property {number} [fade_s]
+ * @property {number | null} [level]  newest generation level drawn, null for all
  * @property {number} outline  index of the highlighted particle, −1 for none
  * @property {{min: number[], max: number[], colour: number[]} | null} box
  */
@@ -48,12 +50,13 @@ export class Painter {
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
+    this.levels = new Uint32Array(0);
     this.colours = new Uint32Array(0);
     /** Second at which a particle appears. */
     this.births = new Float64Array(0);
     this.view = new Float32Array(23);
     /** @type {Style} */
-    this.style = { background: [1, 1, 1, 1], disc_scale: 0.92, key_light_view: [-0.45, 0.65, 0.62], dim: 0, outline: -1, box: null };
+    this.style = { background: [1, 1, 1, 1], disc_scale: 0.92, key_light_view: [-0.45, 0.65, 0.62], dim: 0, dim_backfaces: 0, outline: -1, box: null };
     this.image = new ImageData(1, 1);
     this.depth = new Float32Array(1);
     this.width = 0;
@@ -82,30 +85,29 @@ export class Painter {
 
   /**
    * @param {number} first @param {Float32Array} positions @param {Float32Array} normals @param {Float32Array} radii
-   * @param {Uint32Array} colours @param {number} birth_s
+   * @param {Uint32Array} levels @param {Uint32Array} colours @param {number} birth_s
    */
-  write(first, positions, normals, radii, colours, birth_s) {
+  write(first, positions, normals, radii, levels, colours, birth_s) {
     const last = first + radii.length;
     if (last > this.radii.length) {
       const room = Math.max(last, 2 * this.radii.length);
-      const grow = (/** @type {Float32Array} */ old, /** @type {number} */ n) => {
-        const next = new Float32Array(n);
+      /** @template {Float32Array | Float64Array | Uint32Array} T @param {T} old @param {number} n @returns {T} */
+      const grow = (old, n) => {
+        const next = /** @type {T} */ (new /** @type {any} */ (old.constructor)(n));
         next.set(old);
         return next;
       };
       this.positions = grow(this.positions, 3 * room);
       this.normals = grow(this.normals, 3 * room);
       this.radii = grow(this.radii, room);
-      const next = new Uint32Array(room);
-      next.set(this.colours);
-      this.colours = next;
-      const births = new Float64Array(room);
-      births.set(this.births);
-      this.births = births;
+      this.levels = grow(this.levels, room);
+      this.colours = grow(this.colours, room);
+      this.births = grow(this.births, room);
     }
     this.positions.set(positions, 3 * first);
     this.normals.set(normals, 3 * first);
     this.radii.set(radii, first);
+    this.levels.set(levels, first);
     this.colours.set(colours, first);
     this.births.fill(birth_s, first, last);
   }
@@ -174,7 +176,7 @@ export class Painter {
   paint(image, depth, transparent, time_s) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
-    const { background, dim, disc_scale, outline, box, key_light_view } = this.style;
+    const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view, level = null } = this.style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     const packed = (/** @type {number} */ r, /** @type {number} */ g, /** @type {number} */ b) =>
       (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
@@ -197,9 +199,11 @@ export class Painter {
     const { unit: right, length: clip_x_per_world } = axis(0);
     const { unit: up } = axis(1);
     const key = [0, 1, 2].map((k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light);
-    const { positions, normals, radii, colours, births } = this;
+    const { positions, normals, radii, levels, colours, births } = this;
     for (let i = 0; i < this.count; i += 1) {
       if (births[i] > time_s) continue;
+      const older = level !== null && levels[i] < level;
+      if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) continue;
       const x = positions[3 * i];
       const y = positions[3 * i + 1];
       const z = positions[3 * i + 2];
@@ -228,7 +232,8 @@ export class Painter {
       const skyward = nx * up[0] + ny * up[1] + nz * up[2];
       const edge_on = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
       const shade = (0.56 + 0.1 * skyward + 0.52 * key_wrapped * key_wrapped) * (1 - 0.3 * edge_on ** 3) * (back ? 0.72 : 1);
-      const away = back ? 1 - (1 - DIM_BACKFACES) * (1 - dim) : dim;
+      const faded = older ? Math.max(dim, MUTE) : dim;
+      const away = back ? 1 - (1 - dim_backfaces) * (1 - faded) : faded;
       const colour = colours[i];
       const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ light_here) =>
         Math.min(1, LINEAR[byte] * light_here) * (1 - away) + ground[k] * away;

@@ -16,10 +16,11 @@
  * @param {Vec3} ray  length 1
  * @param {number} disc_scale  disc radius as a share of the particle's radius
  * @param {number} tolerance_rad
+ * @param {number} [last_level]  particles of later levels are hidden
  * @returns {number | null}
  */
-export function pick(columns, eye, ray, disc_scale, tolerance_rad) {
-  const { positions, normals, radii, count } = columns;
+export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = Infinity) {
+  const { positions, normals, radii, levels, count } = columns;
   const [ex, ey, ez] = eye;
   const [dx, dy, dz] = ray;
   let hit = -1;
@@ -36,7 +37,7 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad) {
     const r = radii[i] * disc_scale;
     const slack = tolerance_rad * along;
     const reach = r > slack ? r : slack;
-    if (off_sq > reach * reach) continue;
+    if (off_sq > reach * reach || levels[i] > last_level) continue;
     const nx = normals[j];
     const ny = normals[j + 1];
     const nz = normals[j + 2];

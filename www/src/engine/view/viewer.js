@@ -33,6 +33,8 @@ const FADE_S = 0.12;
 /** Time the picture takes to dim or come back. */
 const DIM_S = 0.15;
 const DIM = 0.62;
+/** How far discs seen from behind fade towards the ground. */
+const DIM_BACKFACES = 0.55;
 /** A picture that the screen did not take is drawn again this much later, and so many times. */
 const RETRY_MS = 60;
 const MOST_SKIPS = 20;
@@ -71,6 +73,8 @@ export class Viewer {
     this.theme = 'light';
     /** @type {Bounds | null} */
     this.box = null;
+    /** Newest generation level to be seen, null for all of them. @type {number | null} */
+    this.level = null;
     this.highlight = -1;
     /** The points of a model, three numbers each, drawn as dots. @type {Float32Array | null} */
     this.points = null;
@@ -89,12 +93,12 @@ export class Viewer {
     /** Called when what they wait for is on screen. @type {(() => void)[]} */
     this.waiting = [];
     this.frames = 0;
+    /** Times that particles were told to the device. */
+    this.uploads = 0;
     this.skipped = 0;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.retry = undefined;
     this.last_s = 0;
-    /** Times that particles were told to the device. */
-    this.uploads = 0;
     this.asked = 0;
     this.width = 0;
     this.height = 0;
@@ -141,7 +145,7 @@ export class Viewer {
 
   /** A new surface takes the place of the old one. @param {{grow: boolean}} options */
   begin({ grow }) {
-    if (grow && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
+    if (grow && this.level === null && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
     else this.reveal.end();
     this.onReveal(this.reveal.active ? { level: 0, levels: 0, particles: 0 } : null);
     this.glide.forget();
@@ -191,7 +195,7 @@ export class Viewer {
   }
 
   /**
-   * @param {{colour?: ViewState['colour'], size?: number, theme?: 'light' | 'dark', box?: Bounds | null, points?: Float32Array | null, highlight?: number, insets?: Insets}} look
+   * @param {{colour?: ViewState['colour'], size?: number, theme?: 'light' | 'dark', box?: Bounds | null, points?: Float32Array | null, level?: number | null, highlight?: number, insets?: Insets}} look
    */
   set(look) {
     if ((look.colour !== undefined && look.colour !== this.colour) || (look.theme !== undefined && look.theme !== this.theme)) {
@@ -202,10 +206,27 @@ export class Viewer {
     this.size = look.size ?? this.size;
     if (look.box !== undefined) this.box = look.box;
     if (look.points !== undefined) this.points = look.points;
+    if (look.level !== undefined) this.setLevel(look.level);
     if (look.highlight !== undefined) this.highlight = look.highlight;
     this.insets = look.insets ?? this.insets;
     this.style_due = true;
     this.invalidate();
+  }
+
+  /** @param {number | null} level */
+  setLevel(level) {
+    this.level = level;
+    // What grows of itself would go on behind the levels that are stepped through.
+    if (level !== null && this.reveal.active) {
+      this.reveal.end();
+      this.dirty = { first: 0, last: this.columns.count };
+      this.onReveal(null);
+    }
+  }
+
+  /** The newest level in the picture: one that does not exist counts as the last. */
+  shownLevel() {
+    return this.level === null ? null : Math.min(this.level, this.columns.last_level);
   }
 
   /** What a fit shows: the particles, else the clip box, all of it where it is drawn. */
@@ -355,14 +376,18 @@ export class Viewer {
       for (const [from, end, birth] of this.pieces(first, last, now_s)) {
         renderer.write(
           from, positions.subarray(3 * from, 3 * end), columns.normals.subarray(3 * from, 3 * end),
-          columns.radii.subarray(from, end), colours.subarray(from - first, end - first), birth,
+          columns.radii.subarray(from, end), columns.levels.subarray(from, end), colours.subarray(from - first, end - first), birth,
         );
+        this.uploads += 1;
       }
+      // The newest level that there is may be another.
+      if (this.level !== null) this.style_due = true;
       glide.note(positions, first, last);
     }
     const recolour_last = Math.min(recoloured.last, count);
     if (recoloured.first < recolour_last) {
       renderer.write_colours(recoloured.first, coloursOf(this.colour, this.theme, columns, recoloured.first, recolour_last, this.range));
+      this.uploads += 1;
     }
     this.dirty = { first: Infinity, last: 0 };
     this.recoloured = { first: Infinity, last: 0 };
@@ -378,7 +403,6 @@ export class Viewer {
   /** The ramp's ends follow the particles; when they move by more than can be seen, every colour is another. */
   follow() {
     const range = rangeOf(this.colour, this.columns);
-        this.uploads += 1;
     const old = this.range;
     const slack = RANGE_SLACK * (range ? range[1] - range[0] : 0);
     if (range && old && Math.abs(range[0] - old[0]) <= slack && Math.abs(range[1] - old[1]) <= slack) return;
@@ -387,7 +411,6 @@ export class Viewer {
   }
 
   /**
-      this.uploads += 1;
    * Writes the model's points behind the particles, as discs that face the eye, and so anew for every picture.
    * @param {Device['renderer']} renderer @param {View} view @param {number} count  of particles
    * @returns {number} discs written
@@ -396,7 +419,7 @@ export class Viewer {
     if (!this.points) return 0;
     const dots = dotsOf(this.points, view, { px: this.ratio, size: this.size, lift: this.lift(), palette: PALETTES[this.theme] });
     if (count + dots.radii.length > renderer.max_particles()) return 0;
-    renderer.write(count, dots.positions, dots.normals, dots.radii, dots.colours, -Infinity);
+    renderer.write(count, dots.positions, dots.normals, dots.radii, dots.levels, dots.colours, -Infinity);
     return dots.radii.length;
   }
 
@@ -466,6 +489,9 @@ export class Viewer {
       disc_scale: this.size,
       dim: this.dimAt(now_s),
       fade_s: this.calm.matches ? 0 : FADE_S,
+      level: this.shownLevel(),
+      // Level by level one often looks into a surface that is still open.
+      dim_backfaces: this.level === null ? DIM_BACKFACES : DIM_BACKFACES / 2,
       outline: this.highlight,
       box: this.box && { ...this.box, colour: [...rgbFromPacked(PALETTES[this.theme].box), 0.9] },
       pixel_ratio: this.ratio,
@@ -484,7 +510,7 @@ export class Viewer {
     const { columns, css_width, css_height } = this;
     if (columns.count === 0 || columns.stale || css_width === 0 || css_height === 0) return null;
     const view = this.currentView();
-    return pick(columns, view.eye, rayThrough(view, x, y, css_width, css_height), this.size, PICK_PX * view.world_per_px);
+    return pick(columns, view.eye, rayThrough(view, x, y, css_width, css_height), this.size, PICK_PX * view.world_per_px, this.shownLevel() ?? Infinity);
   }
 
   /**

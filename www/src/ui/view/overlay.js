@@ -12,16 +12,16 @@ const ANNOUNCE_MS = 3000;
 /**
  * @param {HTMLElement} view
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement }} parts
+ * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement, told: import('@preact/signals-core').ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` is the generation level chosen, in words
  */
-export function mountOverlay(view, engine, { stage, poster, start }) {
+export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
   const hint = h('p', { class: 'hint' }, 'Drag to turn');
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
   const empty = h('div', { class: 'empty', role: 'status' });
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
-  const text = computed(() => (engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
+  const text = computed(() => (told.value ? `${told.value.title}\n${told.value.text}` : engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
     partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: secondsOf(engine.timing.value),
   })));
   // The field panel reads the loading out.
@@ -74,6 +74,7 @@ function emptyState(engine) {
   return [
     h('h2', null, title),
     message ? h('p', { class: 'quiet' }, message) : null,
+    h('p', { class: 'quiet' }, `${remedy}${engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : ''}`),
     h(
       'div',
       { class: 'empty-actions' },

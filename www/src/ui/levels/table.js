@@ -1,0 +1,85 @@
+/** What each generation level holds and how it came about, read from the particles; and that in words. Pure. */
+import { NO_PARENT } from '../../engine/columns.js';
+import { FATE } from '../../engine/view/colouring.js';
+import { formatCount, plural } from '../format.js';
+
+/** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'last_level'>} Particles */
+/**
+ * One row per level. `fates` has eight numbers for each: how the children fared that the level before proposed.
+ * @typedef {object} LevelTable
+ * @property {number} count  particles in all
+ * @property {number} last  the last level
+ * @property {Uint32Array} fresh  particles of each level
+ * @property {Uint32Array} total  and of all levels up to it
+ * @property {Uint32Array} seeds  those of them without a parent
+ * @property {Uint32Array} fates
+ * @property {boolean} adaptive
+ */
+
+const FATES = 8;
+/** Three bits each in one number. */
+const MOST_SLOTS = 10;
+
+/** @param {Particles} particles @returns {LevelTable} */
+export function levelTable({ count, levels, parents, slots, adaptive, last_level }) {
+  const last = count > 0 ? last_level : 0;
+  const fresh = new Uint32Array(last + 1);
+  const seeds = new Uint32Array(last + 1);
+  // One level more: the last one's children found no place.
+  const fates = new Uint32Array(FATES * (last + 2));
+  for (let i = 0; i < count; i += 1) {
+    const level = levels[i];
+    fresh[level] += 1;
+    if (parents[i] === NO_PARENT) seeds[level] += 1;
+    for (let k = 0, bits = slots[i]; k < MOST_SLOTS && bits !== 0; k += 1, bits >>>= 3) fates[FATES * (level + 1) + (bits & 7)] += 1;
+  }
+  const total = new Uint32Array(last + 1);
+  for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
+  return { count, last, fresh, total, seeds, fates, adaptive };
+}
+
+/** How the children fared that were not placed, in the order in which it is said. */
+const REST = /** @type {const} */ ([
+  ['matched', 'met an existing particle', 'met existing particles'],
+  ['outside', 'fell outside the box', 'fell outside the box'],
+  ['notConverged', 'did not converge', 'did not converge'],
+  ['undefined', 'was undefined', 'were undefined'],
+  ['capped', 'was over the limit', 'were over the limit'],
+]);
+
+/** Particles of a level on a flat plane around one seed; null where there is no such figure. @param {LevelTable} table @param {number} level */
+export function flatCount({ adaptive, seeds }, level) {
+  return !adaptive && level > 0 && seeds.reduce((sum, n) => sum + n, 0) === 1 ? 6 * level : null;
+}
+
+/** For the slider. @param {LevelTable} table @param {number} level */
+export const shortOf = ({ last, fresh, total }, level) => `Level ${formatCount(level)} of ${formatCount(last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
+
+/**
+ * The level in words: what there is, and how it came about.
+ * @param {LevelTable} table @param {number} level
+ * @param {number} relax_steps  by which the particles have been moved since
+ */
+export function describeLevel(table, level, relax_steps) {
+  const { last, fresh, total, seeds, fates } = table;
+  const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new, ${formatCount(total[level])} so far`;
+  const moved = relax_steps > 0 ? ` Drawn where ${plural(relax_steps, 'relaxation step')} moved them.` : '';
+  if (level === 0) {
+    return { title, text: `${seeds[0] === 1 ? 'The front starts at one point of the surface.' : `${plural(seeds[0], 'point')} of the surface, a front from each.`}${moved}` };
+  }
+  const fateOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
+  const added = fateOf('added');
+  const rest = REST.filter(([name]) => fateOf(name) > 0).map(([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`);
+  const proposed = REST.reduce((sum, [name]) => sum + fateOf(name), added);
+  const fillers = fresh[level] - added - seeds[level];
+  const flat = flatCount(table, level);
+  return {
+    title,
+    text: [
+      `Level ${formatCount(level - 1)} proposed ${plural(proposed, 'child', 'children')}: ${[`${formatCount(added)} added`, ...rest].join(', ')}.`,
+      fillers > 0 ? ` ${plural(fillers, 'particle')} filled ${fillers === 1 ? 'a gap' : 'gaps'} at the end.` : '',
+      flat === null ? '' : ` A flat plane has ${formatCount(flat)} new ones here.`,
+      moved,
+    ].join(''),
+  };
+}

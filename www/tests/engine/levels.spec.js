@@ -1,0 +1,4 @@
+/** The generation levels as WebGL2 draws them. */
+import { suite } from './levels-suite.js';
+
+suite();

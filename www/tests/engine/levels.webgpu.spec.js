@@ -1,0 +1,4 @@
+/** The generation levels as WebGPU draws them. */
+import { suite } from './levels-suite.js';
+
+suite();

@@ -1,0 +1,182 @@
+/** The timeline of the generation levels. */
+import { expect, test } from '@playwright/test';
+import { open, scan, settled, state } from './helpers.js';
+
+/** @typedef {import('@playwright/test').Page} Page */
+
+/** @param {Page} page */
+const level = async (page) => (await state(page)).view.level;
+/** @param {Page} page */
+const slider = (page) => page.getByRole('slider', { name: 'Generation level' });
+/** @param {Page} page @param {string} name */
+const press = (page, name) => page.getByRole('group', { name: 'Step through the levels' }).getByRole('button', { name, exact: true }).click();
+/** The levels of the particles, counted. @param {Page} page @returns {Promise<number[]>} */
+const fresh = (page) => page.evaluate(() => {
+  const { count, levels } = /** @type {any} */ (window).marchingParticles.particles();
+  const n = new Array(Math.max(...levels) + 1).fill(0);
+  for (let i = 0; i < count; i += 1) n[levels[i]] += 1;
+  return n;
+});
+
+/** Long enough for some levels, if they were playing. @param {Page} page */
+const framesLater = (page) => page.evaluate(async () => {
+  for (let k = 0; k < 40; k += 1) await new Promise(requestAnimationFrame);
+});
+
+test('buttons and keys go through the levels, and the caption says how each came about', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const made = await fresh(page);
+  const last = made.length - 1;
+  await expect(slider(page)).toHaveAttribute('aria-valuetext', new RegExp(`^All ${last + 1} levels`));
+  await press(page, 'First level');
+  expect(await level(page)).toBe(0);
+  await expect(page.locator('.caption')).toContainText(`Level 0 of ${last} · 1 new, 1 so far`);
+  await press(page, 'Level forward');
+  await page.keyboard.press('.');
+  expect(await level(page)).toBe(2);
+  await expect(slider(page)).toHaveAttribute('aria-valuetext', `Level 2 of ${last}: ${made[2]} particles, ${made[0] + made[1] + made[2]} so far`);
+  // On an ellipsoid the first levels are those of a plane, of whose 30 children each is met by another's particle or new.
+  await expect(page.locator('.caption')).toContainText(/Level 1 proposed 30 children: 12 added, 18 met existing particles\. A flat plane has 12 new ones here\. Drawn where 10 relaxation steps moved them\./);
+  await page.keyboard.press(',');
+  expect(await level(page)).toBe(1);
+  await page.keyboard.press('<');
+  await page.keyboard.press(',');
+  expect(await level(page)).toBe(0);
+  await page.keyboard.press('>');
+  expect(await level(page)).toBe(null);
+  await expect(page.locator('.caption')).not.toContainText('Level');
+  // Back from the whole picture is the last level; forward from that the whole picture again.
+  await page.keyboard.press(',');
+  expect(await level(page)).toBe(last);
+  await page.keyboard.press('.');
+  expect(await level(page)).toBe(null);
+  await clean();
+});
+
+test('a press on a bar leads to its level, and the slider is moved by keys', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const bars = (await fresh(page)).length;
+  const box = await slider(page).boundingBox();
+  if (!box) throw new Error('the slider has no box');
+  for (const wanted of [0, 7, bars - 1]) {
+    await page.mouse.click(box.x + ((wanted + 0.5) / bars) * box.width, box.y + box.height / 2);
+    expect(await level(page)).toBe(wanted);
+  }
+  await expect(slider(page)).toBeFocused();
+  await page.keyboard.press('Home');
+  await page.keyboard.press('ArrowRight');
+  expect(await level(page)).toBe(1);
+  await page.mouse.move(box.x + 2, box.y + 8);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y - 40, { steps: 5 });
+  await page.mouse.up();
+  expect(await level(page)).toBe(Math.floor(bars / 2));
+  await slider(page).dblclick();
+  expect(await level(page)).toBe(null);
+  await clean();
+});
+
+test('play goes on by itself, can be paused, and ends with all levels', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await page.getByRole('combobox', { name: 'Levels per second' }).selectOption('25');
+  await press(page, 'Play');
+  await expect.poll(() => level(page)).toBeGreaterThan(2);
+  await page.keyboard.press('p');
+  await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
+  const at = await level(page);
+  await framesLater(page);
+  expect(await level(page)).toBe(at);
+  await press(page, 'Play');
+  await expect.poll(() => level(page)).toBe(null);
+  await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
+  await clean();
+});
+
+test('nothing plays of itself, whatever the link says', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify({ view: { level: 3 } })).toString('base64url')}` });
+  await expect(slider(page)).toHaveAttribute('aria-valuetext', /^Level 3 of/);
+  await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
+  await framesLater(page);
+  expect(await level(page)).toBe(3);
+});
+
+test('the level travels in the link, and a new run shows all of its particles', async ({ page }) => {
+  await open(page);
+  await press(page, 'First level');
+  for (let k = 0; k < 4; k += 1) await press(page, 'Level forward');
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  expect(JSON.parse(Buffer.from(new URL(link).hash.split('.')[2], 'base64url').toString()).view.level).toBe(4);
+  await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+  await settled(page);
+  expect(await level(page)).toBe(null);
+});
+
+test('a setting that changes keeps the level, and a level beyond the last counts as the last', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 30 }));
+  await expect(page.locator('.caption')).toContainText('Level 30 of');
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('radius_share', 0.02));
+  await settled(page);
+  const last = (await fresh(page)).length - 1;
+  expect(last).toBeLessThan(30);
+  await expect(page.locator('.caption')).toContainText(`Level ${last} of ${last}`);
+  expect(await level(page)).toBe(30);
+});
+
+test('an adaptive run has levels of its own, without a plane to compare with', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.getByRole('radio', { name: 'Adaptive' }).check();
+  await settled(page);
+  await press(page, 'First level');
+  await press(page, 'Level forward');
+  await press(page, 'Level forward');
+  await expect(page.locator('.caption')).toContainText(/Level 1 proposed \d+ children: \d+ added/);
+  await expect(page.locator('.caption')).not.toContainText('flat plane');
+  await clean();
+});
+
+test('without a surface there is nothing to step through', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setFormula('x^2 + 1'));
+  await settled(page);
+  await expect(page.locator('.levels-range')).toBeDisabled();
+  await page.keyboard.press('<');
+  expect(await level(page)).toBe(null);
+});
+
+test('the start of the front is turned to the eye', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await open(page);
+  const facing = () => page.evaluate(() => {
+    const { state, particles } = /** @type {any} */ (window).marchingParticles;
+    const { yaw, pitch } = state.view.camera;
+    const [x, y, z] = particles().normals;
+    return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
+  });
+  expect(await facing()).toBeLessThan(0.3);
+  await press(page, 'First level');
+  await expect.poll(facing).toBeGreaterThan(0.8);
+});
+
+for (const [width, height] of /** @type {const} */ ([[1440, 900], [820, 1180], [390, 844], [320, 640], [844, 390]])) {
+  test(`the timeline is whole and axe finds nothing at ${width} by ${height}`, async ({ page }) => {
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    const { clean } = await open(page, { width, height });
+    const compact = width < 720 || height < 480;
+    if (compact) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: 'Levels' }).click();
+    await press(page, 'First level');
+    for (let k = 0; k < 5; k += 1) await press(page, 'Level forward');
+    const boxes = await page.locator('#levels-body').evaluate((body) => [...body.children].map((child) => {
+      const { left, right, top, bottom } = child.getBoundingClientRect();
+      return { left, right, top, bottom };
+    }));
+    for (const [i, a] of boxes.entries()) {
+      expect(a.left).toBeGreaterThanOrEqual(0);
+      expect(a.right).toBeLessThanOrEqual(width);
+      for (const b of boxes.slice(i + 1)) expect(a.right <= b.left + 0.5 || b.right <= a.left + 0.5 || a.bottom <= b.top + 0.5 || b.bottom <= a.top + 0.5).toBe(true);
+    }
+    expect((await scan(page)).violations).toEqual([]);
+    await clean();
+  });
+}
