@@ -152,20 +152,49 @@ test('more particles than the limit are asked for first, and the answer is heede
   expect((await state(page)).settings.max_particles).toBeGreaterThan(before.count);
 });
 
-test('no surface in the box is said in words, with a way out', async ({ page }) => {
+test('no surface in the box is said in words, with a way out; the last surface stays, dimmed, where it was', async ({ page }) => {
   await open(page);
+  const before = (await state(page)).view.camera;
   await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
   await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
   await expect(page.locator('.figures')).toBeHidden();
-  // The box is shown whole, between the panels.
+  await expect(page.locator('.empty')).toContainText('The last surface stays, dimmed');
+  await atRest(page);
+  expect((await state(page)).view.camera).toEqual(before);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
+  await page.getByRole('button', { name: 'Export', exact: true }).click();
+  await page.getByRole('button', { name: /Export CSV/ }).click();
+  await expect(page.locator('.toast')).toContainText('no particles to export');
+  // What is wrong with the formula is said beside it, and no longer over the picture.
+  await typeFormula(page, 'x^2 +');
+  await expect(page.locator('.empty')).toBeHidden();
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
+  await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
+  await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
+  await settled(page);
+  await expect(page.locator('.empty')).toBeHidden();
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(false);
+  expect((await report(page)).count).toBeGreaterThan(100);
+});
+
+test('a link to a formula without a surface shows its box, whole', async ({ page }) => {
+  await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify({ formula: 'x^2 + 1' })).toString('base64url')}` });
+  await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
+  await expect(page.locator('.empty')).not.toContainText('The last surface');
   await atRest(page);
   const { distance } = (await state(page)).view.camera;
   await page.getByRole('button', { name: 'Take the gallery formula back' }).click();
   await settled(page);
   await atRest(page);
   expect((await state(page)).view.camera.distance).toBeLessThan(distance);
-  await expect(page.locator('.empty')).toBeHidden();
-  expect((await report(page)).count).toBeGreaterThan(100);
+});
+
+test('the camera comes to the surface of a typed formula', async ({ page }) => {
+  await open(page);
+  const { distance } = (await state(page)).view.camera;
+  await typeFormula(page, 'x^2 + y^2 + z^2 = 0.01');
+  await settled(page);
+  await expect.poll(async () => (await state(page)).view.camera.distance).toBeLessThan(distance / 4);
 });
 
 test('a stopped run is labelled and keeps what it has', async ({ page }) => {

@@ -90,5 +90,5 @@ test('panels fold, and hide all together', async ({ page }) => {
   await page.getByRole('button', { name: 'Hide the panels' }).click();
   await expect(page.locator('.panel:visible')).toHaveCount(0);
   await page.getByRole('button', { name: 'Show the panels' }).click();
-  await expect(page.locator('.panel:visible')).toHaveCount(3);
+  await expect(page.locator('.panel:visible')).toHaveCount(4);
 });
