@@ -64,18 +64,18 @@ describe('a level in words', () => {
   test('says how its children came about', () => {
     const table = levelTable(front());
     expect(describeLevel(table, 1, 0)).toEqual({
-      title: 'Level 1 of 2 · 3 new, 4 so far',
-      text: 'Level 0 proposed 6 children: 3 added, 2 fell outside the box, 1 did not converge. A flat plane has 6 new ones here.',
+      title: 'Level 1 of 2 · 3 new (on a flat plane 6), 4 so far',
+      text: 'Level 0 proposed 6 children: 3 added, 2 fell outside the box, 1 did not converge.',
     });
     expect(describeLevel(table, 2, 0).text).toBe(
-      'Level 1 proposed 8 children: 1 added, 5 met existing particles, 1 was undefined, 1 was over the limit. 1 particle filled a gap at the end. A flat plane has 12 new ones here.',
+      'Level 1 proposed 8 children: 1 added, 5 met existing particles, 1 was undefined, 1 was over the limit. 1 particle filled a gap at the end.',
     );
     expect(shortOf(table, 1)).toBe('Level 1 of 2: 3 particles, 4 so far');
   });
 
   test('says where a front starts, and that relaxation has moved it since', () => {
     expect(describeLevel(levelTable(front()), 0, 10)).toEqual({
-      title: 'Level 0 of 2 · 1 new, 1 so far', text: 'The front starts at one point of the surface. Drawn where 10 relaxation steps moved them.',
+      title: 'Level 0 of 2 · 1 new, 1 so far', text: 'The front starts at one point of the surface. Drawn after 10 relaxation steps.',
     });
     expect(describeLevel(levelTable(particles([{ level: 0 }, { level: 0 }])), 0, 0).text).toBe('2 points of the surface, a front from each.');
   });

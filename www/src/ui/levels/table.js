@@ -62,8 +62,10 @@ export const shortOf = ({ last, fresh, total }, level) => `Level ${formatCount(l
  */
 export function describeLevel(table, level, relax_steps) {
   const { last, fresh, total, seeds, fates } = table;
-  const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new, ${formatCount(total[level])} so far`;
-  const moved = relax_steps > 0 ? ` Drawn where ${plural(relax_steps, 'relaxation step')} moved them.` : '';
+  const flat = flatCount(table, level);
+  const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
+  const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
+  const moved = relax_steps > 0 ? ` Drawn after ${plural(relax_steps, 'relaxation step')}.` : '';
   if (level === 0) {
     return { title, text: `${seeds[0] === 1 ? 'The front starts at one point of the surface.' : `${plural(seeds[0], 'point')} of the surface, a front from each.`}${moved}` };
   }
@@ -72,13 +74,11 @@ export function describeLevel(table, level, relax_steps) {
   const rest = REST.filter(([name]) => fateOf(name) > 0).map(([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`);
   const proposed = REST.reduce((sum, [name]) => sum + fateOf(name), added);
   const fillers = fresh[level] - added - seeds[level];
-  const flat = flatCount(table, level);
   return {
     title,
     text: [
       `Level ${formatCount(level - 1)} proposed ${plural(proposed, 'child', 'children')}: ${[`${formatCount(added)} added`, ...rest].join(', ')}.`,
       fillers > 0 ? ` ${plural(fillers, 'particle')} filled ${fillers === 1 ? 'a gap' : 'gaps'} at the end.` : '',
-      flat === null ? '' : ` A flat plane has ${formatCount(flat)} new ones here.`,
       moved,
     ].join(''),
   };

@@ -21,12 +21,16 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const empty = h('div', { class: 'empty', role: 'status' });
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
-  const text = computed(() => (told.value ? `${told.value.title}\n${told.value.text}` : engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
+  const text = computed(() => (told.value ? told.value.title : engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
     partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: secondsOf(engine.timing.value),
   })));
   // The field panel reads the loading out.
-  bindText(caption, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
-  announce(spoken, text, computed(() => engine.busy.value || engine.reveal.value !== null));
+  const line = h('span');
+  const detail = h('span', { class: 'detail' });
+  caption.append(line, detail);
+  bindText(line, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
+  bindText(detail, () => (engine.loading.value ? '' : told.value?.text ?? ''));
+  announce(spoken, computed(() => (told.value ? `${text.value}. ${told.value.text}` : text.value)), computed(() => engine.busy.value || engine.reveal.value !== null));
 
   // The poster stands in until the first particles are on screen.
   const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
