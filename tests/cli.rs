@@ -149,6 +149,16 @@ fn text_report_names_the_figures_before_and_after() {
     for part in ["torus: ", "particles of radius", "after front", "relaxed", "Six neighbours", "digest "] {
         assert!(text.contains(part), "no `{part}` in:\n{text}");
     }
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split("  ").map(str::trim).collect()).collect();
+    for (label, figure) in [
+        ("Euler number", "0"),
+        ("Connected pieces", "1"),
+        ("All pieces found", "proven"),
+        ("Undecided cells", "0"),
+    ] {
+        let row = rows.iter().find(|row| row[0] == label);
+        assert!(row.is_some_and(|row| row[1..].contains(&figure)), "{label} {figure} is not in:\n{text}");
+    }
     let unrelaxed = stdout(&run(&["sample", "--surface", "torus", "--count", "1500", "--relax", "0"]));
     assert!(!unrelaxed.contains("after front"));
 }

@@ -80,33 +80,38 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     )
 }
 
-/// The rows of the report that are about quality, before and after the relaxation.
+/// The rows of the report that the lines above have not told: about quality, before and after the relaxation, and about the
+/// pieces of the surface.
 fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = serde_json::to_value(&outcome.report).map_err(io::Error::other)?;
     let compared = !report["quality_before"].is_null();
     let first = if compared { "after front" } else { "" };
     let second = if compared { "relaxed" } else { "" };
     writeln!(out, "{:LABEL$}{first:>COLUMN$}{second:>COLUMN$}{:>COLUMN$}", "", "ideal")?;
-    for row in &describe().report {
-        let Some(key) = row.key.strip_prefix("quality.") else {
-            continue;
-        };
-        let stands = |path: &str| {
-            path.split('.').try_fold(&report, |value, key| value.get(key)).is_some_and(|v| !v.is_null())
-        };
-        if !stands(row.key) || row.unless.is_some_and(stands) {
+    let value = |path: &str| {
+        path.split('.').try_fold(&report, |value, key| value.get(key)).filter(|value| !value.is_null())
+    };
+    for row in describe().report.iter().filter(|row| row.group != "Run") {
+        if value(row.key).is_none() || row.unless.is_some_and(|path| value(path).is_some()) {
             continue;
         }
-        let before = if compared { figure(row, &report["quality_before"][key]) } else { String::new() };
-        let after = figure(row, &report["quality"][key]);
-        writeln!(out, "{:LABEL$}{before:>COLUMN$}{after:>COLUMN$}{:>COLUMN$}", row.label, row.ideal)?;
+        let before = match row.key.strip_prefix("quality.") {
+            Some(key) if compared => figure(row, value(&format!("quality_before.{key}"))),
+            _ => String::new(),
+        };
+        let after = figure(row, value(row.key));
+        let line = format!("{:LABEL$}{before:>COLUMN$}{after:>COLUMN$}{:>COLUMN$}", row.label, row.ideal);
+        writeln!(out, "{}", line.trim_end())?;
     }
     Ok(())
 }
 
 /// A figure with the digits and the unit that the description gives it.
-fn figure(row: &ReportRow, value: &Value) -> String {
-    let Some(value) = value.as_f64() else {
+fn figure(row: &ReportRow, value: Option<&Value>) -> String {
+    if let Some(word) = value.and_then(Value::as_str) {
+        return if word == "searched" { "dense search".to_owned() } else { word.to_owned() };
+    }
+    let Some(value) = value.and_then(Value::as_f64) else {
         return "–".to_owned();
     };
     let (value, unit) = match row.unit {
