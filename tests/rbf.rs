@@ -281,7 +281,7 @@ fn other_units_and_places_give_the_same_field() {
 #[test]
 fn the_models_have_one_closed_piece_and_the_joined_ears_a_handle() {
     for (id, euler) in [("bunny", 2), ("bunny-joined", 0), ("rabbit", 2), ("sack-and-hat", 2)] {
-        let (_, report) = sampled(of_model(id), &Settings { radius_share: 0.004, ..Settings::default() });
+        let (_, report) = sampled(of_model(id), &Settings { radius_share: 0.003, ..Settings::default() });
         let quality = report.quality.expect("there are particles");
         assert_eq!(report.stop_reason, Some(StopReason::Complete), "{id}");
         assert_eq!((quality.euler, quality.components), (euler, 1), "{id}");

@@ -74,6 +74,93 @@ struct Layer {
     gradient: Vec<Vec3>,
 }
 
+/// The nodes of a dense grid, evaluated only where the surface can be.
+///
+/// The box is cut into blocks of [`COARSEST`] grid cells to an edge, and those that may hold the surface are halved until
+/// they are grid cells. Of the others only the sign of f is told.
+struct Dense {
+    value: Vec<f32>,
+    gradient: Vec<Vec3>,
+    /// Whether the node is a corner of a grid cell that may hold the surface.
+    is_near: Vec<bool>,
+}
+
+/// Grid cells along the edge of the first blocks of a dense grid: a power of two.
+const COARSEST: usize = 4;
+/// A block may hold the surface if at one of its corners |f| is no more than the largest |∇f| at them times so many
+/// diagonals. No point of a block is farther than half a diagonal from all corners; between them |∇f| may be somewhat larger.
+const REACH: f32 = 0.7;
+
+impl Dense {
+    fn new(
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        [nx, ny, nz]: [usize; 3],
+        step: DVec3,
+        node: impl Fn(usize, usize, usize) -> Vec3,
+    ) -> Self {
+        let index = |[i, j, k]: [usize; 3]| (k * ny + j) * nx + i;
+        // The eight places at the corners of a cube.
+        let eight = |[i, j, k]: [usize; 3], width: usize| {
+            (0..8).map(move |c| [i + width * (c & 1), j + width * (c >> 1 & 1), k + width * (c >> 2)])
+        };
+        let nodes = nx * ny * nz;
+        let mut dense = Self {
+            value: vec![f32::NAN; nodes],
+            gradient: vec![Vec3::ZERO; nodes],
+            is_near: vec![false; nodes],
+        };
+        let mut is_known = vec![false; nodes];
+        let mut wanted = Vec::new();
+        let mut points = Vec::with_capacity(BATCH);
+        let along = |n: usize| (0..n - 1).step_by(COARSEST);
+        let mut blocks: Vec<[usize; 3]> =
+            along(nz).flat_map(|k| along(ny).flat_map(move |j| along(nx).map(move |i| [i, j, k]))).collect();
+        let mut width = COARSEST;
+        loop {
+            for corner in blocks.iter().flat_map(|&block| eight(block, width)) {
+                if !core::mem::replace(&mut is_known[index(corner)], true) {
+                    wanted.push(corner);
+                }
+                dense.is_near[index(corner)] = width == 1;
+            }
+            for chunk in wanted.chunks(BATCH) {
+                points.clear();
+                points.extend(chunk.iter().map(|&[i, j, k]| node(i, j, k)));
+                let (value, gradient) = projector.evaluate_batch(field, &points);
+                for ((&corner, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
+                    (dense.value[index(corner)], dense.gradient[index(corner)]) = (value, gradient);
+                }
+            }
+            wanted.clear();
+            if width == 1 {
+                return dense;
+            }
+            let reach = REACH * width as f32 * step.length() as f32;
+            let mut halves = Vec::new();
+            for block in blocks {
+                let corners = || eight(block, width).map(index);
+                let least = corners().fold(f32::INFINITY, |least, n| least.min(dense.value[n].abs()));
+                let slope = corners().fold(0.0_f32, |most, n| most.max(dense.gradient[n].length()));
+                let first = dense.value[index(block)];
+                let differs = |n: usize| dense.value[n].is_nan() || (dense.value[n] <= 0.0) != (first <= 0.0);
+                if least <= reach * slope || corners().any(differs) {
+                    halves.extend(eight(block, width / 2));
+                    continue;
+                }
+                let [i, j, k] = block;
+                for row in (k..=k + width).flat_map(|k| (j..=j + width).map(move |j| [i, j, k])) {
+                    for value in &mut dense.value[index(row)..=index(row) + width] {
+                        // Any value of that sign.
+                        *value = if value.is_nan() { first } else { *value };
+                    }
+                }
+            }
+            (blocks, width) = (halves, width / 2);
+        }
+    }
+}
+
 /// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
 ///
 /// Two kinds of places are tried: grid edges whose ends differ in sign, and nodes whose first-order distance |f|/|∇f|
@@ -90,7 +177,9 @@ pub(super) fn survey(
 ) -> Survey {
     let size = bounds.hi() - bounds.lo();
     let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
-    let cells = (size / spacing).ceil();
+    // Whole blocks.
+    let block = if is_dense { COARSEST as f64 } else { 1.0 };
+    let cells = block * (size / (block * spacing)).ceil();
     let step = size / cells;
     let [nx, ny, nz] = cells.to_array().map(|c| c as usize + 1);
     let node = |i: usize, j: usize, k: usize| {
@@ -104,11 +193,16 @@ pub(super) fn survey(
         [0, 1].map(|_| Layer { value: vec![f32::NAN; nx * ny], gradient: vec![Vec3::ZERO; nx * ny] });
     let (mut least, mut greatest, mut defined) = (f32::INFINITY, f32::NEG_INFINITY, 0_usize);
     let mut points = Vec::with_capacity(BATCH);
+    let dense = is_dense.then(|| Dense::new(field, projector, [nx, ny, nz], step, node));
     for k in 0..=nz {
         // The layer above; the last round only closes the layer below.
         let (below, above) = layers.split_at_mut(1);
         let (lower, upper) = (&mut below[0], &mut above[0]);
-        if k < nz {
+        if let Some(dense) = dense.as_ref().filter(|_| k < nz) {
+            let layer = k * nx * ny..(k + 1) * nx * ny;
+            upper.value.copy_from_slice(&dense.value[layer.clone()]);
+            upper.gradient.copy_from_slice(&dense.gradient[layer]);
+        } else if k < nz {
             for first in (0..nx * ny).step_by(BATCH) {
                 let last = (first + BATCH).min(nx * ny);
                 points.clear();
@@ -117,6 +211,8 @@ pub(super) fn survey(
                 upper.value[first..last].copy_from_slice(value);
                 upper.gradient[first..last].copy_from_slice(gradient);
             }
+        }
+        if k < nz {
             for &v in upper.value.iter().filter(|v| v.is_finite()) {
                 least = least.min(v);
                 greatest = greatest.max(v);
@@ -128,6 +224,9 @@ pub(super) fn survey(
             for j in 0..ny {
                 for i in 0..nx {
                     let m = j * nx + i;
+                    if dense.as_ref().is_some_and(|dense| !dense.is_near[z * nx * ny + m]) {
+                        continue;
+                    }
                     let here = (node(i, j, z), lower.value[m], lower.gradient[m]);
                     if !here.1.is_finite() {
                         continue;
@@ -315,4 +414,41 @@ fn rounding(field: &mut dyn Field, projector: &mut Projector, points: &[Vec3]) -
         .collect();
     sort_numbers(&mut distance);
     2.0 * distance.get(distance.len() * 3 / 4).copied().unwrap_or(0.0)
+}
+
+#[cfg(all(test, feature = "points"))]
+mod tests {
+    use super::*;
+    use crate::field::model::MODELS;
+    use crate::field::rbf::RbfField;
+    use crate::points::models;
+
+    #[test]
+    fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
+        for model in MODELS {
+            let fit = models::begin(model).finish().expect("a model is solved for");
+            let mut field = RbfField::new(fit.data).expect("a field");
+            let n = [65, 49, 57];
+            let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
+            let node = |i: usize, j: usize, k: usize| {
+                (fit.bounds.lo() + step * DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
+            };
+            let dense = Dense::new(&mut field, &mut Projector::new(), n, step, node);
+            let mut all = Vec::new();
+            for k in 0..n[2] {
+                for j in 0..n[1] {
+                    all.extend((0..n[0]).map(|i| node(i, j, k)));
+                }
+            }
+            let mut value = vec![0.0; all.len()];
+            field.values(&all, &mut value);
+            let near = dense.is_near.iter().filter(|near| **near).count();
+            assert!(near * 2 < all.len(), "{}: {near} of {} nodes are near", model.id, all.len());
+            for (m, &exact) in value.iter().enumerate() {
+                let told = dense.value[m];
+                assert_eq!(told <= 0.0, exact <= 0.0, "{}: {told} for {exact} at {}", model.id, all[m]);
+                assert!(!dense.is_near[m] || told == exact, "{}: {told} for {exact} at {}", model.id, all[m]);
+            }
+        }
+    }
 }

@@ -116,34 +116,14 @@ impl Taylor {
         beta: &[DVec3; TOGETHER],
     ) {
         let d: [Group; 3] = [0, 1, 2].map(|axis| offset.map(|d| d[axis]));
-        let b: [Group; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
+        let beta: [Group; 3] = [0, 1, 2].map(|axis| beta.map(|b| b[axis]));
         let inverse: Group = offset.map(|d| 1.0 / d.length_squared());
-        let Some(a) = self.group.first_chunk_mut::<PLACES>() else {
+        let Some(powers) = self.group.first_chunk_mut::<PLACES>() else {
             unreachable!("the group has its places");
         };
-        a[0] = offset.map(|d| d.length_squared() * d.length());
-        for degree in 1..=DEGREE + 1 {
-            let m = degree as f64;
-            let (one, two) = ((5.0 - 2.0 * m) / m, (5.0 - m) / m);
-            let terms = below(degree)..below(degree + 1);
-            for (n, term) in terms.clone().zip(&self.terms[terms]) {
-                let [x, y, z] = term.less.map(|n| a[usize::from(n)]);
-                let [xx, yy, zz] = term.less_two.map(|n| a[usize::from(n)]);
-                a[n] = core::array::from_fn(|k| {
-                    let along = d[0][k] * x[k] + d[1][k] * y[k] + d[2][k] * z[k];
-                    (one * along + two * (xx[k] + yy[k] + zz[k])) * inverse[k]
-                });
-            }
-        }
-        for (sum, (a_n, term)) in polynomial.iter_mut().zip(a.iter().zip(&self.terms)) {
-            let [x, y, z] = term.more.map(|n| a[usize::from(n)]);
-            let [p, q, r] = term.powers.map(|power| (power + 1) as f64);
-            let of_group: Group = core::array::from_fn(|k| {
-                alpha[k] * a_n[k] + (b[0][k] * p * x[k] + b[1][k] * q * y[k] + b[2][k] * r * z[k])
-            });
-            let [e, f, g, h, i, j, k, l] = of_group;
-            *sum += ((e + i) + (g + k)) + ((f + j) + (h + l));
-        }
+        powers[0] = offset.map(|d| d.length_squared() * d.length());
+        recur(powers, &self.terms, &d, &inverse);
+        collect(polynomial, powers, &self.terms, alpha, &beta);
     }
 
     /// The polynomial of the eighth of the cell whose middle is at `side`/2, each of −1 or 1.
@@ -178,5 +158,45 @@ impl Taylor {
         core::array::from_fn(|row| {
             Lanes(self.rows[row].map(|n| polynomial.get(n).map_or(0.0, |&coefficient| coefficient as f32)))
         })
+    }
+}
+
+/// The coefficients of |d + t|³ from the first on, by the recurrence.
+///
+/// Not inlined, as [`collect`]: only what comes in and goes out by memory is worked on in SIMD registers throughout.
+#[inline(never)]
+fn recur(a: &mut [Group; PLACES], terms: &[Term], d: &[Group; 3], inverse: &Group) {
+    for degree in 1..=DEGREE + 1 {
+        let m = degree as f64;
+        let [one, two] = [(5.0 - 2.0 * m) / m, (5.0 - m) / m].map(|factor| inverse.map(|i| factor * i));
+        let range = below(degree)..below(degree + 1);
+        for (n, term) in range.clone().zip(&terms[range]) {
+            let [x, y, z] = term.less.map(|n| &a[usize::from(n)]);
+            let [xx, yy, zz] = term.less_two.map(|n| &a[usize::from(n)]);
+            let along: Group = core::array::from_fn(|k| d[0][k] * x[k] + d[1][k] * y[k] + d[2][k] * z[k]);
+            let around: Group = core::array::from_fn(|k| xx[k] + yy[k] + zz[k]);
+            a[n] = core::array::from_fn(|k| one[k] * along[k] + two[k] * around[k]);
+        }
+    }
+}
+
+/// Adds α |d + t|³ + β · ∇|d + t|³ of all centres of a group.
+#[inline(never)]
+fn collect(
+    polynomial: &mut Polynomial,
+    a: &[Group; PLACES],
+    terms: &[Term],
+    alpha: &Group,
+    beta: &[Group; 3],
+) {
+    // β along each axis times the power that a derivative brings down.
+    let weighed =
+        beta.map(|b| -> [Group; POWERS] { core::array::from_fn(|power| b.map(|b| b * (power + 1) as f64)) });
+    for (sum, (a_n, term)) in polynomial.iter_mut().zip(a.iter().zip(terms)) {
+        let [x, y, z] = term.more.map(|n| &a[usize::from(n)]);
+        let [p, q, r] = [0, 1, 2].map(|axis| &weighed[axis][term.powers[axis]]);
+        let slope: Group = core::array::from_fn(|k| p[k] * x[k] + q[k] * y[k] + r[k] * z[k]);
+        let [e, f, g, h, i, j, k, l]: Group = core::array::from_fn(|k| alpha[k] * a_n[k] + slope[k]);
+        *sum += ((e + i) + (g + k)) + ((f + j) + (h + l));
     }
 }

@@ -6,10 +6,10 @@
 //! small and are summed one by one. A cell is made when the first point falls into it, and depends on nothing but the field.
 //! (Barnes and Hut's tree of 1986, read the other way round as in the fast multipole method of Greengard and Rokhlin, 1987.)
 
-use super::kernel::{self, Centre, Near, Place, Rows};
+use super::kernel::{self, Centre, Near, Place, Places, Rows};
 use super::taylor::{DEGREE, Polynomial, TERMS, Taylor};
 use super::{Frame, RbfData};
-use crate::math::{LANES, Sym3};
+use crate::math::{LANES, Lanes, Sym3};
 use glam::{DVec3, Vec3};
 
 /// Half-width of the first cell, in local units, in which the centres fill a box of half-width 1/2 to 1. Points outside are
@@ -28,6 +28,9 @@ const MOST_NEAR: usize = 32;
 const CLOSE: f64 = 1.0;
 /// Nor are cells of this half-width, which a cluster of centres could ask for.
 const SMALLEST: f64 = 1.0 / 512.0;
+
+/// Fewer points of a cell than this, one after the other, are evaluated one by one: eight together cost less than three.
+const FEW: usize = 3;
 
 /// No cell yet.
 const NONE: u32 = u32::MAX;
@@ -53,6 +56,8 @@ struct Leaf {
     inverse: f32,
     far: Rows,
     near: Vec<Near>,
+    /// How many centres are near.
+    centres: usize,
 }
 
 /// The octree.
@@ -124,6 +129,7 @@ impl Tree {
                 half: half as f32,
                 inverse: (1.0 / half) as f32,
                 far: self.taylor.rows(&far),
+                centres: near.len(),
                 near: near.chunks(LANES).map(Near::new).collect(),
             });
             (self.leaves.len() as u32 - 1) | LEAF
@@ -151,36 +157,71 @@ impl Tree {
         (index & !LEAF) as usize
     }
 
-    /// f at `p`, and for `N` = 4 also ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz). `leaf` is that of the point
-    /// before, where the next one often is.
-    fn at<const N: usize>(&mut self, p: Vec3, leaf: &mut usize, data: &RbfData) -> [f32; N] {
-        let local = [0, 1, 2].map(|axis| (p[axis] - self.origin[axis]) * self.scale);
-        // A cell holds its lower faces. NaN is outside of all.
-        let holds = |middle: &[f32; 3], half: f32| {
-            (0..3).all(|k| middle[k] - half <= local[k] && local[k] < middle[k] + half)
-        };
-        if !self.leaves.get(*leaf).is_some_and(|leaf| holds(&leaf.middle, leaf.half)) {
-            if !holds(&[0.0; 3], ROOT as f32) {
-                return exact(data, p);
+    /// Gives to `store` with the index of each point f, and for `N` = 4 also ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy,
+    /// yz, zz).
+    #[inline(always)]
+    fn sums<const N: usize>(
+        &mut self,
+        data: &RbfData,
+        points: &[Vec3],
+        mut store: impl FnMut(usize, [f32; N]),
+    ) {
+        let scale = self.scale;
+        let mut last = usize::MAX;
+        let mut n = 0;
+        while n < points.len() {
+            // The next points, as many of them as are in the cell of the first.
+            let count = LANES.min(points.len() - n);
+            let mut local = [Lanes::splat(0.0); 3];
+            for (lane, p) in points[n..n + count].iter().enumerate() {
+                for axis in 0..3 {
+                    local[axis].0[lane] = p[axis];
+                }
             }
-            *leaf = self.leaf(local);
+            for axis in 0..3 {
+                local[axis] = (local[axis] - Lanes::splat(self.origin[axis])) * Lanes::splat(scale);
+            }
+            let first = local.map(|lanes| lanes.0[0]);
+            if !self.leaves.get(last).is_some_and(|leaf| holds(&leaf.middle, leaf.half, &first)) {
+                if !holds(&[0.0; 3], ROOT as f32, &first) {
+                    store(n, exact(data, points[n]));
+                    n += 1;
+                    continue;
+                }
+                last = self.leaf(first);
+            }
+            let Leaf { middle, half, inverse, far, near, centres } = &self.leaves[last];
+            let together = (1..count)
+                .find(|&lane| !holds(middle, *half, &local.map(|lanes| lanes.0[lane])))
+                .unwrap_or(count);
+            let mut offset = local;
+            for axis in 0..3 {
+                offset[axis] = (local[axis] - Lanes::splat(middle[axis])) * Lanes::splat(*inverse);
+            }
+            // Gradients are those of the model; values and second derivatives have units.
+            if together < FEW {
+                for lane in 0..together {
+                    let [local, offset] = [&local, &offset].map(|place| place.map(|lanes| lanes.0[lane]));
+                    let mut sums = kernel::sums::<N>(far, near, &Place { local, offset, inverse: *inverse });
+                    sums[0] /= scale;
+                    sums[4.min(N)..].iter_mut().for_each(|second| *second *= scale);
+                    store(n + lane, sums);
+                }
+            } else {
+                let mut sums =
+                    kernel::sums_of_eight::<N>(far, near, *centres, &Places { local, offset }, *inverse);
+                sums[0] = sums[0] / Lanes::splat(scale);
+                sums[4.min(N)..].iter_mut().for_each(|second| *second = *second * Lanes::splat(scale));
+                for lane in 0..together {
+                    store(n + lane, core::array::from_fn(|k| sums[k].0[lane]));
+                }
+            }
+            n += together;
         }
-        let Leaf { middle, inverse, far, near, .. } = &self.leaves[*leaf];
-        let offset = [0, 1, 2].map(|axis| (local[axis] - middle[axis]) * inverse);
-        let mut sums = kernel::sums::<N>(far, near, &Place { local, offset, inverse: *inverse });
-        // Gradients are those of the model; values and second derivatives have units.
-        sums[0] /= self.scale;
-        for second in sums.iter_mut().skip(4) {
-            *second *= self.scale;
-        }
-        sums
     }
 
     pub(super) fn values(&mut self, data: &RbfData, points: &[Vec3], value: &mut [f32]) {
-        let mut leaf = usize::MAX;
-        for (p, value) in points.iter().zip(value) {
-            [*value] = self.at(*p, &mut leaf, data);
-        }
+        self.sums(data, points, |n, [v]| value[n] = v);
     }
 
     pub(super) fn gradients(
@@ -190,11 +231,7 @@ impl Tree {
         value: &mut [f32],
         gradient: &mut [Vec3],
     ) {
-        let mut leaf = usize::MAX;
-        for (p, (value, gradient)) in points.iter().zip(value.iter_mut().zip(gradient)) {
-            let [v, x, y, z] = self.at(*p, &mut leaf, data);
-            (*value, *gradient) = (v, Vec3::new(x, y, z));
-        }
+        self.sums(data, points, |n, [v, x, y, z]| (value[n], gradient[n]) = (v, Vec3::new(x, y, z)));
     }
 
     pub(super) fn hessians(
@@ -205,14 +242,17 @@ impl Tree {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        let mut leaf = usize::MAX;
-        let outputs = value.iter_mut().zip(gradient).zip(hessian);
-        for (p, ((value, gradient), hessian)) in points.iter().zip(outputs) {
-            let [v, x, y, z, xx, xy, xz, yy, yz, zz] = self.at(*p, &mut leaf, data);
-            (*value, *gradient) = (v, Vec3::new(x, y, z));
-            *hessian = Sym3 { xx, xy, xz, yy, yz, zz };
-        }
+        self.sums(data, points, |n, [v, x, y, z, xx, xy, xz, yy, yz, zz]| {
+            (value[n], gradient[n]) = (v, Vec3::new(x, y, z));
+            hessian[n] = Sym3 { xx, xy, xz, yy, yz, zz };
+        });
     }
+}
+
+/// Whether a cell, which has its lower faces, holds a place. NaN is outside of all.
+#[inline(always)]
+fn holds(middle: &[f32; 3], half: f32, place: &[f32; 3]) -> bool {
+    (0..3).all(|k| middle[k] - half <= place[k] && place[k] < middle[k] + half)
 }
 
 /// x⁸, one power more than the polynomials have.
