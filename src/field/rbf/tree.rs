@@ -178,8 +178,8 @@ impl Tree {
                     local[axis].0[lane] = p[axis];
                 }
             }
-            for axis in 0..3 {
-                local[axis] = (local[axis] - Lanes::splat(self.origin[axis])) * Lanes::splat(scale);
+            for (local, origin) in local.iter_mut().zip(self.origin) {
+                *local = (*local - Lanes::splat(origin)) * Lanes::splat(scale);
             }
             let first = local.map(|lanes| lanes.0[0]);
             if !self.leaves.get(last).is_some_and(|leaf| holds(&leaf.middle, leaf.half, &first)) {
@@ -194,10 +194,9 @@ impl Tree {
             let together = (1..count)
                 .find(|&lane| !holds(middle, *half, &local.map(|lanes| lanes.0[lane])))
                 .unwrap_or(count);
-            let mut offset = local;
-            for axis in 0..3 {
-                offset[axis] = (local[axis] - Lanes::splat(middle[axis])) * Lanes::splat(*inverse);
-            }
+            let offset: [Lanes; 3] = core::array::from_fn(|axis| {
+                (local[axis] - Lanes::splat(middle[axis])) * Lanes::splat(*inverse)
+            });
             // Gradients are those of the model; values and second derivatives have units.
             if together < FEW {
                 for lane in 0..together {
