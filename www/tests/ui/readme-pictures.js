@@ -28,8 +28,6 @@ const LEVEL_SURFACE = 'torus';
 const LEVEL_SETTINGS = { radius_share: 0.0075, seed: 4 };
 const LEVELS = [10, 17, 25, 34];
 const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
-/** Less than the time between two levels, so that none is missed. */
-const TICK_MS = 5;
 
 const base = process.argv[2] ?? 'http://localhost:4517/';
 const folder = fileURLToPath(new URL('../../readme/', import.meta.url));
@@ -95,52 +93,27 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await write(`sizes-${theme}.webp`, await webp(frames, 0.86));
 }
 
-// The page lets the levels appear by the clock. With the clock held, each can be shown at its time.
 for (const theme of /** @type {const} */ (['light', 'dark'])) {
   const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
-  await page.addInitScript(() => {
-    const run_ms = performance.now.bind(performance);
-    /** @type {number | null} */
-    let held_ms = null;
-    performance.now = () => held_ms ?? run_ms();
-    /** @type {any} */ (window).clock = {
-      hold: () => { held_ms = run_ms(); },
-      advance: (/** @type {number} */ ms) => { held_ms = (held_ms ?? 0) + ms; },
-    };
-  });
   await page.goto(base);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await onlyThePicture(page);
-  await page.evaluate(async ({ surface, settings, camera }) => {
-    const mp = /** @type {any} */ (window).marchingParticles;
-    const insets = { left: 0, right: 0, top: 0, bottom: 0 };
-    mp.engine.setInsets(insets);
-    await mp.set({ surface, settings, view: { colour: 'level', camera: { ...mp.state.view.camera, ...camera } } });
-    mp.engine.setInsets(insets);
-    mp.engine.zoom(1.15);
-  }, { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA });
-  await page.waitForTimeout(500);
-  const whole = await page.screenshot();
-  await page.evaluate(() => {
-    const mp = /** @type {any} */ (window).marchingParticles;
-    /** @type {any} */ (window).clock.hold();
-    mp.engine.run();
-  });
-  await page.waitForFunction(() => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    return !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value?.levels > 0;
-  });
   const frames = [];
-  for (const level of LEVELS) {
-    await page.waitForFunction(({ level, tick_ms }) => {
-      const { engine } = /** @type {any} */ (window).marchingParticles;
-      if (engine.reveal.value.level >= level) return true;
-      /** @type {any} */ (window).clock.advance(tick_ms);
-      return false;
-    }, { level, tick_ms: TICK_MS });
+  for (const level of [...LEVELS, null]) {
+    await page.evaluate(async ({ surface, settings, camera, level }) => {
+      const mp = /** @type {any} */ (window).marchingParticles;
+      const insets = { left: 0, right: 0, top: 0, bottom: 0 };
+      mp.engine.setInsets(insets);
+      // The front as it was placed; at the end, as it was relaxed.
+      const relaxed = level === null ? {} : { relax_steps: 0 };
+      await mp.set({ surface, settings: { ...settings, ...relaxed }, view: { colour: 'level', level, camera: { ...mp.state.view.camera, ...camera } } });
+      mp.engine.setInsets(insets);
+      mp.engine.zoom(1.15);
+    }, { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA, level });
+    await page.waitForTimeout(500);
     frames.push(await page.screenshot());
   }
   await page.close();
-  await write(`levels-${theme}.webp`, await webp([...frames, whole], 0.86));
+  await write(`levels-${theme}.webp`, await webp(frames, 0.86));
 }
 await browser.close();
