@@ -111,6 +111,16 @@ impl Particles {
         self.slots.reserve_exact(more);
     }
 
+    /// Gives back the room for more particles than there are.
+    pub(crate) fn shrink(&mut self) {
+        self.position.shrink_to_fit();
+        self.normal.shrink_to_fit();
+        self.radius.shrink_to_fit();
+        self.parent.shrink_to_fit();
+        self.level.shrink_to_fit();
+        self.slots.shrink_to_fit();
+    }
+
     /// Adds a particle.
     pub fn push(&mut self, position: Vec3, normal: Vec3, radius: f32, parent: u32, level: u32, slots: Slots) {
         self.position.push(position);

@@ -6,6 +6,7 @@
 //! and compares eight distances at a time. Memory is proportional to the occupied cells and a query costs the same
 //! at 10³ and 10⁶ points.
 
+pub(crate) mod chains;
 pub(crate) mod tree;
 
 use crate::math::{LANES, Lanes};
@@ -313,55 +314,6 @@ fn key(x: u32, y: u32, z: u32) -> u64 {
         | (u64::from(z) & COORDINATE_MASK) << (2 * COORDINATE_BITS)
 }
 
-/// A set of places that answers "is this point near one of them" fast and never with a false no: the cells around each
-/// place, hashed to bits.
-#[derive(Clone, Debug, Default)]
-pub struct Vicinity {
-    inverse_side: f32,
-    bits: Vec<u64>,
-}
-
-impl Vicinity {
-    /// Forgets all places; "near" now means within `radius`, and about `places` will be added.
-    pub fn reset(&mut self, radius: f32, places: usize) {
-        self.inverse_side = 1.0 / radius;
-        // 27 cells a place, many of them shared with other places: at 256 bits a place, a wrong yes is rare.
-        self.bits.clear();
-        self.bits.resize((4 * places.max(1)).next_power_of_two(), 0);
-    }
-
-    /// Adds a place.
-    pub fn add(&mut self, place: Vec3) {
-        let [x, y, z] = place.to_array().map(|c| coordinate(c * self.inverse_side));
-        for dz in [u32::MAX, 0, 1] {
-            for dy in [u32::MAX, 0, 1] {
-                for dx in [u32::MAX, 0, 1] {
-                    let (word, bit) =
-                        self.bit(key(x.wrapping_add(dx), y.wrapping_add(dy), z.wrapping_add(dz)));
-                    self.bits[word] |= bit;
-                }
-            }
-        }
-    }
-
-    /// Whether `point` may be within the radius of a place.
-    #[inline]
-    #[must_use]
-    pub fn may_hold(&self, point: Vec3) -> bool {
-        let [x, y, z] = point.to_array().map(|c| coordinate(c * self.inverse_side));
-        let (word, bit) = self.bit(key(x, y, z));
-        self.bits[word] & bit != 0
-    }
-
-    #[inline(always)]
-    fn bit(&self, key: u64) -> (usize, u64) {
-        // Multiplied twice, because word and bit take more bits than one product spreads well.
-        let once = key.wrapping_mul(GOLDEN_RATIO);
-        let hash = (once ^ once >> 32).wrapping_mul(GOLDEN_RATIO);
-        ((hash >> 32) as usize & (self.bits.len() - 1), 1 << (hash >> 58))
-    }
-}
-
 /// Every point of `points` within `radius` of `centre`, by looking at all of them: the oracle of [`CellGrid::gather`].
 #[must_use]
 pub fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
@@ -376,7 +328,7 @@ pub fn gather_naive(points: &[Vec3], centre: Vec3, radius: f32) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    fn cloud(count: u32) -> Vec<Vec3> {
+    pub(super) fn cloud(count: u32) -> Vec<Vec3> {
         // A Weyl sequence: well spread, deterministic, no two points alike.
         let step = Vec3::new(0.754_877_7, 0.569_840_3, 0.430_159_7);
         (0..count).map(|i| (step * i as f32).fract() * 4.0 - 2.0).collect()
@@ -400,24 +352,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn vicinity_never_misses_and_is_seldom_wrong() {
-        let points = cloud(4000);
-        let (places, radius) = (&points[..40], 0.11);
-        let mut vicinity = Vicinity::default();
-        vicinity.reset(radius, places.len());
-        places.iter().for_each(|&place| vicinity.add(place));
-        let mut wrong = 0;
-        for &p in &points {
-            let near = places.iter().any(|place| place.distance(p) <= radius);
-            assert!(!near || vicinity.may_hold(p), "{p}");
-            // The 27 cells around a place end within two radii of it on every axis.
-            let around = places.iter().any(|place| (*place - p).abs().max_element() <= 2.0 * radius);
-            wrong += usize::from(vicinity.may_hold(p) && !around);
-        }
-        assert!(wrong < points.len() / 10, "{wrong} of {}", points.len());
     }
 
     #[test]

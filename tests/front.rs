@@ -237,10 +237,12 @@ fn levels_in_lanes_are_the_sequential_front_particle_by_particle() {
         assert_eq!(fast.level, naive.level, "{surface}");
         let slots: Vec<_> = fast.slots.iter().map(|s| [0, 1, 2, 3, 4, 5].map(|k| s.get(k))).collect();
         assert_eq!(slots, naive.slots, "{surface}");
-        // The same places, but for the rounding of the order of operations in the curvature fit.
+        // The same places, but for the rounding of the order of operations in the curvature fit. Where it makes a child just
+        // pass or just miss the residual of 10⁻⁴ r, the difference is of that size and grows through the levels behind it:
+        // to 0.9 % of r on the tanglecube.
         let apart =
             fast.position.iter().zip(&naive.position).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        assert!(apart < 1e-3 * sampler.radius() as f32, "{surface}: {apart} apart");
+        assert!(apart < 0.02 * sampler.radius() as f32, "{surface}: {apart} apart");
     }
 }
 

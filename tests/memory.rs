@@ -40,13 +40,12 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Most bytes per particle beyond the output. The aim is 64. Measured: 83 to 98, the fewer the more particles: neighbour
-/// lists, two sets of vectors, the grid and the room reserved for a denser packing.
-const MOST: f64 = 110.0;
+/// Most bytes per particle beyond the output. In the front these are the neighbour lists, the grid and the room reserved for
+/// a denser packing, in the relaxation the lists, the forces, the places before the step and a smaller grid.
+const MOST: f64 = 64.0;
 
-/// The same where the radii vary: curvature and slope of every particle of the front, and longer neighbour lists. Measured:
-/// 150 to 175.
-const MOST_ADAPTIVE: f64 = 185.0;
+/// The same where the radii vary: curvature and slope of every particle of the front.
+const MOST_ADAPTIVE: f64 = 104.0;
 
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
 const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;

@@ -650,10 +650,10 @@ impl AdaptiveFront {
         self.ring.clear();
         self.touching.clear();
         let mut alone = true;
-        let list = found.iter().filter_map(|near| {
+        let list = found.iter().map(|near| {
             let j = near.index as usize;
             if j == parent {
-                return None;
+                return (near.index, false);
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
             if same_sheet(near, normal, other, both) {
@@ -665,7 +665,7 @@ impl AdaptiveFront {
                 alone = false;
             }
             let reach = LISTED * both;
-            (j < parent && other.dot(normal) > 0.0 && near.distance_sq <= reach * reach).then_some(near.index)
+            (near.index, (j < parent) & (other.dot(normal) > 0.0) & (near.distance_sq <= reach * reach))
         });
         if pairs.len() == parent {
             pairs.push(list);

@@ -123,7 +123,7 @@ impl Gaps {
         if self.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
             return;
         }
-        ground.pairs.push(self.found.iter().filter(same_sheet).map(|near| near.index));
+        ground.pairs.push(self.found.iter().map(|near| (near.index, same_sheet(&near))));
         let level = ground.particles.level[i] + 1;
         ground.grid.insert(position, ground.particles.len() as u32);
         // It has neighbours all around, so it places no children.

@@ -25,6 +25,7 @@ mod seeds;
 mod settings;
 mod sheets;
 mod sizing;
+mod surroundings;
 mod survey;
 mod uniform;
 
@@ -77,9 +78,9 @@ const COUNT_ROOM: f64 = 1.1;
 
 /// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
 /// but no more than the peak that tests/memory.rs holds it to.
-const BYTES_PER_PARTICLE: usize = 120;
+const BYTES_PER_PARTICLE: usize = 95;
 /// The same for an adaptive run.
-const BYTES_PER_ADAPTIVE_PARTICLE: usize = 190;
+const BYTES_PER_ADAPTIVE_PARTICLE: usize = 125;
 
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
@@ -723,6 +724,8 @@ impl Sampler {
 
     fn begin_relaxation(&mut self) {
         self.front.release();
+        self.particles.shrink();
+        self.pairs.shrink();
         let law = match self.settings.sampling {
             Sampling::Uniform => {
                 relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }

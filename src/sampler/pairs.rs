@@ -1,133 +1,156 @@
 //! Neighbour lists for the relaxation: every pair once, under the larger index.
 
-/// Lists by particle. A list can be replaced; it keeps its place while it fits.
+/// Neighbours that a list has room for. Within the reach of the relaxation a lattice has 6 to 12, half of them of a
+/// smaller index; one particle in a hundred has more than eight.
+pub(super) const ROOM: usize = 8;
+
+/// Lists by particle. A neighbour stands as its distance back in the order of the particles, which is that of the front:
+/// those around a particle are of its own level or the few before, so that 16 bits are enough.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    start: Vec<u32>,
-    /// At `start[i]` a header (length in the low half, capacity in the high half), then the neighbours.
-    entries: Vec<u32>,
+    /// Distances back to the neighbours; 0 after the last.
+    near: Vec<[u16; ROOM]>,
+    /// Larger and smaller index of the pairs that find no room there: in crowds, and where fronts meet that are far apart
+    /// in the order.
+    far: Vec<[u32; 2]>,
 }
-
-/// Room for a header and a list of usual length: within the reach of the relaxation a lattice has 6 to 12 neighbours,
-/// half of them of smaller index.
-const ENTRIES_PER_LIST: usize = 6;
-
-/// Entries that a moved list gets beyond its length, so that it moves seldom.
-const SPARE: usize = 2;
 
 impl Pairs {
     pub(super) fn clear(&mut self) {
-        self.start.clear();
-        self.entries.clear();
+        self.near.clear();
+        self.far.clear();
     }
 
-    /// Makes room for `particles` lists of usual length.
+    /// Makes room for exactly `particles` lists.
     pub(super) fn reserve(&mut self, particles: usize) {
-        self.start.reserve_exact(particles.saturating_sub(self.start.len()));
-        self.entries.reserve_exact((particles * ENTRIES_PER_LIST).saturating_sub(self.entries.len()));
+        self.near.reserve_exact(particles.saturating_sub(self.near.len()));
+    }
+
+    /// Gives back the room beyond the lists there are.
+    pub(super) fn shrink(&mut self) {
+        self.near.shrink_to_fit();
+        self.far.shrink_to_fit();
     }
 
     /// Number of lists.
     pub(super) fn len(&self) -> usize {
-        self.start.len()
+        self.near.len()
     }
 
     pub(super) fn truncate(&mut self, len: usize) {
-        self.start.truncate(len);
+        self.near.truncate(len);
+        self.far.retain(|pair| (pair[0] as usize) < len);
     }
 
     /// Adds empty lists up to `len`.
     pub(super) fn extend_to(&mut self, len: usize) {
-        while self.start.len() < len {
-            self.push([]);
-        }
+        self.near.resize(len.max(self.near.len()), [0; ROOM]);
     }
 
-    /// Adds the list of the next particle.
+    /// Adds the list of the next particle: those of the `candidates`, of a smaller index, that are said to belong to it.
     #[inline]
-    pub(super) fn push(&mut self, neighbours: impl IntoIterator<Item = u32>) {
-        let head = self.entries.len();
-        self.start.push(head as u32);
-        self.entries.push(0);
-        self.entries.extend(neighbours);
-        let len = (self.entries.len() - head - 1) as u32;
-        self.entries[head] = len | len << 16;
+    pub(super) fn push(&mut self, candidates: impl IntoIterator<Item = (u32, bool)>) {
+        let i = self.near.len();
+        self.near.push([0; ROOM]);
+        self.fill(i, candidates);
     }
 
-    /// Replaces the list of particle `i`.
-    pub(super) fn replace(&mut self, i: usize, neighbours: &[u32]) {
-        let mut head = self.start[i] as usize;
-        let mut capacity = (self.entries[head] >> 16) as usize;
-        if neighbours.len() > capacity {
-            self.make_room(1 + neighbours.len() + SPARE);
-            head = self.entries.len();
-            capacity = neighbours.len() + SPARE;
-            self.start[i] = head as u32;
-            self.entries.resize(head + 1 + capacity, 0);
+    /// Replaces the list of particle `i`, of which no pair is [far](Self::far).
+    #[inline]
+    pub(super) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
+        let mut list = [0; ROOM + 1];
+        let mut len = 0;
+        for (j, belongs) in candidates {
+            let back = (i as u32).wrapping_sub(j);
+            if belongs && (len == ROOM || back > u32::from(u16::MAX)) {
+                push_gently(&mut self.far, [i as u32, j]);
+                continue;
+            }
+            // Written in any case: a branch would be mispredicted for every other candidate.
+            list[len] = back as u16;
+            len += usize::from(belongs);
         }
-        self.entries[head] = neighbours.len() as u32 | (capacity as u32) << 16;
-        self.entries[head + 1..head + 1 + neighbours.len()].copy_from_slice(neighbours);
+        list[len] = 0;
+        self.near[i].copy_from_slice(&list[..ROOM]);
     }
 
-    /// Grows by a sixteenth where a vector would double: moved lists are few.
-    fn make_room(&mut self, entries: usize) {
-        if self.entries.len() + entries > self.entries.capacity() {
-            self.entries.reserve_exact(entries + self.entries.len() / 16);
-        }
-    }
-
-    /// Adds `j` to the list of particle `i` if it is not there.
+    /// Adds `j` to the list of particle `i` if it is not there. No pair of `j` is [far](Self::far).
     pub(super) fn insert(&mut self, i: usize, j: u32) {
-        let head = self.start[i] as usize;
-        let (len, capacity) = ((self.entries[head] & 0xffff) as usize, (self.entries[head] >> 16) as usize);
-        if self.of(i).contains(&j) {
-            return;
+        let back = i as u32 - j;
+        if let Ok(back) = u16::try_from(back) {
+            let list = &mut self.near[i];
+            if let Some(place) = list.iter().position(|&other| other == back || other == 0) {
+                list[place] = back;
+                return;
+            }
         }
-        if len < capacity {
-            self.entries[head] += 1;
-            self.entries[head + 1 + len] = j;
-        } else {
-            let moved = self.entries.len();
-            let capacity = len + 1 + SPARE;
-            self.make_room(1 + capacity);
-            self.start[i] = moved as u32;
-            self.entries.push((len + 1) as u32 | (capacity as u32) << 16);
-            self.entries.extend_from_within(head + 1..head + 1 + len);
-            self.entries.push(j);
-            self.entries.resize(moved + 1 + capacity, 0);
-        }
+        push_gently(&mut self.far, [i as u32, j]);
     }
 
-    /// Neighbours of particle `i` with a smaller index.
-    #[inline(always)]
-    pub(super) fn of(&self, i: usize) -> &[u32] {
-        let head = self.start[i] as usize;
-        let len = (self.entries[head] & 0xffff) as usize;
-        &self.entries[head + 1..head + 1 + len]
+    /// Drops the far pairs of the particles of which `is_renewed` says so.
+    pub(super) fn drop_far(&mut self, is_renewed: impl Fn(usize) -> bool) {
+        self.far.retain(|pair| !pair.iter().any(|&i| is_renewed(i as usize)));
     }
+
+    /// Neighbours of particle `i` with a smaller index, but for those of far pairs.
+    #[inline(always)]
+    pub(super) fn near(&self, i: usize) -> impl Iterator<Item = usize> {
+        self.near[i].iter().take_while(|&&back| back != 0).map(move |&back| i - usize::from(back))
+    }
+
+    /// The other pairs: larger and smaller index.
+    pub(super) fn far(&self) -> &[[u32; 2]] {
+        &self.far
+    }
+}
+
+/// Grows by a sixteenth where a vector would double.
+fn push_gently<T>(items: &mut Vec<T>, item: T) {
+    if items.len() == items.capacity() {
+        items.reserve_exact(64 + items.len() / 16);
+    }
+    items.push(item);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn all_of(pairs: &Pairs, i: usize) -> Vec<usize> {
+        let far = pairs.far().iter().filter(|pair| pair[0] as usize == i).map(|pair| pair[1] as usize);
+        let mut all: Vec<usize> = pairs.near(i).chain(far).collect();
+        all.sort_unstable();
+        all
+    }
+
     #[test]
     fn lists_hold_what_was_put_last() {
+        // Farther back than 16 bits reach, and more neighbours than a list has room for.
+        let first = 70_000;
         let mut pairs = Pairs::default();
-        for i in 0..40_u32 {
-            pairs.push((0..i % 7).map(|k| k + i));
+        pairs.extend_to(first);
+        for i in 0..40 {
+            pairs.push((0..13).map(|k| (k * 1_741, k < i % 11)));
         }
-        for round in 0..5_u32 {
-            for i in (0..40).filter(|i| i % 3 == round % 3) {
-                let list: Vec<u32> = (0..(i + round) % 9).map(|k| k * i + round).collect();
-                pairs.replace(i as usize, &list);
-                assert_eq!(pairs.of(i as usize), list);
-                pairs.insert(i as usize, 1_000 + round);
-                pairs.insert(i as usize, 1_000 + round);
-                let (last, rest) = pairs.of(i as usize).split_last().expect("one was inserted");
-                assert_eq!((*last, rest), (1_000 + round, list.as_slice()));
+        for round in 0..5 {
+            let is_renewed = |i: usize| i >= first && i % 3 == round as usize % 3;
+            pairs.drop_far(is_renewed);
+            for i in (first..first + 40).filter(|&i| is_renewed(i)) {
+                let list = (0..(i as u32 + round) % 12).map(|k| k * 1_741 + round);
+                pairs.fill(i, list.clone().map(|j| (j, true)));
+                let mut expected: Vec<usize> = list.map(|j| j as usize).collect();
+                assert_eq!(all_of(&pairs, i), expected);
+                pairs.insert(i, 69_000);
+                expected.push(69_000);
+                assert_eq!(all_of(&pairs, i), expected);
+                if expected.len() <= 2 {
+                    pairs.insert(i, 69_000);
+                    assert_eq!(all_of(&pairs, i), expected);
+                }
             }
         }
-        assert_eq!(pairs.len(), 40);
+        assert_eq!(pairs.len(), first + 40);
+        pairs.truncate(first);
+        assert_eq!(pairs.far(), [[0; 2]; 0]);
     }
 }

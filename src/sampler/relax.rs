@@ -9,18 +9,17 @@
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
 //!   so the energy falls at every step.
 
-use super::adaptive_grid::RadiusGrids;
-use super::pairs::Pairs;
+use super::adaptive_grid::RadiusChains;
+use super::pairs::{Pairs, ROOM};
 use super::project::{BATCH, Projector, Tolerance};
 use super::repulsion::{Gaussian, Overlap, Points, Repulsion};
 use super::sizing::Sizing;
 use crate::field::Field;
-
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::{Neighbour, Vicinity};
+use crate::spatial::Neighbour;
 use core::ops::Range;
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 
 /// Range of the Gaussian, in radii.
 pub(super) const CUT_OFF: f32 = Gaussian::RANGE;
@@ -38,12 +37,11 @@ const TRUSTED_CORRECTION: f32 = 0.02;
 /// What a relaxation does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Put the particles around those who have gone far into the grid.
+    /// Put all particles into the grid.
     Grid,
     /// Make the lists of those who have gone far anew.
     Refresh,
     Forces,
-    Judge,
     Move,
     Restore,
     Polish,
@@ -69,6 +67,35 @@ pub(super) struct Surface<'a> {
     pub(super) sizing: Option<&'a Sizing>,
 }
 
+/// Particles whose pairs are worked out together, and the most pairs they have.
+const BUNDLE: usize = 32;
+const MOST_PAIRS: usize = BUNDLE * ROOM;
+
+/// The pairs of some particles, one after the other, to be worked out in lanes: with no branch that depends on a distance,
+/// which would be mispredicted for every other pair.
+#[derive(Clone, Debug)]
+struct Bundle {
+    offset: [Vec4; MOST_PAIRS],
+    /// Mean radius, where radii differ.
+    mean: [f32; MOST_PAIRS],
+    weight: [f32; MOST_PAIRS],
+    energy: [f32; MOST_PAIRS],
+    /// Smaller index.
+    other: [u32; MOST_PAIRS],
+}
+
+impl Bundle {
+    fn new() -> Self {
+        Self {
+            offset: [Vec4::ZERO; MOST_PAIRS],
+            mean: [1.0; MOST_PAIRS],
+            weight: [0.0; MOST_PAIRS],
+            energy: [0.0; MOST_PAIRS],
+            other: [0; MOST_PAIRS],
+        }
+    }
+}
+
 /// A relaxation under way.
 #[derive(Clone)]
 pub(super) struct Relaxation {
@@ -78,18 +105,18 @@ pub(super) struct Relaxation {
     done: u32,
     stage: Stage,
     next: usize,
-    grids: RadiusGrids,
+    grid: RadiusChains,
+    /// The farthest that a particle has gone in this move, and at most since the grid was made.
+    farthest: f32,
+    drift: f32,
     found: Vec<Neighbour>,
-    list: Vec<u32>,
-    /// Particles that have gone far since their lists were made.
-    far: Vec<u32>,
-    vicinity: Vicinity,
-    /// Whether all lists are made anew.
-    all: bool,
-    /// Length of each particle's way since its lists were made.
-    way: Vec<f32>,
-    /// Sum of (p_i − p_j) exp(−d²/2σ²) over the neighbours.
-    force: Vec<Vec3>,
+    /// Whether a list is to be made anew.
+    is_old: bool,
+    /// Force on each particle, the sum of `offset * weight` over its pairs, zero when the summation begins; and in `w` the
+    /// length of its way since its list was made. That is infinite if the list is to be made anew, and minus infinity from
+    /// when it was until the particle moves.
+    force: Vec<Vec4>,
+    bundle: Box<Bundle>,
     /// Positions before the step under judgement; empty before the first.
     previous: Vec<Vec3>,
     has_previous: bool,
@@ -118,14 +145,13 @@ impl Relaxation {
             done: 0,
             stage: Stage::Done,
             next: 0,
-            grids: RadiusGrids::new(),
+            grid: RadiusChains::new(),
+            farthest: 0.0,
+            drift: 0.0,
             found: Vec::new(),
-            list: Vec::new(),
-            far: Vec::new(),
-            vicinity: Vicinity::default(),
-            all: false,
-            way: Vec::new(),
+            is_old: false,
             force: Vec::new(),
+            bundle: Box::new(Bundle::new()),
             previous: Vec::new(),
             has_previous: false,
             previous_radius: Vec::new(),
@@ -168,22 +194,22 @@ impl Relaxation {
             };
         }
         self.energy.truncate(self.done as usize);
-        self.way.clear();
-        self.way.resize(particles, 0.0);
-        self.far.clear();
-        self.all = false;
+        fill(&mut self.force, particles, Vec4::ZERO);
+        fill(&mut self.previous, particles, Vec3::ZERO);
+        self.farthest = 0.0;
+        self.drift = f32::INFINITY;
+        self.sum = 0.0;
+        self.is_old = false;
         self.steep = false;
-        self.since.clear();
-        self.previous_radius.clear();
-        if matches!(law, Law::Overlap { .. }) {
-            self.since.resize(particles, 0.0);
-        }
+        let resized = if matches!(law, Law::Overlap { .. }) { particles } else { 0 };
+        fill(&mut self.since, resized, 0.0);
+        fill(&mut self.previous_radius, resized, 0.0);
         self.ending = target == 0 && matches!(law, Law::Overlap { .. });
         if pairs.len() == particles && self.done == 0 && !self.ending {
-            self.after_lists(particles);
+            self.after_lists();
         } else {
             pairs.extend_to(particles);
-            self.make_lists(particles);
+            self.make_lists();
         }
     }
 
@@ -243,9 +269,9 @@ impl Relaxation {
         particles: &mut Particles,
         mut budget: u32,
     ) -> (u32, bool) {
+        let n = particles.len();
         let mut moved = false;
         while budget > 0 && self.stage != Stage::Done {
-            let n = if self.stage == Stage::Refresh { self.far.len() } else { particles.len() };
             let last = n.min(self.next + budget as usize);
             let range = self.next..last;
             budget -= range.len() as u32;
@@ -253,45 +279,40 @@ impl Relaxation {
             match self.stage {
                 Stage::Grid => {
                     if range.start == 0 {
-                        let reach = L::RANGE + L::SKIN;
                         let (smallest, largest) = law.extent(particles);
-                        self.grids.reset(smallest, largest, reach);
-                        if !self.all {
-                            self.vicinity.reset(reach * largest, self.far.len());
-                            for &i in &self.far {
-                                self.vicinity.add(particles.position[i as usize]);
-                            }
-                        }
+                        self.grid.reset(smallest, largest, L::RANGE + L::SKIN + L::SLACK, n);
+                        self.drift = 0.0;
                     }
                     for i in range {
-                        let p = particles.position[i];
-                        if self.all || self.vicinity.may_hold(p) {
-                            self.grids.insert(p, law.radius(particles, i), i as u32);
-                        }
+                        self.grid.insert(particles.position[i], law.radius(particles, i), i as u32);
                     }
                     if last == n {
                         self.enter(Stage::Refresh);
                     }
                 }
                 Stage::Refresh => {
-                    for k in range {
-                        self.refresh(law, pairs, particles, self.far[k] as usize);
+                    if range.start == 0 {
+                        pairs.drop_far(|i| self.force[i].w.is_infinite());
+                    }
+                    for i in range {
+                        if self.force[i].w.is_infinite() {
+                            self.refresh(law, pairs, particles, i);
+                        }
                     }
                     if last == n {
-                        self.far.clear();
-                        self.all = false;
-                        self.after_lists(particles.len());
+                        self.is_old = false;
+                        self.after_lists();
                     }
                 }
                 Stage::Forces => {
-                    for i in range {
-                        self.repel(law, pairs, particles, i);
+                    for first in (range.start..last).step_by(BUNDLE) {
+                        self.repel(law, pairs, particles, first..last.min(first + BUNDLE));
                     }
                     if last == n {
-                        self.enter(Stage::Judge);
+                        self.repel_far(law, pairs, particles);
+                        self.judge::<L>(n);
                     }
                 }
-                Stage::Judge => self.judge::<L>(particles),
                 Stage::Move => {
                     let mut points = Points::new();
                     for first in (range.start..last).step_by(BATCH) {
@@ -301,7 +322,7 @@ impl Relaxation {
                     }
                     moved |= !range.is_empty();
                     if last == n {
-                        self.after_moving(n);
+                        self.after_moving(law, particles);
                     }
                 }
                 Stage::Restore => {
@@ -309,6 +330,7 @@ impl Relaxation {
                         let back = (particles.position[i] - self.previous[i]).length();
                         let shrunk = particles.radius[i];
                         self.restore(particles, i);
+                        self.take_force(i);
                         if L::RESIZES {
                             self.since[i] = (self.since[i] - back).max(0.0);
                         }
@@ -317,7 +339,7 @@ impl Relaxation {
                     moved = true;
                     if last == n {
                         self.has_previous = false;
-                        self.after_moving(n);
+                        self.after_moving(law, particles);
                     }
                 }
                 Stage::Polish => {
@@ -333,7 +355,7 @@ impl Relaxation {
                             // The grading is a promise about all pairs: none may be missing that the front or a change of
                             // radii has left out.
                             self.ending = true;
-                            self.make_lists(n);
+                            self.make_lists();
                         } else {
                             self.enter(Stage::Done);
                         }
@@ -341,9 +363,14 @@ impl Relaxation {
                 }
                 Stage::Grade => {
                     for i in range {
-                        self.lowered |= grade(law.slope(), pairs, particles, i);
+                        for j in pairs.near(i) {
+                            self.lowered |= grade(law.slope(), particles, i, j);
+                        }
                     }
                     if last == n {
+                        for &[i, j] in pairs.far() {
+                            self.lowered |= grade(law.slope(), particles, i as usize, j as usize);
+                        }
                         let lowered = core::mem::take(&mut self.lowered);
                         self.steep |= lowered;
                         if lowered {
@@ -351,7 +378,7 @@ impl Relaxation {
                         } else if self.ending {
                             self.enter(Stage::Done);
                         } else {
-                            self.begin_forces(n);
+                            self.enter(Stage::Forces);
                         }
                     }
                 }
@@ -362,10 +389,9 @@ impl Relaxation {
     }
 
     /// Makes all lists anew.
-    fn make_lists(&mut self, n: usize) {
-        self.far.clear();
-        self.far.extend(0..n as u32);
-        self.all = true;
+    fn make_lists(&mut self) {
+        self.is_old = true;
+        self.force.iter_mut().for_each(|force| force.w = f32::INFINITY);
         self.enter(Stage::Grid);
     }
 
@@ -375,7 +401,7 @@ impl Relaxation {
     }
 
     /// Goes on from complete lists: to the forces or, where the radii may differ too much, by way of their grading.
-    fn after_lists(&mut self, n: usize) {
+    fn after_lists(&mut self) {
         let differ = match self.law {
             Law::Gaussian { .. } => false,
             Law::Overlap { .. } => self.steep || self.ending || !self.has_begun(),
@@ -383,21 +409,17 @@ impl Relaxation {
         if differ {
             self.enter(Stage::Grade);
         } else {
-            self.begin_forces(n);
+            self.enter(Stage::Forces);
         }
     }
 
-    fn begin_forces(&mut self, n: usize) {
-        self.force.clear();
-        self.force.resize(n, Vec3::ZERO);
-        self.sum = 0.0;
-        self.enter(Stage::Forces);
-    }
-
     /// Goes on from new places, by way of new lists where the old ones may miss a pair.
-    fn after_moving(&mut self, n: usize) {
-        if self.far.is_empty() {
-            self.after_lists(n);
+    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) {
+        self.drift += core::mem::take(&mut self.farthest);
+        if !self.is_old {
+            self.after_lists();
+        } else if self.drift < L::SLACK * law.radius(particles, 0) {
+            self.enter(Stage::Refresh);
         } else {
             self.enter(Stage::Grid);
         }
@@ -407,68 +429,106 @@ impl Relaxation {
     /// have come within range without being listed.
     #[inline]
     fn went<L: Repulsion>(&mut self, law: &L, particles: &Particles, i: usize, distance: f32, grown: f32) {
-        let before = self.way[i];
-        let mut after = before + distance;
+        self.farthest = self.farthest.max(distance);
+        let mut way = self.force[i].w + distance;
         if L::RESIZES {
-            after += 0.5 * L::RANGE * grown.max(0.0);
+            way += 0.5 * L::RANGE * grown.max(0.0);
         }
-        self.way[i] = after;
-        let limit = 0.5 * L::SKIN * law.radius(particles, i);
-        if after > limit && before <= limit {
-            self.far.push(i as u32);
+        if way > 0.5 * L::SKIN * law.radius(particles, i) {
+            self.is_old = true;
+            way = f32::INFINITY;
         }
+        self.force[i].w = way;
     }
 
     /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the range and the skin. Those of
     /// a larger index get it into their lists.
     fn refresh<L: Repulsion>(&mut self, law: &L, pairs: &mut Pairs, particles: &Particles, i: usize) {
-        self.way[i] = 0.0;
         let radius = law.radius(particles, i);
         let listed = |other: f32| 0.5 * (L::RANGE + L::SKIN) * (radius + other);
-        self.grids.gather(particles.position[i], listed, &mut self.found);
+        let reach = |other: f32| listed(other) + self.drift;
+        self.grid.gather(&particles.position, particles.position[i], reach, &mut self.found);
         let normal = particles.normal[i];
-        self.list.clear();
-        for &Neighbour { index: j, distance_sq, .. } in &self.found {
-            if particles.normal[j as usize].dot(normal) <= 0.0 {
-                continue;
-            }
-            if L::RESIZES {
-                let reach = listed(law.radius(particles, j as usize));
-                if distance_sq > reach * reach {
-                    continue;
-                }
-            }
-            if (j as usize) < i {
-                self.list.push(j);
-            } else if j as usize != i && !self.all {
+        self.found.retain(|near| {
+            let j = near.index as usize;
+            let reach = listed(law.radius(particles, j));
+            j != i && near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0
+        });
+        let (smaller, larger) = (|j: &u32| (*j as usize) < i, |j: &u32| *j as usize > i);
+        let found = self.found.iter().map(|near| near.index);
+        pairs.fill(i, found.clone().map(|j| (j, smaller(&j))));
+        for j in found.filter(larger) {
+            // Those whose own lists are made anew find it themselves.
+            if self.force[j as usize].w.is_finite() {
                 pairs.insert(j as usize, i as u32);
             }
         }
-        pairs.replace(i, &self.list);
+        self.force[i].w = f32::NEG_INFINITY;
     }
 
-    /// Adds the repulsion between particle `i` and its listed neighbours to the forces on both, and to the energy.
-    #[inline]
-    fn repel<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles, i: usize) {
-        let p = particles.position[i];
-        let radius = law.radius(particles, i);
-        let mut force = Vec3::ZERO;
-        let mut energy = 0.0;
-        for &j in pairs.of(i) {
-            let j = j as usize;
-            let offset = p - particles.position[j];
-            let (weight, of_pair) = law.pair(offset, 0.5 * (radius + law.radius(particles, j)));
-            energy += of_pair;
-            force += offset * weight;
-            self.force[j] -= offset * weight;
+    /// Adds the repulsion between each particle of a bundle and its listed neighbours to the forces on both, and to the
+    /// energy.
+    fn repel<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles, range: Range<usize>) {
+        let Bundle { offset, mean, weight, energy, other } = &mut *self.bundle;
+        // A list has at most the room it has: the remainders only tell the compiler that.
+        let mut count = 0;
+        let mut end = [0; BUNDLE];
+        for (end, i) in end.iter_mut().zip(range.clone()) {
+            let p = particles.position[i].extend(0.0);
+            for j in pairs.near(i) {
+                let k = count % MOST_PAIRS;
+                offset[k] = p - particles.position[j].extend(0.0);
+                other[k] = j as u32;
+                if L::RESIZES {
+                    mean[k] = 0.5 * (particles.radius[i] + particles.radius[j]);
+                }
+                count += 1;
+            }
+            *end = count;
         }
-        self.force[i] += force;
-        self.sum += f64::from(energy);
+        for first in (0..MOST_PAIRS).step_by(4).take_while(|&first| first < count) {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| offset[first + k]);
+            let lanes = Mat4::from_cols(a, b, c, d).transpose();
+            let (x, y, z) = (lanes.x_axis, lanes.y_axis, lanes.z_axis);
+            let mean = Vec4::from_slice(&mean[first..first + 4]);
+            let (of_weight, of_energy) = law.pairs(x * x + y * y + z * z, mean);
+            of_weight.write_to_slice(&mut weight[first..first + 4]);
+            of_energy.write_to_slice(&mut energy[first..first + 4]);
+        }
+        let mut count = 0;
+        for (&end, i) in end.iter().zip(range) {
+            let mut force = Vec4::ZERO;
+            let mut sum = 0.0;
+            for k in count..end {
+                let k = k % MOST_PAIRS;
+                let push = offset[k] * weight[k];
+                force += push;
+                self.force[other[k] as usize] -= push;
+                sum += energy[k];
+            }
+            self.force[i] += force;
+            self.sum += f64::from(sum);
+            count = end;
+        }
+    }
+
+    /// The same for the far pairs.
+    fn repel_far<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles) {
+        for &[i, j] in pairs.far() {
+            let (i, j) = (i as usize, j as usize);
+            let offset = particles.position[i] - particles.position[j];
+            let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
+            let (weight, energy) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
+            let push = offset.extend(0.0) * weight.x;
+            self.force[i] += push;
+            self.force[j] -= push;
+            self.sum += f64::from(energy.x);
+        }
     }
 
     /// Accepts the last step or has it taken back.
-    fn judge<L: Repulsion>(&mut self, particles: &Particles) {
-        let energy = self.sum / particles.len() as f64;
+    fn judge<L: Repulsion>(&mut self, particles: usize) {
+        let energy = core::mem::take(&mut self.sum) / particles as f64;
         if self.has_previous {
             let before = self.energy.last().copied().unwrap_or(f64::INFINITY);
             if energy >= before {
@@ -488,10 +548,6 @@ impl Relaxation {
             self.has_previous = false;
             return self.enter(Stage::Polish);
         }
-        self.previous.resize(particles.len(), Vec3::ZERO);
-        if L::RESIZES {
-            self.previous_radius.resize(particles.len(), 0.0);
-        }
         self.has_previous = true;
         self.enter(Stage::Move);
     }
@@ -508,7 +564,8 @@ impl Relaxation {
             let p = particles.position[i];
             let normal = particles.normal[i];
             let radius = law.radius(particles, i);
-            let force = self.force[i] - normal * normal.dot(self.force[i]);
+            let force = self.take_force(i);
+            let force = force - normal * normal.dot(force);
             self.previous[i] = p;
             if L::RESIZES {
                 self.previous_radius[i] = radius;
@@ -553,6 +610,14 @@ impl Relaxation {
         }
     }
 
+    /// The force on particle `i`, which is about to move; it is zero then.
+    #[inline(always)]
+    fn take_force(&mut self, i: usize) -> Vec3 {
+        let force = self.force[i];
+        self.force[i] = Vec4::new(0.0, 0.0, 0.0, force.w.max(0.0));
+        force.truncate()
+    }
+
     /// Puts particle `i` back where the step under judgement found it.
     fn restore(&self, particles: &mut Particles, i: usize) {
         particles.position[i] = self.previous[i];
@@ -562,21 +627,21 @@ impl Relaxation {
     }
 }
 
-/// Lowers the radius of particle `i` to what its listed neighbours allow it at this slope, and theirs to what it allows
-/// them. Says whether any was lowered.
-fn grade(slope: f32, pairs: &Pairs, particles: &mut Particles, i: usize) -> bool {
-    let mut lowered = false;
-    for &j in pairs.of(i) {
-        let j = j as usize;
-        let rise = slope * (particles.position[i] - particles.position[j]).length();
-        let (a, b) = (particles.radius[i], particles.radius[j]);
-        if a > b + rise {
-            particles.radius[i] = b + rise;
-            lowered = true;
-        } else if b > a + rise {
-            particles.radius[j] = a + rise;
-            lowered = true;
-        }
+/// Makes a column of `len` times `value`, in no more memory than it takes.
+fn fill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
+    column.clear();
+    column.reserve_exact(len);
+    column.resize(len, value);
+}
+
+/// Lowers the larger of two radii to what the smaller allows it at this slope. Says whether it was lowered.
+fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
+    let rise = slope * (particles.position[i] - particles.position[j]).length();
+    let (a, b) = (particles.radius[i], particles.radius[j]);
+    if a > b + rise {
+        particles.radius[i] = b + rise;
+    } else if b > a + rise {
+        particles.radius[j] = a + rise;
     }
-    lowered
+    a > b + rise || b > a + rise
 }

@@ -7,7 +7,7 @@ use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
 use crate::math::Sym3;
 use crate::particles::Particles;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Evaluations to bring one particle back onto the surface.
 const MAX_NEWTON: u32 = 6;
@@ -45,6 +45,8 @@ pub(super) trait Repulsion {
     /// What the neighbour lists reach farther, so that they serve while particles move. It was chosen by counting
     /// instructions: a wider one lengthens every list, a narrower one has more of them made anew.
     const SKIN: f32;
+    /// How far particles may go until the grid in which neighbours are found is made anew.
+    const SLACK: f32;
     /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
@@ -59,8 +61,8 @@ pub(super) trait Repulsion {
     /// Smallest and largest radius now.
     fn extent(&self, particles: &Particles) -> (f32, f32);
 
-    /// Force over offset, and energy, of a pair with this offset and mean radius, both lengths.
-    fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32);
+    /// Force over offset, and energy, of four pairs with these squared distances and mean radii, of length.
+    fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4);
 
     /// Brings `points` onto the surface, and up to date the radii of those that have come far since that was done or, with
     /// no `trust`, of all. A correction below `trust` radii is not checked.
@@ -91,6 +93,7 @@ impl Gaussian {
 impl Repulsion for Gaussian {
     const RANGE: f32 = 3.0;
     const SKIN: f32 = 0.4;
+    const SLACK: f32 = 0.5;
     /// In units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
     /// below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in ten
     /// steps and set the squeezed rows trembling.
@@ -111,12 +114,12 @@ impl Repulsion for Gaussian {
     }
 
     #[inline(always)]
-    fn pair(&self, offset: Vec3, _: f32) -> (f32, f32) {
+    fn pairs(&self, distance_sq: Vec4, _: Vec4) -> (Vec4, Vec4) {
         // Squared distances are measured in σ² = r².
-        let half_sq = offset.length_squared() * self.scale;
-        let near = half_sq < 0.5 * Self::RANGE * Self::RANGE;
-        let weight = if near { gaussian(half_sq) } else { 0.0 };
-        (weight, if near { weight - END_ENERGY } else { 0.0 })
+        let half_sq = distance_sq * self.scale;
+        let near = half_sq.cmplt(Vec4::splat(0.5 * Self::RANGE * Self::RANGE));
+        let weight = gaussian(half_sq);
+        (Vec4::select(near, weight, Vec4::ZERO), Vec4::select(near, weight - END_ENERGY, Vec4::ZERO))
     }
 
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
@@ -144,7 +147,7 @@ const END_ENERGY: f32 = 0.011_108_997;
 ///
 /// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
 #[inline(always)]
-fn gaussian(x: f32) -> f32 {
+fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
     let e2 = e * e;
@@ -176,6 +179,8 @@ pub(super) struct Overlap<'a> {
 impl Repulsion for Overlap<'_> {
     const RANGE: f32 = 2.0 * REACH;
     const SKIN: f32 = 0.8;
+    /// The grid goes by radii, which change.
+    const SLACK: f32 = 0.0;
     /// The stiffest wave of the hexagonal lattice has the eigenvalue 6 less six times the share by which it is compressed,
     /// so steps below 0.36 are stable. Shorter ones mend less in ten.
     const STEP: f32 = 0.33;
@@ -197,17 +202,14 @@ impl Repulsion for Overlap<'_> {
     }
 
     #[inline(always)]
-    fn pair(&self, offset: Vec3, mean: f32) -> (f32, f32) {
-        let reach = Self::RANGE * mean;
-        let distance_sq = offset.length_squared();
-        if distance_sq >= reach * reach {
-            return (0.0, 0.0);
-        }
+    fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4) {
+        let reach = mean * Self::RANGE;
         let distance = distance_sq.sqrt();
-        let overlap = reach - distance;
+        let overlap = (reach - distance).max(Vec4::ZERO);
         let share = overlap / mean;
         // Two particles in one place have no direction to part in.
-        (if distance > 0.0 { overlap / distance } else { 0.0 }, share * share)
+        let parted = distance.cmpgt(Vec4::ZERO);
+        (Vec4::select(parted, overlap / distance, Vec4::ZERO), share * share)
     }
 
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
@@ -327,7 +329,7 @@ mod tests {
         for k in 0..=450 {
             let x = k as f32 * 0.01;
             let exact = libm::exp(-f64::from(x));
-            let got = f64::from(gaussian(x));
+            let got = f64::from(gaussian(Vec4::splat(x)).x);
             assert!((got / exact - 1.0).abs() < 3e-5, "x = {x}: {got} against {exact}");
         }
         let end = libm::exp(-0.5 * f64::from(Gaussian::RANGE * Gaussian::RANGE));

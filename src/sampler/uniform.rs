@@ -16,8 +16,9 @@ use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
 use super::sheets::{MAX_LIFT, is_doubtful, is_near_own, is_one_sheet, lift};
+use super::surroundings::{MAX_RISE_SQ, Shape, Surroundings};
 use crate::field::Field;
-use crate::math::{Bounds, LANES, Lanes, sort_few, tangent_frame};
+use crate::math::{Bounds, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::spatial::{CellGrid, Neighbour, Place};
 use glam::Vec3;
@@ -27,20 +28,6 @@ const SLOT_DIRECTION: [[f32; 2]; 6] = {
     const SIN_60: f32 = 0.866_025_4;
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
 };
-
-/// Particles within this many radii of a parent tell its curvature: the six ideal neighbours are at 2, the next ring
-/// at 3.46.
-const RING: f32 = 2.6;
-
-/// Most particles that the curvature is fitted to; six fit on a lattice.
-const RING_CAPACITY: usize = 12;
-
-/// Weight of "equal curvature in all directions" in the fit, which decides what the neighbours leave open.
-const ISOTROPY: f32 = 0.005;
-
-/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
-/// no more than 45°, give or take [`RISE_SLACK`]: this is sin² 45°.
-const MAX_RISE_SQ: f32 = 0.5;
 
 /// Distance, as a share of the match radius, below which the direction between two particles tells nothing.
 const RISE_SLACK: f32 = 0.5;
@@ -145,21 +132,6 @@ pub(super) struct UniformFront {
     pub(super) seams: Vec<u32>,
     pub(super) fates: FateCounts,
     pub(super) capped: bool,
-}
-
-/// The particles around a parent in lanes: offset x, y, z from the parent and normal x, y, z.
-#[derive(Clone, Debug, Default)]
-struct Surroundings {
-    len: usize,
-    chunks: Vec<[Lanes; 6]>,
-}
-
-/// Second fundamental form in the frame (V̂⁰, N̂ × V̂⁰): the normal turns by `[a b; b c] · offset`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Shape {
-    a: f32,
-    b: f32,
-    c: f32,
 }
 
 impl UniformFront {
@@ -393,7 +365,7 @@ impl UniformFront {
             if u == Vec3::ZERO { tangent_frame(n) } else { (u, n.cross(u)) }
         };
         let shape =
-            if is_seed { shape_at(field, p, u, w) } else { self.fit_shape(&found, particles, parent, u, w) };
+            if is_seed { shape_at(field, p, u, w) } else { self.around.fit_shape(self.radius, n, u, w) };
 
         let (distance, slack_sq) = (2.0 * self.radius, self.slack_sq());
         let level = particles.level[parent] + 1;
@@ -443,7 +415,7 @@ impl UniformFront {
                 // Strangers have not been looked at.
                 clearance: if wary { 0.0 } else { any_sq.sqrt().min(self.looked_at()) },
             });
-            self.around.push(offset, normal);
+            self.around.push(offset, normal, false);
         }
         if seam {
             self.seams.push(parent as u32);
@@ -462,19 +434,15 @@ impl UniformFront {
         particles: &Particles,
         parent: usize,
     ) -> bool {
-        let collision = self.collision_reach();
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
-        self.around.len = 0;
-        pairs.push(found.iter().filter_map(|near| {
+        self.around.clear();
+        pairs.push(found.iter().map(|near| {
             let j = near.index as usize;
             let other = particles.normal[j];
-            if near.distance_sq <= collision * collision {
-                self.around.push(near.offset, other);
-            }
-            let faces = other.dot(normal) > 0.0;
-            let repels = near.distance_sq <= repulsion * repulsion && faces;
-            (j < parent && repels).then_some(near.index)
+            self.around.push(near.offset, other, j < self.settled);
+            let repels = near.distance_sq <= repulsion * repulsion;
+            (near.index, (j < parent) & repels & (other.dot(normal) > 0.0))
         }));
         let spacing = 2.0 * self.radius;
         // The normals of children under way are only predicted, but they belong to this front.
@@ -507,78 +475,10 @@ impl UniformFront {
                 || lift(near.offset, n, other) <= suspicious
                 || is_one_sheet(field, projector, (p, n), near.offset, other)
         });
-        let collision = self.collision_reach();
-        self.around.len = 0;
-        for near in found.iter().filter(|near| near.distance_sq <= collision * collision) {
-            self.around.push(near.offset, particles.normal[near.index as usize]);
-        }
-    }
-
-    /// Least-squares fit of the second fundamental form to the normals of the settled particles around `parent`.
-    fn fit_shape(
-        &self,
-        found: &[Neighbour],
-        particles: &Particles,
-        parent: usize,
-        u: Vec3,
-        w: Vec3,
-    ) -> Shape {
-        let n = particles.normal[parent];
-        // Summed in the order of the indices, so that the result does not depend on how the grid is made.
-        let mut ring = [(u32::MAX, 0_u32); RING_CAPACITY];
-        let mut count = 0;
-        let reach_sq = (RING * self.radius) * (RING * self.radius);
-        for (m, near) in found.iter().enumerate() {
-            let j = near.index;
-            if near.distance_sq <= reach_sq && (j as usize) < self.settled && j as usize != parent {
-                // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
-                if (particles.normal[j as usize] - n).length_squared() > 1.0 {
-                    continue;
-                }
-                let mut at = count.min(RING_CAPACITY - 1);
-                if count == RING_CAPACITY && ring[at].0 < j {
-                    continue;
-                }
-                while at > 0 && ring[at - 1].0 > j {
-                    ring[at] = ring[at - 1];
-                    at -= 1;
-                }
-                ring[at] = (j, m as u32);
-                count = (count + 1).min(RING_CAPACITY);
-            }
-        }
-        let (mut xx, mut xy, mut yy) = (0.0_f32, 0.0, 0.0);
-        let (mut xp, mut yp, mut xq, mut yq) = (0.0_f32, 0.0, 0.0, 0.0);
-        for &(j, m) in &ring[..count] {
-            let offset = found[m as usize].offset;
-            let turn = particles.normal[j as usize] - n;
-            let (x, y, p, q) = (offset.dot(u), offset.dot(w), turn.dot(u), turn.dot(w));
-            xx += x * x;
-            xy += x * y;
-            yy += y * y;
-            xp += x * p;
-            yp += y * p;
-            xq += x * q;
-            yq += y * q;
-        }
-        let prior = ISOTROPY * (xx + yy);
-        // Normal equations of a x + b y = p, b x + c y = q with the prior (a − c)² + b², solved by Cramer's rule.
-        let (m11, m12, m13) = (xx + prior, xy, -prior);
-        let (m22, m23, m33) = (xx + yy + prior, xy, yy + prior);
-        let (r1, r2, r3) = (xp, yp + xq, yq);
-        let (c11, c12, c13) = (m22 * m33 - m23 * m23, m13 * m23 - m12 * m33, m12 * m23 - m13 * m22);
-        let determinant = m11 * c11 + m12 * c12 + m13 * c13;
-        let (c22, c23, c33) = (m11 * m33 - m13 * m13, m12 * m13 - m11 * m23, m11 * m22 - m12 * m12);
-        let inverse = 1.0 / determinant;
-        let shape = Shape {
-            a: (c11 * r1 + c12 * r2 + c13 * r3) * inverse,
-            b: (c12 * r1 + c22 * r2 + c23 * r3) * inverse,
-            c: (c13 * r1 + c23 * r2 + c33 * r3) * inverse,
-        };
-        if shape.a.is_finite() && shape.b.is_finite() && shape.c.is_finite() {
-            shape
-        } else {
-            Shape::default()
+        self.around.clear();
+        for near in &*found {
+            let j = near.index as usize;
+            self.around.push(near.offset, particles.normal[j], j < self.settled);
         }
     }
 
@@ -683,77 +583,6 @@ impl UniformFront {
         let collides = is_near_own(field, projector, particles, (position, normal), &near, |_| spacing);
         self.found = near;
         collides
-    }
-}
-
-impl Surroundings {
-    #[inline(always)]
-    fn push(&mut self, offset: Vec3, normal: Vec3) {
-        let (chunk, lane) = (self.len / LANES, self.len % LANES);
-        if chunk == self.chunks.len() {
-            self.chunks.push([Lanes::splat(0.0); 6]);
-        }
-        let columns = &mut self.chunks[chunk];
-        if lane == 0 {
-            // Lanes without a particle are infinitely far, have no normal and belong to no sheet.
-            let (far, none) = (Lanes::splat(f32::INFINITY), Lanes::splat(0.0));
-            *columns = [far, far, far, none, none, none];
-        }
-        for (column, value) in
-            columns.iter_mut().zip([offset.x, offset.y, offset.z, normal.x, normal.y, normal.z])
-        {
-            column.0[lane] = value;
-        }
-        self.len += 1;
-    }
-
-    /// Whether any of the particles is [doubtful](is_doubtful) beside the parent with the unit normal `normal`.
-    #[inline(always)]
-    fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
-        let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
-        let unit = Lanes::splat(1.0 / (spacing * spacing));
-        // The lift is half of what is summed here.
-        let limit = Lanes::splat((2.0 * MAX_LIFT * spacing) * (2.0 * MAX_LIFT * spacing));
-        let mut doubtful = false;
-        for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
-            let along = nx * mx + ny * my + nz * mz;
-            let lift = x * (nx + mx) + y * (ny + my) + z * (nz + mz);
-            let share = (x * x + y * y + z * z) * unit;
-            let cube = share * share * share;
-            for lane in 0..LANES {
-                let growth = if cube.0[lane] > 1.0 { cube.0[lane] } else { 1.0 };
-                let bound = limit.0[lane] * growth;
-                doubtful |= (along.0[lane] > 0.0) & (lift.0[lane] * lift.0[lane] > bound);
-            }
-        }
-        doubtful
-    }
-
-    /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
-    /// `normal`, of whatever length; and to the nearest of any sheet.
-    #[inline(always)]
-    fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> (f32, f32) {
-        let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
-        let [nx, ny, nz] = normal.to_array().map(Lanes::splat);
-        let max_rise_sq = Lanes::splat(MAX_RISE_SQ * normal.length_squared());
-        let mut any = Lanes::splat(f32::INFINITY);
-        let mut nearest = Lanes::splat(f32::INFINITY);
-        for &[x, y, z, mx, my, mz] in &self.chunks[..self.len.div_ceil(LANES)] {
-            let (dx, dy, dz) = (x - ox, y - oy, z - oz);
-            let distance_sq = dx * dx + dy * dy + dz * dz;
-            let rise = dx * nx + dy * ny + dz * nz;
-            let along = nx * mx + ny * my + nz * mz;
-            let excess = rise * rise - (distance_sq + Lanes::splat(slack_sq)) * max_rise_sq;
-            for lane in 0..LANES {
-                let d = distance_sq.0[lane];
-                any.0[lane] = if d < any.0[lane] { d } else { any.0[lane] };
-                let same = (along.0[lane] > 0.0) & (excess.0[lane] <= 0.0);
-                let d = if same { distance_sq.0[lane] } else { f32::INFINITY };
-                nearest.0[lane] = if d < nearest.0[lane] { d } else { nearest.0[lane] };
-            }
-        }
-        let least = |lanes: Lanes| lanes.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
-        (least(nearest), least(any))
     }
 }
 
