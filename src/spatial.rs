@@ -10,7 +10,7 @@ pub(crate) mod chains;
 pub(crate) mod tree;
 
 use crate::math::{LANES, Lanes};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// No block.
 const NONE: u32 = u32::MAX;
@@ -60,6 +60,38 @@ pub struct Neighbour {
     /// Point minus centre.
     pub offset: Vec3,
 }
+
+/// Places of points that a query has found.
+struct Hits {
+    len: usize,
+    places: [u32; 8 * LANES],
+}
+
+/// The lanes of a set of lanes, given as bits, and their number.
+#[derive(Clone, Copy)]
+struct LanesOf {
+    lane: [u32; LANES],
+    count: usize,
+}
+
+/// For every set: all lanes are written down and the number added, since a loop over those in the set would end at a place
+/// that no branch prediction foresees.
+static LANES_OF: [LanesOf; 1 << LANES] = {
+    let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
+    let mut set = 0;
+    while set < all.len() {
+        let mut lane = 0;
+        while lane < LANES {
+            if set >> lane & 1 != 0 {
+                all[set].lane[all[set].count] = lane as u32;
+                all[set].count += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    all
+};
 
 /// A sparse grid of cubic cells.
 #[derive(Clone)]
@@ -184,6 +216,7 @@ impl CellGrid {
 
     /// [`CellGrid::gather`], added to what `found` holds.
     pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
+        let mut hits = Hits { len: 0, places: [0; 8 * LANES] };
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
         let hi = (centre + radius).to_array().map(|x| self.coordinate(x));
         for bz in lo[2] >> 1..=hi[2] >> 1 {
@@ -197,38 +230,48 @@ impl CellGrid {
                     while cells != 0 {
                         let cell = cells.trailing_zeros() as usize & 7;
                         cells &= cells - 1;
-                        self.gather_cell(brick.head[cell], centre, radius, found);
+                        self.gather_cell(brick.head[cell], (centre, radius), &mut hits, found);
                     }
                 }
             }
         }
+        self.take(&mut hits, centre, found);
     }
 
+    /// Notes the points of a cell within the radius in `hits`, and what was noted in `found` before the room ends.
     #[inline]
-    fn gather_cell(&self, head: u32, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
-        let radius_sq = radius * radius;
+    fn gather_cell(&self, head: u32, ball: (Vec3, f32), hits: &mut Hits, found: &mut Vec<Neighbour>) {
+        let (centre, radius) = ball;
+        let radius_sq = Vec4::splat(radius * radius);
         let mut next = head;
         while next != NONE {
             let block = &self.blocks[next as usize];
-            let dx = block.x - Lanes::splat(centre.x);
-            let dy = block.y - Lanes::splat(centre.y);
-            let dz = block.z - Lanes::splat(centre.z);
-            let distance_sq = dx * dx + dy * dy + dz * dz;
-            let mut near = 0_u32;
-            for lane in 0..LANES {
-                near |= u32::from(distance_sq.0[lane] <= radius_sq) << lane;
+            let half = |k: usize| {
+                let d = |lanes: &Lanes, c: f32| Vec4::from_slice(&lanes.0[k..k + 4]) - c;
+                let (dx, dy, dz) = (d(&block.x, centre.x), d(&block.y, centre.y), d(&block.z, centre.z));
+                (dx * dx + dy * dy + dz * dz).cmple(radius_sq).bitmask()
+            };
+            let near = (half(0) | half(4) << 4) as usize & 0xff;
+            if hits.len > hits.places.len() - LANES {
+                self.take(hits, centre, found);
             }
-            while near != 0 {
-                let lane = near.trailing_zeros() as usize & (LANES - 1);
-                near &= near - 1;
-                found.push(Neighbour {
-                    index: block.index[lane],
-                    distance_sq: distance_sq.0[lane],
-                    offset: Vec3::new(dx.0[lane], dy.0[lane], dz.0[lane]),
-                });
+            let lanes = &LANES_OF[near];
+            for (place, lane) in hits.places[hits.len..hits.len + LANES].iter_mut().zip(lanes.lane) {
+                *place = next * LANES as u32 + lane;
             }
+            hits.len += lanes.count;
             next = block.next;
         }
+    }
+
+    /// Moves what was noted to `found`.
+    fn take(&self, hits: &mut Hits, centre: Vec3, found: &mut Vec<Neighbour>) {
+        found.extend(hits.places[..hits.len].iter().map(|&place| {
+            let (block, lane) = (&self.blocks[place as usize / LANES], place as usize % LANES);
+            let offset = Vec3::new(block.x.0[lane], block.y.0[lane], block.z.0[lane]) - centre;
+            Neighbour { index: block.index[lane], distance_sq: offset.length_squared(), offset }
+        }));
+        hits.len = 0;
     }
 
     #[inline(always)]
