@@ -98,8 +98,8 @@ describe('columns', () => {
 
 describe('picking', () => {
   const columns = sphere(2000);
-  /** The definition: every disc, one by one. @param {number[]} eye @param {number[]} ray */
-  function oracle(eye, ray) {
+  /** The definition: every disc of such a size, one by one. @param {number[]} eye @param {number[]} ray @param {number} scale */
+  function oracle(eye, ray, scale) {
     let best = null;
     let best_t = Infinity;
     for (let i = 0; i < columns.count; i += 1) {
@@ -108,13 +108,16 @@ describe('picking', () => {
       const dot = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
       const t = dot(p.map((c, k) => c - eye[k]), n) / dot(ray, n);
       const hit = eye.map((e, k) => e + t * ray[k] - p[k]);
-      if (t > 0 && t < best_t && dot(hit, hit) <= (columns.radii[i] * 0.92) ** 2) {
+      if (t > 0 && t < best_t && dot(hit, hit) <= (columns.radii[i] * scale) ** 2) {
         best_t = t;
         best = i;
       }
     }
     return best;
   }
+
+  /** @param {number} i @param {number} j */
+  const apart = (i, j) => Math.hypot(...[0, 1, 2].map((k) => columns.positions[3 * i + k] - columns.positions[3 * j + k]));
 
   test('sees through particles of later levels', () => {
     const eye = /** @type {const} */ ([0, 0, -5]);
@@ -125,19 +128,35 @@ describe('picking', () => {
     expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.last_level)).toBe(near);
   });
 
-  test('finds the disc that the definition finds, from anywhere', () => {
+  test('finds the disc that the definition finds, from anywhere, and in a gap one around it', () => {
     let hits = 0;
+    let gaps = 0;
     for (let k = 0; k < 200; k += 1) {
       const eye = /** @type {[number, number, number]} */ ([4 * Math.cos(k), 4 * Math.sin(k), Math.sin(3 * k)]);
       const aim = [0.9 * Math.sin(7 * k), 0.9 * Math.cos(5 * k), 0.9 * Math.sin(11 * k)];
       const way = aim.map((a, i) => a - eye[i]);
       const length = Math.hypot(...way);
       const ray = /** @type {[number, number, number]} */ (way.map((w) => w / length));
-      const expected = oracle(eye, ray);
-      if (expected !== null) hits += 1;
-      expect(pick(columns, eye, ray, 0.92, 0), `ray ${k}`).toBe(expected);
+      // Discs that leave much open hide nothing that lies behind them.
+      const small = oracle(eye, ray, 0.6);
+      expect(pick(columns, eye, ray, 0.6, 0), `ray ${k}`).toBe(small);
+      const best = oracle(eye, ray, 0.92);
+      const front = oracle(eye, ray, 2 / Math.sqrt(3));
+      const picked = pick(columns, eye, ray, 0.92, 0);
+      if (front === null) {
+        expect(picked, `ray ${k}`).toBe(null);
+      } else if (best !== null && apart(best, front) <= 4 * columns.radii[0]) {
+        hits += 1;
+        expect(picked, `ray ${k}`).toBe(best);
+      } else {
+        // In a gap: a particle on this side, whatever is seen through it.
+        gaps += 1;
+        expect(picked, `ray ${k}`).not.toBe(null);
+        expect(apart(picked ?? 0, front), `ray ${k}`).toBeLessThan(3 * columns.radii[0]);
+      }
     }
     expect(hits).toBeGreaterThan(100);
+    expect(gaps).toBeGreaterThan(5);
   });
 
   test('takes the nearest particle where discs are too small to hit, and nothing behind the eye', () => {

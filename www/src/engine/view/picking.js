@@ -9,7 +9,15 @@
 /** @typedef {import('../columns.js').Columns} Columns */
 
 /**
- * The nearest disc that the ray meets; else, for discs too small to hit, the particle nearest to the ray within `tolerance`
+ * Three discs around a gap of a hexagonal packing meet in its middle at this radius, relative to the particle's: so far a gap
+ * belongs to the nearest of them, and not to a disc on the far side of the surface that can be seen through it.
+ */
+const GAP = 2 / Math.sqrt(3);
+/** Where discs are smaller than this share of the particle's radius, what lies behind them is meant to be seen. */
+const DENSE = 0.8;
+
+/**
+ * The nearest disc that the ray meets, or between dense discs the nearest of these; else, for discs too small to hit, the particle nearest to the ray within `tolerance`
  * (an angle, in radians).
  * @param {Columns} columns
  * @param {Vec3} eye
@@ -25,6 +33,9 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
   const [dx, dy, dz] = ray;
   let hit = -1;
   let hit_t = Infinity;
+  let gap = -1;
+  let gap_cost = Infinity;
+  const reach_scale = disc_scale < DENSE ? disc_scale : Math.max(disc_scale, GAP);
   let close = -1;
   let close_cost = Infinity;
   for (let i = 0, j = 0; i < count; i += 1, j += 3) {
@@ -35,8 +46,9 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
     if (along <= 0) continue;
     const off_sq = px * px + py * py + pz * pz - along * along;
     const r = radii[i] * disc_scale;
+    const r_gap = radii[i] * reach_scale;
     const slack = tolerance_rad * along;
-    const reach = r > slack ? r : slack;
+    const reach = r_gap > slack ? r_gap : slack;
     if (off_sq > reach * reach || levels[i] > last_level) continue;
     const nx = normals[j];
     const ny = normals[j + 1];
@@ -48,9 +60,18 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
       const qx = dx * t - px;
       const qy = dy * t - py;
       const qz = dz * t - pz;
-      if (t > 0 && t < hit_t && qx * qx + qy * qy + qz * qz <= r * r) {
-        hit_t = t;
-        hit = i;
+      const q_sq = qx * qx + qy * qy + qz * qz;
+      if (t > 0 && q_sq <= r_gap * r_gap) {
+        if (t < hit_t && q_sq <= r * r) {
+          hit_t = t;
+          hit = i;
+        }
+        // On one sheet the nearest middle counts; sheets lie farther apart than that.
+        const cost = t + Math.sqrt(q_sq);
+        if (cost < gap_cost) {
+          gap_cost = cost;
+          gap = i;
+        }
       }
     }
     // Nearer to the ray counts, and among equals nearer to the eye; a particle on the far side never wins over a near one.
@@ -60,6 +81,14 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
       close = i;
     }
   }
+  // Seen flat, a disc is met far behind a gap beside it: neighbours are told by their distance.
+  if (gap >= 0 && (hit < 0 || !near(columns, gap, hit))) return gap;
   if (hit >= 0) return hit;
   return close >= 0 ? close : null;
+}
+
+/** Whether two particles are no farther apart than neighbours and their neighbours. @param {Columns} columns @param {number} i @param {number} j */
+function near({ positions, radii }, i, j) {
+  const way = [0, 1, 2].map((k) => positions[3 * i + k] - positions[3 * j + k]);
+  return Math.hypot(way[0], way[1], way[2]) <= 2 * (radii[i] + radii[j]);
 }
