@@ -6,6 +6,7 @@
 #![cfg(feature = "points")]
 
 use marching_particles::field::model;
+use marching_particles::json;
 use marching_particles::points::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
@@ -39,7 +40,7 @@ const BUDGET: u32 = 100_000;
 fn run(case: &Run) -> (usize, String) {
     let mut session = Session::new();
     if let Some(field) = &case.field {
-        let field: FieldRequest = serde_json::from_value(field.clone())
+        let field: FieldRequest = json::from_str(&field.to_string())
             .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
         session.set_field(&field).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
@@ -50,7 +51,7 @@ fn run(case: &Run) -> (usize, String) {
             .set_points(fit.data, fit.info, fit.bounds)
             .unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
-    let settings: Settings = serde_json::from_value(case.settings.clone())
+    let settings: Settings = json::from_str(&case.settings.to_string())
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     while session.step(BUDGET).stop_reason.is_none() {}

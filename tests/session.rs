@@ -1,11 +1,12 @@
 //! What a user of the whole core sees: a field, a run, a report.
 
+use marching_particles::json;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldError, FieldRequest, Session, describe};
 
-fn request(json: &str) -> FieldRequest {
-    serde_json::from_str(json).expect("a field request")
+fn request(text: &str) -> FieldRequest {
+    json::from_str(text).expect("a field request")
 }
 
 fn run(session: &mut Session, settings: &Settings, budget: u32) -> StopReason {

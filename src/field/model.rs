@@ -1,10 +1,10 @@
 //! What is known of models from points, beside their functions: what the built-in ones are, where points come from and how
 //! well they are met. The points themselves and the fitting are in the module `points`, which the core does without.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// Where the normals of a model's points come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NormalSource {
     /// They came with the points.
@@ -17,7 +17,7 @@ pub enum NormalSource {
 }
 
 /// A model from points, as it is reported.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ModelInfo {
     /// What it is called: a built-in model's name or the file's.
     pub name: String,

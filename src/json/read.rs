@@ -2,9 +2,7 @@
 
 use super::Error;
 use crate::math::decimal;
-use serde::de::value::{MapDeserializer, SeqDeserializer, StringDeserializer};
-use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
-use serde::forward_to_deserialize_any;
+use std::collections::BTreeMap;
 
 /// Lists and objects may be nested this deep.
 const MOST_DEPTH: usize = 32;
@@ -14,77 +12,161 @@ const MOST_DEPTH: usize = 32;
 /// # Errors
 ///
 /// If the text is not JSON, or not of the type.
-pub fn from_str<T: DeserializeOwned>(text: &str) -> Result<T, Error> {
-    T::deserialize(tree(text)?)
+pub fn from_str<T: Read>(text: &str) -> Result<T, Error> {
+    T::read(tree(text)?)
 }
 
-enum Value {
+/// A JSON value.
+pub enum Value {
+    /// null
     Null,
+    /// true or false
     Boolean(bool),
+    /// A whole number from 0 to 2⁶⁴ − 1.
     Whole(u64),
+    /// Any other number.
     Number(f64),
+    /// A text.
     Text(String),
+    /// A list.
     List(Vec<Value>),
+    /// An object; no two keys are equal.
     Object(Vec<(String, Value)>),
 }
 
-impl<'de> IntoDeserializer<'de, Error> for Value {
-    type Deserializer = Self;
-
-    fn into_deserializer(self) -> Self {
-        self
+impl Value {
+    /// The error that this value stands where another one is `expected`.
+    #[cold]
+    pub fn refused(&self, expected: &str) -> Error {
+        let found = match self {
+            Self::Null => "null",
+            Self::Boolean(_) => "a boolean",
+            Self::Whole(_) => "this whole number",
+            Self::Number(_) => "this number",
+            Self::Text(_) => "this text",
+            Self::List(_) => "a list",
+            Self::Object(_) => "an object",
+        };
+        Error(format!("{found} cannot stand where {expected} is expected"))
     }
-}
 
-impl<'de> Deserializer<'de> for Value {
-    type Error = Error;
-
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+    fn list(self) -> Result<Vec<Self>, Error> {
         match self {
-            Self::Null => visitor.visit_unit(),
-            Self::Boolean(value) => visitor.visit_bool(value),
-            Self::Whole(value) => visitor.visit_u64(value),
-            Self::Number(value) => visitor.visit_f64(value),
-            Self::Text(value) => visitor.visit_string(value),
-            Self::List(values) => {
-                let mut rest = SeqDeserializer::new(values.into_iter());
-                let value = visitor.visit_seq(&mut rest)?;
-                rest.end()?;
-                Ok(value)
-            }
-            Self::Object(fields) => visitor.visit_map(MapDeserializer::new(fields.into_iter())),
+            Self::List(values) => Ok(values),
+            other => Err(other.refused("a list")),
         }
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        if matches!(self, Self::Null) { visitor.visit_none() } else { visitor.visit_some(self) }
+    /// The fields of an object.
+    ///
+    /// # Errors
+    ///
+    /// If it is none.
+    pub fn fields(self) -> Result<Fields, Error> {
+        match self {
+            Self::Object(fields) => Ok(Fields(fields)),
+            other => Err(other.refused("an object")),
+        }
+    }
+}
+
+/// A type that can be read.
+pub trait Read: Sized {
+    /// The value of the type that a JSON value stands for.
+    ///
+    /// # Errors
+    ///
+    /// If it stands for none.
+    fn read(value: Value) -> Result<Self, Error>;
+
+    /// What a field of this type is where an object has none of its name.
+    #[must_use]
+    fn missing() -> Option<Self> {
+        None
+    }
+}
+
+/// The fields of an object, to be taken one by one; what is left is ignored.
+pub struct Fields(Vec<(String, Value)>);
+
+impl Fields {
+    #[inline(never)]
+    fn take(&mut self, name: &str) -> Option<Value> {
+        let place = self.0.iter().position(|field| field.0 == name)?;
+        Some(self.0.swap_remove(place).1)
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        visitor.visit_newtype_struct(self)
+    /// The field of this name, or `default`.
+    ///
+    /// # Errors
+    ///
+    /// If it is not of the type, or there is neither.
+    pub fn field<T: Read>(&mut self, name: &str, default: Option<T>) -> Result<T, Error> {
+        match self.take(name) {
+            Some(value) => T::read(value),
+            None => {
+                default.or_else(T::missing).ok_or_else(|| Error(format!("the field `{name}` is missing")))
+            }
+        }
+    }
+}
+
+impl Read for f64 {
+    fn read(value: Value) -> Result<Self, Error> {
+        match value {
+            Value::Whole(whole) => Ok(whole as Self),
+            Value::Number(number) => Ok(number),
+            other => Err(other.refused("a number")),
+        }
+    }
+}
+
+impl Read for u64 {
+    fn read(value: Value) -> Result<Self, Error> {
+        if let Value::Whole(whole) = value { Ok(whole) } else { Err(value.refused("a whole number")) }
+    }
+}
+
+impl Read for u32 {
+    fn read(value: Value) -> Result<Self, Error> {
+        match value {
+            Value::Whole(whole) if whole <= Self::MAX.into() => Ok(whole as Self),
+            other => Err(other.refused("a whole number below 2^32")),
+        }
+    }
+}
+
+impl Read for String {
+    fn read(value: Value) -> Result<Self, Error> {
+        if let Value::Text(text) = value { Ok(text) } else { Err(value.refused("a text")) }
+    }
+}
+
+impl<T: Read> Read for Option<T> {
+    fn read(value: Value) -> Result<Self, Error> {
+        if let Value::Null = value { Ok(None) } else { T::read(value).map(Some) }
     }
 
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        name: &'static str,
-        variants: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        let Self::Text(variant) = self else { return Err(Error(format!("{name} must be a text"))) };
-        StringDeserializer::new(variant).deserialize_enum(name, variants, visitor)
+    fn missing() -> Option<Self> {
+        Some(None)
     }
+}
 
-    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_unit()
+impl<T: Read> Read for Vec<T> {
+    fn read(value: Value) -> Result<Self, Error> {
+        value.list()?.into_iter().map(T::read).collect()
     }
+}
 
-    forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct map struct identifier
+impl<T: Read, const N: usize> Read for [T; N] {
+    fn read(value: Value) -> Result<Self, Error> {
+        Vec::read(value)?.try_into().map_err(|_| Error(format!("a list of {N} is expected")))
+    }
+}
+
+impl Read for BTreeMap<String, f64> {
+    fn read(value: Value) -> Result<Self, Error> {
+        value.fields()?.0.into_iter().map(|(key, value)| Ok((key, f64::read(value)?))).collect()
     }
 }
 
@@ -156,6 +238,9 @@ impl Parser<'_> {
                     parser.skip_space();
                     if !parser.take(":") {
                         return Err(parser.unexpected());
+                    }
+                    if fields.iter().any(|(other, _)| *other == key) {
+                        return Err(Error(format!("`{key}` is there twice")));
                     }
                     fields.push((key, parser.value(depth + 1)?));
                     Ok(())

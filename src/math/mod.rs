@@ -12,7 +12,7 @@ pub use real::Real;
 use glam::{DVec3, Vec3};
 
 /// An axis-aligned box, in the field's coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Bounds {
     /// Smallest corner.
     pub min: [f64; 3],

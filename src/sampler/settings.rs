@@ -2,10 +2,10 @@
 
 use crate::math::decimal::text;
 use core::fmt;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// How the particles' size is given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeMode {
     /// By [`Settings::radius_share`].
@@ -16,7 +16,7 @@ pub enum SizeMode {
 }
 
 /// What becomes of gaps between fronts that are wide enough for a particle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GapPolicy {
     /// A particle is placed in the middle.
@@ -27,7 +27,7 @@ pub enum GapPolicy {
 }
 
 /// Whether all particles have one size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// One radius everywhere (paper §4).
@@ -38,7 +38,7 @@ pub enum Sampling {
 }
 
 /// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
     /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
@@ -51,7 +51,7 @@ pub enum LawKind {
 }
 
 /// How a child of an adaptive particle is placed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Placement {
     /// The equations of tangency are solved.
@@ -62,8 +62,7 @@ pub enum Placement {
 }
 
 /// Settings of a run. `Default` gives the paper's values where it names them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Settings {
     /// Whether all particles have one size.
     pub sampling: Sampling,

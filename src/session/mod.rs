@@ -2,6 +2,7 @@
 //! there is no clock, no GPU and no platform in here.
 
 mod describe;
+mod read;
 mod warnings;
 
 pub use describe::{
@@ -22,7 +23,7 @@ use crate::sampler::{
     FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, Start, StopReason,
 };
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -34,8 +35,7 @@ const MAX_KEPT: usize = 400_000;
 const SHARE_OF_RUN: f64 = 0.32;
 
 /// What a caller asks of the field; everything is optional.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FieldRequest {
     /// Identifier of a gallery surface to start from; without one, the present field is changed.
     pub surface: Option<String>,
@@ -60,7 +60,7 @@ pub enum FieldKind {
 }
 
 /// What is asked of a model from points beside its function.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointsRequest {
     /// What is known of the model.
     pub info: ModelInfo,

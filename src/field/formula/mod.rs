@@ -58,7 +58,7 @@ pub const MAX_OPERATIONS: usize = 4096;
 pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
 
 /// A named number of a formula that can be changed without parsing it again.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Parameter {
     /// The name as it stands in the formula.
     pub name: String,
