@@ -279,13 +279,13 @@ fn every_row_of_the_report_is_in_the_report() {
     let report = serde_json::to_value(session.report()).unwrap();
     let description = describe();
     assert!(description.report.len() > 10);
-    for row in &description.report {
+    for row in description.report {
         for path in [Some(row.key), row.to, row.unless].into_iter().flatten() {
             let found = path.split('.').try_fold(&report, |value, key| value.get(key));
             assert!(found.is_some_and(|v| !v.is_object() && !v.is_array()), "{path} is not in the report");
         }
     }
-    for fate in &description.fates {
+    for fate in description.fates {
         assert!(report["fates"].get(fate.name).is_some(), "{}", fate.name);
     }
     let settings = serde_json::to_value(Settings::default()).unwrap();

@@ -344,13 +344,13 @@ async fn missed(
 ) -> Missed {
     let mut missed = Missed::default();
     let (mut all, mut far) = (0.0, 0.0);
-    let mut nearest = Vec::new();
     for chunk in probe::crossings(field, bounds, seed).await.chunks(PIECE) {
         for &p in chunk.iter().filter(|&&p| places.counts(p)) {
             all += 1.0;
-            places.tree.nearest_many(p, 1, |_| true, &mut nearest);
-            let Some(&near) = nearest.first() else { continue };
-            let (gap_sq, index) = unkey(near);
+            let (gap_sq, index) = places.tree.nearest(p, u32::MAX, f32::INFINITY);
+            if index == u32::MAX {
+                continue;
+            }
             let gap = f64::from(gap_sq).sqrt();
             let relative = gap / f64::from(places.ideal(&[index]));
             // A hundredth more for the rounding of the places.

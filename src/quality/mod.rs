@@ -30,7 +30,7 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::Bounds;
 use crate::pieces::{self, piece};
-use crate::spatial::tree::{Tree, unkey};
+use crate::spatial::tree::Tree;
 use fans::Fans;
 use figures::Tilt;
 use glam::{DVec3, Vec3};
@@ -205,13 +205,11 @@ pub(crate) async fn in_pieces(
         report.residual[i] = scene.residual[k] as f32;
         report.component[i] = component[k];
     }
-    let mut nearest = Vec::new();
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
         let jet = field.jet(position[i].as_dvec3());
         report.residual[i] = distance(jet.value, jet.gradient.length()) as f32;
-        scene.tree.nearest_many(position[i], 1, |_| true, &mut nearest);
-        report.component[i] =
-            nearest.first().map_or(components::NO_LABEL, |&k| component[unkey(k).1 as usize]);
+        let (_, equal) = scene.tree.nearest(position[i], u32::MAX, f32::INFINITY);
+        report.component[i] = component.get(equal as usize).copied().unwrap_or(components::NO_LABEL);
     }
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);
     report

@@ -105,25 +105,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            sampling: Sampling::Uniform,
-            size_mode: SizeMode::Radius,
-            radius_share: 0.006,
-            radius_law: LawKind::ChordError,
-            // With this the ellipsoid of the gallery takes about 16,000 particles, the sphere 13,000.
-            chord_error: 4.5e-5,
-            curvature_scale: 0.015,
-            radius_min_share: 0.001,
-            radius_max_share: 0.03,
-            grading: 0.2,
-            placement: Placement::Direct,
-            count: 20_000,
-            relax_steps: 10,
-            match_tolerance: 0.7,
-            gaps: GapPolicy::Fill,
-            seed: 0,
-            max_particles: 200_000,
-        }
+        Self::DEFAULT
     }
 }
 
@@ -158,6 +140,27 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
+    /// The values that `Default` gives.
+    pub const DEFAULT: Self = Self {
+        sampling: Sampling::Uniform,
+        size_mode: SizeMode::Radius,
+        radius_share: 0.006,
+        radius_law: LawKind::ChordError,
+        // With this the ellipsoid of the gallery takes about 16,000 particles, the sphere 13,000.
+        chord_error: 4.5e-5,
+        curvature_scale: 0.015,
+        radius_min_share: 0.001,
+        radius_max_share: 0.03,
+        grading: 0.2,
+        placement: Placement::Direct,
+        count: 20_000,
+        relax_steps: 10,
+        match_tolerance: 0.7,
+        gaps: GapPolicy::Fill,
+        seed: 0,
+        max_particles: 200_000,
+    };
+
     /// Ranges of the numeric settings: name, smallest and largest value.
     pub const RANGES: [(&'static str, f64, f64); 10] = [
         ("radius_share", 1e-4, 0.2),

@@ -18,17 +18,17 @@ pub struct Description {
     /// The gallery.
     pub surfaces: Vec<SurfaceEntry>,
     /// The models from points.
-    pub models: Vec<Model>,
+    pub models: &'static [Model],
     /// Settings of a run.
     pub settings: Vec<Setting>,
     /// Rows of the report.
-    pub report: Vec<ReportRow>,
+    pub report: &'static [ReportRow],
     /// What can become of a child.
-    pub fates: Vec<Fate>,
+    pub fates: &'static [Fate],
     /// Functions of the formula language.
-    pub functions: Vec<FunctionInfo>,
+    pub functions: &'static [FunctionInfo],
     /// Ways to colour the particles.
-    pub colours: Vec<Colour>,
+    pub colours: &'static [Colour],
 }
 
 /// A gallery surface.
@@ -55,7 +55,7 @@ pub struct SurfaceEntry {
 }
 
 /// A setting of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Setting {
     /// Name in [`Settings`].
     pub name: &'static str,
@@ -78,11 +78,11 @@ pub struct Setting {
     /// Unit; `%` shows the value times 100.
     pub unit: &'static str,
     /// Values of a choice.
-    pub choices: Vec<Choice>,
+    pub choices: &'static [Choice],
     /// One line of explanation.
     pub help: &'static str,
     /// Shown only while all of these hold; always if there is none.
-    pub when: Vec<Condition>,
+    pub when: &'static [Condition],
 }
 
 /// The value of a setting.
@@ -182,12 +182,12 @@ pub fn describe() -> Description {
         version: env!("CARGO_PKG_VERSION"),
         default_surface: gallery::SURFACES[0].id,
         surfaces: gallery::SURFACES.iter().map(surface).collect(),
-        models: MODELS.to_vec(),
+        models: &MODELS,
         settings: settings(),
-        report: REPORT.to_vec(),
-        fates: FATES.to_vec(),
-        functions: FUNCTIONS.to_vec(),
-        colours: COLOURS.to_vec(),
+        report: REPORT,
+        fates: FATES,
+        functions: FUNCTIONS,
+        colours: COLOURS,
     }
 }
 
@@ -205,162 +205,170 @@ fn surface(surface: &Surface) -> SurfaceEntry {
     }
 }
 
+/// The settings, each with its range where that is not its own.
 fn settings() -> Vec<Setting> {
-    let default = Settings::default();
     let range = |name: &str| Settings::RANGES.into_iter().find(|r| r.0 == name).map(|r| (r.1, r.2));
-    let number = |name, label, default: Value, step: f64| {
-        let (min, max) = range(name).unzip();
-        Setting {
-            name,
-            label,
-            group: "Sampling",
-            kind: if matches!(default, Value::Number(_)) { "number" } else { "integer" },
-            default,
-            min,
-            max,
-            step: Some(step),
-            scale: "linear",
-            unit: "",
-            choices: Vec::new(),
-            help: "",
-            when: Vec::new(),
-        }
+    let ranged = |setting: &Setting| {
+        let (min, max) = range(setting.name).unzip();
+        Setting { min: setting.min.or(min), max: setting.max.or(max), ..*setting }
     };
-    let when = |name, value| Condition { name, value, equal: true };
-    let uniform = when("sampling", "uniform");
-    let adaptive = when("sampling", "adaptive");
-    vec![
-        Setting {
-            kind: "choice",
-            step: None,
-            choices: vec![
-                Choice { value: "uniform", label: "Uniform" },
-                Choice { value: "adaptive", label: "Adaptive" },
-            ],
-            help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
-            ..number("sampling", "Sampling", Value::Sampling(default.sampling), 0.0)
-        },
-        Setting {
-            kind: "choice",
-            step: None,
-            choices: vec![
-                Choice { value: "radius", label: "Radius" },
-                Choice { value: "count", label: "Count" },
-            ],
-            help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
-            ..number("size_mode", "Size by", Value::Size(default.size_mode), 0.0)
-        },
-        Setting {
-            scale: "log",
-            unit: "%",
-            help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
-            when: vec![uniform, when("size_mode", "radius")],
-            ..number("radius_share", "Radius", Value::Number(default.radius_share), 0.01)
-        },
-        Setting {
-            scale: "log",
-            unit: "particles",
-            help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
-            when: vec![when("size_mode", "count")],
-            ..number("count", "Count", Value::Integer(default.count.into()), 0.01)
-        },
-        Setting {
-            kind: "choice",
-            step: None,
-            choices: vec![
-                Choice { value: "chord_error", label: "Chord error" },
-                Choice { value: "max_curvature", label: "Largest curvature" },
-                Choice { value: "sum_of_curvatures", label: "Sum of curvatures" },
-            ],
-            help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
-            when: vec![adaptive],
-            ..number("radius_law", "Radius law", Value::Law(default.radius_law), 0.0)
-        },
-        Setting {
-            scale: "log",
-            unit: "%",
-            help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
-            when: vec![adaptive, when("radius_law", "chord_error")],
-            ..number("chord_error", "Chord error", Value::Number(default.chord_error), 0.01)
-        },
-        Setting {
-            scale: "log",
-            unit: "× 1/κ",
-            help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
-            when: vec![adaptive, Condition { equal: false, ..when("radius_law", "chord_error") }],
-            ..number("curvature_scale", "Curvature scale", Value::Number(default.curvature_scale), 0.01)
-        },
-        Setting {
-            scale: "log",
-            unit: "%",
-            group: "Advanced",
-            help: "No particle is smaller than this share of the box diagonal.",
-            when: vec![adaptive],
-            ..number("radius_min_share", "Smallest radius", Value::Number(default.radius_min_share), 0.01)
-        },
-        Setting {
-            scale: "log",
-            unit: "%",
-            group: "Advanced",
-            help: "No particle is larger than this share of the box diagonal.",
-            when: vec![adaptive],
-            ..number("radius_max_share", "Largest radius", Value::Number(default.radius_max_share), 0.01)
-        },
-        Setting {
-            group: "Advanced",
-            help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
-            when: vec![adaptive],
-            ..number("grading", "Grading", Value::Number(default.grading), 0.01)
-        },
-        Setting {
-            kind: "choice",
-            step: None,
-            group: "Advanced",
-            choices: vec![
-                Choice { value: "direct", label: "Direct" },
-                Choice { value: "faithful", label: "As in the paper" },
-            ],
-            help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
-            when: vec![adaptive],
-            ..number("placement", "Placement", Value::Placement(default.placement), 0.0)
-        },
-        Setting {
-            max: Some(100.0),
-            unit: "steps",
-            help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
-            ..number("relax_steps", "Relaxation", Value::Integer(default.relax_steps.into()), 1.0)
-        },
-        Setting {
-            unit: "× 2r",
-            group: "Advanced",
-            help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
-            when: vec![uniform],
-            ..number("match_tolerance", "Match tolerance", Value::Number(default.match_tolerance), 0.01)
-        },
-        Setting {
-            kind: "choice",
-            step: None,
-            group: "Advanced",
-            choices: vec![Choice { value: "fill", label: "Fill" }, Choice { value: "leave", label: "Leave" }],
-            help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
-            ..number("gaps", "Gaps", Value::Gaps(default.gaps), 0.0)
-        },
-        Setting {
-            min: Some(0.0),
-            max: Some(999_999.0),
-            group: "Advanced",
-            help: "Chooses the point on the surface where the front begins.",
-            ..number("seed", "Seed", Value::Integer(default.seed), 1.0)
-        },
-        Setting {
-            scale: "log",
-            unit: "particles",
-            group: "Advanced",
-            help: "The run stops when it has placed this many.",
-            ..number("max_particles", "Limit", Value::Integer(default.max_particles.into()), 0.01)
-        },
-    ]
+    SETTINGS.iter().map(ranged).collect()
 }
+
+const fn number(name: &'static str, label: &'static str, default: Value, step: f64) -> Setting {
+    Setting {
+        name,
+        label,
+        group: "Sampling",
+        kind: if matches!(default, Value::Number(_)) { "number" } else { "integer" },
+        default,
+        min: None,
+        max: None,
+        step: Some(step),
+        scale: "linear",
+        unit: "",
+        choices: &[],
+        help: "",
+        when: &[],
+    }
+}
+
+const fn when(name: &'static str, value: &'static str) -> Condition {
+    Condition { name, value, equal: true }
+}
+
+const DEFAULT: Settings = Settings::DEFAULT;
+const UNIFORM: Condition = when("sampling", "uniform");
+const ADAPTIVE: Condition = when("sampling", "adaptive");
+
+const SETTINGS: &[Setting] = &[
+    Setting {
+        kind: "choice",
+        step: None,
+        choices: &[
+            Choice { value: "uniform", label: "Uniform" },
+            Choice { value: "adaptive", label: "Adaptive" },
+        ],
+        help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
+        ..number("sampling", "Sampling", Value::Sampling(DEFAULT.sampling), 0.0)
+    },
+    Setting {
+        kind: "choice",
+        step: None,
+        choices: &[Choice { value: "radius", label: "Radius" }, Choice { value: "count", label: "Count" }],
+        help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
+        ..number("size_mode", "Size by", Value::Size(DEFAULT.size_mode), 0.0)
+    },
+    Setting {
+        scale: "log",
+        unit: "%",
+        help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
+        when: &[UNIFORM, when("size_mode", "radius")],
+        ..number("radius_share", "Radius", Value::Number(DEFAULT.radius_share), 0.01)
+    },
+    Setting {
+        scale: "log",
+        unit: "particles",
+        help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
+        when: &[when("size_mode", "count")],
+        ..number("count", "Count", Value::Integer(DEFAULT.count as u64), 0.01)
+    },
+    Setting {
+        kind: "choice",
+        step: None,
+        choices: &[
+            Choice { value: "chord_error", label: "Chord error" },
+            Choice { value: "max_curvature", label: "Largest curvature" },
+            Choice { value: "sum_of_curvatures", label: "Sum of curvatures" },
+        ],
+        help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
+        when: &[ADAPTIVE],
+        ..number("radius_law", "Radius law", Value::Law(DEFAULT.radius_law), 0.0)
+    },
+    Setting {
+        scale: "log",
+        unit: "%",
+        help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
+        when: &[ADAPTIVE, when("radius_law", "chord_error")],
+        ..number("chord_error", "Chord error", Value::Number(DEFAULT.chord_error), 0.01)
+    },
+    Setting {
+        scale: "log",
+        unit: "× 1/κ",
+        help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
+        when: &[ADAPTIVE, Condition { equal: false, ..when("radius_law", "chord_error") }],
+        ..number("curvature_scale", "Curvature scale", Value::Number(DEFAULT.curvature_scale), 0.01)
+    },
+    Setting {
+        scale: "log",
+        unit: "%",
+        group: "Advanced",
+        help: "No particle is smaller than this share of the box diagonal.",
+        when: &[ADAPTIVE],
+        ..number("radius_min_share", "Smallest radius", Value::Number(DEFAULT.radius_min_share), 0.01)
+    },
+    Setting {
+        scale: "log",
+        unit: "%",
+        group: "Advanced",
+        help: "No particle is larger than this share of the box diagonal.",
+        when: &[ADAPTIVE],
+        ..number("radius_max_share", "Largest radius", Value::Number(DEFAULT.radius_max_share), 0.01)
+    },
+    Setting {
+        group: "Advanced",
+        help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
+        when: &[ADAPTIVE],
+        ..number("grading", "Grading", Value::Number(DEFAULT.grading), 0.01)
+    },
+    Setting {
+        kind: "choice",
+        step: None,
+        group: "Advanced",
+        choices: &[
+            Choice { value: "direct", label: "Direct" },
+            Choice { value: "faithful", label: "As in the paper" },
+        ],
+        help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
+        when: &[ADAPTIVE],
+        ..number("placement", "Placement", Value::Placement(DEFAULT.placement), 0.0)
+    },
+    Setting {
+        max: Some(100.0),
+        unit: "steps",
+        help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
+        ..number("relax_steps", "Relaxation", Value::Integer(DEFAULT.relax_steps as u64), 1.0)
+    },
+    Setting {
+        unit: "× 2r",
+        group: "Advanced",
+        help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+        when: &[UNIFORM],
+        ..number("match_tolerance", "Match tolerance", Value::Number(DEFAULT.match_tolerance), 0.01)
+    },
+    Setting {
+        kind: "choice",
+        step: None,
+        group: "Advanced",
+        choices: &[Choice { value: "fill", label: "Fill" }, Choice { value: "leave", label: "Leave" }],
+        help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
+        ..number("gaps", "Gaps", Value::Gaps(DEFAULT.gaps), 0.0)
+    },
+    Setting {
+        min: Some(0.0),
+        max: Some(999_999.0),
+        group: "Advanced",
+        help: "Chooses the point on the surface where the front begins.",
+        ..number("seed", "Seed", Value::Integer(DEFAULT.seed), 1.0)
+    },
+    Setting {
+        scale: "log",
+        unit: "particles",
+        group: "Advanced",
+        help: "The run stops when it has placed this many.",
+        ..number("max_particles", "Limit", Value::Integer(DEFAULT.max_particles as u64), 0.01)
+    },
+];
 
 const fn row(
     key: &'static str,

@@ -135,19 +135,25 @@ impl Tree {
         }
     }
 
-    /// Squared distance from `p` to the nearest point other than `except` if it is below `bound_sq`, else `bound_sq`.
-    pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
-        let mut best = bound_sq;
+    /// The nearest point to `p` other than `except` and its squared distance, if that is below `bound_sq`; else `bound_sq` and
+    /// `except`.
+    pub(crate) fn nearest(&self, p: Vec3, except: u32, bound_sq: f32) -> (f32, u32) {
+        let mut best = (bound_sq, except);
         self.search(p, bound_sq, |first, end, bound| {
             for i in first..end {
                 let distance_sq = (self.position[i as usize] - p).length_squared();
-                if distance_sq < best && i != except {
-                    best = distance_sq;
+                if distance_sq < best.0 && i != except {
+                    best = (distance_sq, i);
                 }
             }
-            *bound = best;
+            *bound = best.0;
         });
         best
+    }
+
+    /// The distance alone of [`Tree::nearest`].
+    pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
+        self.nearest(p, except, bound_sq).0
     }
 
     /// The `count` nearest points to `p` that pass `accept`, nearest first, as keys in `out`.

@@ -14,7 +14,7 @@ pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
         for surface in &description.surfaces {
             all.push(serde_json::to_value(surface).map_err(std::io::Error::other)?);
         }
-        for model in &description.models {
+        for model in description.models {
             all.push(serde_json::to_value(model).map_err(std::io::Error::other)?);
         }
         writeln!(out, "{}", serde_json::Value::from(all))?;
@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &Surfaces) -> Result<ExitCode, Failure> {
     for surface in &description.surfaces {
         write_entry(&mut out, surface)?;
     }
-    for model in &description.models {
+    for model in description.models {
         let credit = if model.credit.is_empty() { "" } else { ", " };
         writeln!(out, "{}  {}{credit}{} ({} points)", model.id, model.name, model.credit, model.points)?;
     }
