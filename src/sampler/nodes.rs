@@ -54,6 +54,7 @@ pub(super) struct Singular {
 }
 
 /// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.
+#[inline(never)]
 pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
     let mut p = start;
     // False for NaN.
@@ -63,7 +64,7 @@ pub(super) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
         let hessian = matrix(&jet.hessian);
         let size_sq = size_sq(&hessian);
         // The least squares solution of H δ = −∇f, which does not run along a curve of such points.
-        let normal = hessian * hessian + DMat3::from_diagonal(DVec3::splat(SMALL * SMALL * size_sq));
+        let normal = times(&hessian, &hessian) + DMat3::from_diagonal(DVec3::splat(SMALL * SMALL * size_sq));
         let step = normal.inverse() * (hessian * jet.gradient);
         p -= step;
         if !is_near(step) || !is_near(p - start) {
@@ -130,10 +131,17 @@ pub(super) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut P
     }
 }
 
+/// One copy of the product, which is long.
+#[inline(never)]
+fn times(a: &DMat3, b: &DMat3) -> DMat3 {
+    *a * *b
+}
+
 fn matrix(h: &Sym3<f64>) -> DMat3 {
     DMat3::from_cols_array(&[h.xx, h.xy, h.xz, h.xy, h.yy, h.yz, h.xz, h.yz, h.zz])
 }
 
+#[inline(never)]
 fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
@@ -156,10 +164,15 @@ pub(super) fn isolating_box(
         let is_free = |&[a, b]: &[DVec3; 2]| a.cmpgt(top).any() || b.cmplt(bottom).any();
         bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
     };
-    let as_one = has_no_extremum(field, part, &boxes).into_iter().position(|is_so| is_so)?;
+    let mut is_so = [false; PIECES];
+    has_no_extremum(field, part, &boxes, &mut is_so);
+    let as_one = is_so[..SIZES].iter().position(|&is_so| is_so)?;
     // Larger ones may do in pieces: the bounds of each are tighter.
     let in_pieces = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
-        fits(&boxes[k]) && has_no_extremum(field, part, &pieces(boxes[k])).into_iter().all(|is_so| is_so)
+        fits(&boxes[k]) && {
+            has_no_extremum(field, part, &pieces(boxes[k]), &mut is_so);
+            is_so.iter().all(|&is_so| is_so)
+        }
     });
     boxes[in_pieces.unwrap_or(as_one)..].iter().find(|around| fits(around)).copied()
 }
@@ -174,25 +187,25 @@ fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
 }
 
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
-/// second derivatives along two fixed directions have different signs.
-fn has_no_extremum<const N: usize>(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]; N]) -> [bool; N] {
-    let mut known = [Enclosure::UNKNOWN; N];
-    let mut second = [[[0.0; 2]; 6]; N];
+/// function [is a saddle](is_saddle) throughout.
+#[inline(never)]
+fn has_no_extremum(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
+    let mut known = [Enclosure::UNKNOWN; PIECES];
+    let mut second = [[[0.0; 2]; 6]; PIECES];
     field.enclose(part, boxes, &mut known);
     field.enclose_second(part, boxes, &mut second);
-    core::array::from_fn(|k| {
+    for (k, out) in out[..boxes.len()].iter_mut().enumerate() {
         let Enclosure { defined, continuous, smooth, gradient, .. } = known[k];
-        if !(defined && continuous) {
-            return false;
-        }
-        if gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0) {
-            return true;
-        }
-        let middle = second[k].map(|[lo, hi]| 0.5 * (lo + hi));
-        smooth
-            && extreme_directions(middle)
-                .is_some_and(|[up, down]| along(&second[k], up)[0] > 0.0 && along(&second[k], down)[1] < 0.0)
-    })
+        let is_steep = gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0);
+        *out = defined && continuous && (is_steep || smooth && is_saddle(&second[k]));
+    }
+}
+
+/// Whether the second derivatives along two fixed directions have different signs.
+fn is_saddle(second: &[[f64; 2]; 6]) -> bool {
+    let middle = second.map(|[lo, hi]| 0.5 * (lo + hi));
+    extreme_directions(middle)
+        .is_some_and(|[up, down]| along(second, up)[0] > 0.0 && along(second, down)[1] < 0.0)
 }
 
 /// Directions along which the second derivative is about the largest and about the smallest, if these have different signs.
@@ -204,8 +217,8 @@ fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> 
     let directions = [1.0, -1.0].map(|sign| {
         let mut power = hessian * sign + DMat3::from_diagonal(DVec3::splat(size));
         for _ in 0..SQUARINGS {
-            power = power * power;
-            power = power * (1.0 / size_sq(&power).sqrt());
+            power = times(&power, &power);
+            power *= 1.0 / size_sq(&power).sqrt();
         }
         let columns = [power.x_axis, power.y_axis, power.z_axis];
         let longest = columns.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
@@ -220,6 +233,7 @@ fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> 
 }
 
 /// Bounds of the second derivative along a direction, from those of the six.
+#[inline(never)]
 fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
     /// What the few operations here may have been rounded by.
     const ROUNDING: f64 = 32.0 * f64::EPSILON;
