@@ -258,12 +258,14 @@ fn raw_string(text: &[char]) -> usize {
 /// The source up to its test module, which stands last and may use anything.
 fn without_tests(code: &str) -> String {
     let mut kept = code;
-    for (at, marker) in code.match_indices("#[cfg(test)]") {
-        let mut item = code[at + marker.len()..].trim_start();
+    for (at, _) in code.match_indices("#[cfg(") {
+        let Some((condition, rest)) = code[at..].split_once(']') else { break };
+        let mut item = rest.trim_start();
         while let Some((_, rest)) = item.strip_prefix("#[").and_then(|attribute| attribute.split_once(']')) {
             item = rest.trim_start();
         }
-        if item.starts_with("mod ") {
+        // Of tests alone, or of tests and a feature.
+        if condition.contains("(test") && item.starts_with("mod ") {
             kept = &code[..at];
             break;
         }

@@ -182,7 +182,7 @@ pub fn describe() -> Description {
         version: env!("CARGO_PKG_VERSION"),
         default_surface: gallery::SURFACES[0].id,
         surfaces: gallery::SURFACES.iter().map(surface).collect(),
-        models: &MODELS,
+        models: MODELS,
         settings: settings(),
         report: REPORT,
         fates: FATES,
