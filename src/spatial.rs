@@ -9,7 +9,7 @@
 pub(crate) mod chains;
 pub(crate) mod tree;
 
-use crate::math::{LANES, Lanes};
+use crate::math::{LANES, Lanes, push_gently};
 use glam::{Vec3, Vec4};
 
 /// No block.
@@ -169,7 +169,7 @@ impl CellGrid {
                 len: 0,
             };
             head = self.blocks.len() as u32;
-            self.blocks.push(block);
+            push_gently(&mut self.blocks, block);
             self.table[entry].head[cell] = head;
             self.table[entry].occupied |= 1 << cell;
         }

@@ -42,10 +42,10 @@ static ALLOCATOR: Counting = Counting;
 
 /// Most bytes per particle beyond the output. In the front these are the neighbour lists, the grid and the room reserved for
 /// a denser packing, in the relaxation the lists, the forces, the places before the step and a smaller grid.
-const MOST: f64 = 64.0;
+const MOST: f64 = 60.0;
 
-/// The same where the radii vary: curvature and slope of every particle of the front.
-const MOST_ADAPTIVE: f64 = 104.0;
+/// The same where the radii vary: the radii before the step and the way since they were brought up to date come on top.
+const MOST_ADAPTIVE: f64 = 64.0;
 
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
 const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;

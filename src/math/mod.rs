@@ -126,6 +126,14 @@ impl Sym3<f32> {
     }
 }
 
+/// Adds an item, and makes room by a sixteenth where a vector would double.
+pub(crate) fn push_gently<T>(items: &mut Vec<T>, item: T) {
+    if items.len() == items.capacity() {
+        items.reserve_exact(64 + items.len() / 16);
+    }
+    items.push(item);
+}
+
 /// Sorts a few items: by insertion, which keeps the order of those of which neither comes before the other.
 pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
     for end in 1..items.len() {

@@ -10,8 +10,10 @@
 //! * The children of an arc share its slack evenly; in the paper the last one gets it all.
 //! * A particle whose child was lost to another one looks for room a second time once the front is done.
 
+mod parents;
 mod pushing;
 
+use self::parents::{Bend, Parent, Parents, shape_in};
 use super::adaptive_grid::{Held, RadiusGrids};
 use super::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use super::pairs::Pairs;
@@ -22,7 +24,6 @@ use super::settings::{Placement as Method, Settings};
 use super::sheets::is_near_own;
 use super::sizing::Sizing;
 use super::uniform::FateCounts;
-use crate::differential::Curvature;
 use crate::field::Field;
 use crate::math::functions::atan2;
 use crate::math::{Bounds, sort_few, tangent_frame};
@@ -70,6 +71,8 @@ struct Child {
     /// Number among the children of its parent.
     number: u32,
     held: Held,
+    /// Place of its parent in the level.
+    of: u32,
     /// Distance to the nearest collision when it was placed.
     clearance: f32,
 }
@@ -143,8 +146,7 @@ pub(super) struct AdaptiveFront {
     stage: Stage,
     next: usize,
     seed_place: Held,
-    /// Particles of the level under way.
-    parents: Vec<u32>,
+    parents: Parents,
     /// Particles before the level under way.
     first: usize,
     /// Particles before this index are final; provisional children stand from here on.
@@ -155,15 +157,9 @@ pub(super) struct AdaptiveFront {
     batch: Vec<Landed>,
     landing: Vec<Landing>,
     placement: Placement,
-    /// Curvature at each settled particle.
-    curvature: Vec<Curvature>,
-    /// Gradient of the radius at each settled particle; that of its parent until it places its children.
-    slope: Vec<Vec3>,
     /// Largest distance between a provisional and a final place in this level, and by how much a radius grew.
     drift: f32,
     growth: f32,
-    /// Particles that lost a child to another one.
-    pub(super) seams: Vec<u32>,
     fills: u32,
     /// What is noted of a particle that is followed.
     pub(super) trace: Trace,
@@ -194,7 +190,7 @@ impl AdaptiveFront {
             stage: Stage::Place,
             next: 0,
             seed_place: Held::default(),
-            parents: Vec::new(),
+            parents: Parents::default(),
             first: 0,
             settled: 0,
             children: Vec::new(),
@@ -203,11 +199,8 @@ impl AdaptiveFront {
             batch: Vec::with_capacity(BATCH),
             landing: Vec::new(),
             placement: Placement::new(),
-            curvature: Vec::new(),
-            slope: Vec::new(),
             drift: 0.0,
             growth: 0.0,
-            seams: Vec::new(),
             fills: 0,
             trace: Trace::default(),
             filled: 0,
@@ -224,7 +217,6 @@ impl AdaptiveFront {
         radii: [f32; 2],
         (resolution, gradient_scale): (f32, f32),
         bounds: &Bounds,
-        expected: usize,
     ) {
         self.grading = settings.grading as f32;
         self.method = settings.placement;
@@ -233,8 +225,6 @@ impl AdaptiveFront {
         self.gradient_scale = gradient_scale;
         self.bounds = *bounds;
         self.max_particles = settings.max_particles as usize;
-        self.curvature.reserve_exact(expected);
-        self.slope.reserve_exact(expected);
         self.filled = 0;
         // Neighbours that touch differ by this factor at most.
         let ratio = (1.0 + settings.grading as f32) / (1.0 - settings.grading as f32);
@@ -247,9 +237,6 @@ impl AdaptiveFront {
         self.settled = 0;
         self.children.clear();
         self.landings.clear();
-        self.curvature.clear();
-        self.slope.clear();
-        self.seams.clear();
         self.fills = 0;
         self.trace.clear();
         self.fates = FateCounts::default();
@@ -258,7 +245,7 @@ impl AdaptiveFront {
 
     /// Whether every particle has placed its children.
     pub(super) fn is_done(&self) -> bool {
-        self.parents.is_empty()
+        self.parents.level.is_empty()
     }
 
     /// Particles that are final.
@@ -269,8 +256,7 @@ impl AdaptiveFront {
     /// Gives back what only the front needs.
     pub(super) fn release(&mut self) {
         self.grids.release();
-        self.curvature = Vec::new();
-        self.slope = Vec::new();
+        self.parents = Parents::default();
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
@@ -329,9 +315,7 @@ impl AdaptiveFront {
                 self.fates.uncount(particles.slots[last].get(k));
             }
             particles.truncate(last);
-            self.curvature.truncate(last);
-            self.slope.truncate(last);
-            self.seams.retain(|&i| (i as usize) < last);
+            self.parents.truncate(last);
             pairs.truncate(last);
             self.settled = last;
         }
@@ -348,9 +332,8 @@ impl AdaptiveFront {
         let index = surface.particles.len();
         self.seed_place = self.grids.insert(position, spot.radius, index as u32);
         surface.particles.push(position, normal, spot.radius, Particles::NO_PARENT, 0, Slots::default());
-        self.curvature.push(spot.curvature);
-        self.slope.push(Vec3::ZERO);
-        self.parents.push(index as u32);
+        let bend = Bend { curvature: spot.curvature, slope: Vec3::ZERO };
+        self.parents.add(index as u32, bend);
         self.settled = index + 1;
         self.begin_level();
         true
@@ -363,14 +346,10 @@ impl AdaptiveFront {
 
     /// Has the particles that lost a child look for room again; false if there is nothing more to do.
     pub(super) fn fill(&mut self) -> bool {
-        if self.seams.is_empty() || self.fills >= MAX_FILLS || self.capped {
+        if self.fills >= MAX_FILLS || self.capped || !self.parents.fill() {
             return false;
         }
         self.fills += 1;
-        core::mem::swap(&mut self.parents, &mut self.seams);
-        self.seams.clear();
-        self.parents.sort_unstable();
-        self.parents.dedup();
         self.begin_level();
         true
     }
@@ -380,8 +359,8 @@ impl AdaptiveFront {
         while budget > 0 && !self.is_done() {
             match self.stage {
                 Stage::Place => {
-                    if self.next < self.parents.len() {
-                        self.place_children(surface, self.parents[self.next] as usize);
+                    if self.next < self.parents.level.len() {
+                        self.place_children(surface, self.next);
                         self.next += 1;
                         budget -= 1;
                     } else {
@@ -408,9 +387,9 @@ impl AdaptiveFront {
                     } else {
                         surface.particles.truncate(self.settled);
                         self.children.clear();
-                        self.parents.clear();
-                        if !self.capped {
-                            self.parents.extend(self.first as u32..self.settled as u32);
+                        self.parents.next_level(self.first);
+                        if self.capped {
+                            self.parents.stop();
                         }
                         self.begin_level();
                     }
@@ -424,11 +403,13 @@ impl AdaptiveFront {
     pub(super) fn stop(&mut self, particles: &mut Particles) {
         particles.truncate(self.settled);
         self.children.clear();
-        self.parents.clear();
+        self.parents.stop();
     }
 
-    /// Finds the free arcs of particle `parent` and enters provisional children in each.
-    fn place_children(&mut self, surface: &mut Surface, parent: usize) {
+    /// Finds the free arcs of parent `which` of the level and enters provisional children in each.
+    fn place_children(&mut self, surface: &mut Surface, which: usize) {
+        let Parent { particle, bend, .. } = self.parents.level[which];
+        let parent = particle as usize;
         let particles = &*surface.particles;
         let (p, n, radius) = (particles.position[parent], particles.normal[parent], particles.radius[parent]);
         let reach = self.reach * radius;
@@ -450,11 +431,12 @@ impl AdaptiveFront {
         };
         let mut base = Base { radius, u, w, n, shape: [0.0; 3], slope: Vec2::ZERO };
         if self.method == Method::Direct {
-            base.shape = shape_in(&self.curvature[parent], u, w);
-            let inherited = self.slope[parent];
+            base.shape = shape_in(&bend.curvature, u, w);
+            let inherited = bend.slope;
             base.slope = self.ring.slope(u, w, radius, Vec2::new(inherited.dot(u), inherited.dot(w)));
-            self.slope[parent] = u * base.slope.x + w * base.slope.y;
+            self.parents.level[which].bend.slope = u * base.slope.x + w * base.slope.y;
         }
+        self.parents.level[which].has_placed = true;
         self.ring.find_arcs(&base);
         if self.trace.follows(parent as u32) {
             self.note_surroundings(&found, particles, parent, &base);
@@ -629,6 +611,7 @@ impl AdaptiveFront {
             slot,
             number,
             held: self.grids.insert(position, guess.radius, index),
+            of: self.next as u32,
             clearance,
         });
     }
@@ -714,13 +697,17 @@ impl AdaptiveFront {
                 let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
                 let safe = child.clearance - moved - self.drift - self.match_tolerance * grown > 0.0;
                 if !safe && self.collides(particles, spot.position, spot.normal, spot.radius) {
-                    self.seams.push(parent);
+                    self.parents.note_seam(self.parents.level[child.of as usize]);
                     SlotFate::Matched
                 } else {
                     let index = self.settled;
                     let surprise = spot.radius - particles.radius[provisional];
+                    let of = self.parents.level[child.of as usize];
+                    let bend = Bend { curvature: spot.curvature, slope: of.bend.slope };
+                    self.parents.born.push(bend);
                     if surprise.abs() > SURPRISE * spot.radius {
-                        self.seams.extend([parent, index as u32]);
+                        self.parents.note_seam(of);
+                        self.parents.note_seam(Parent { particle: index as u32, has_placed: false, bend });
                     }
                     self.grids.update(child.held, spot.position, spot.radius, index as u32);
                     particles.position[index] = spot.position;
@@ -728,8 +715,6 @@ impl AdaptiveFront {
                     particles.radius[index] = spot.radius;
                     particles.parent[index] = parent;
                     particles.level[index] = particles.level[provisional];
-                    self.curvature.push(spot.curvature);
-                    self.slope.push(self.slope[parent as usize]);
                     self.settled += 1;
                     self.filled += u64::from(self.fills > 0);
                     SlotFate::Added
@@ -774,16 +759,6 @@ fn same_sheet(near: &Neighbour, normal: Vec3, other: Vec3, both: f32) -> bool {
     let rise = near.offset.dot(normal);
     let slack = RISE_SLACK * both;
     normal.dot(other) > 0.0 && rise * rise <= MAX_RISE_SQ * (near.distance_sq + slack * slack)
-}
-
-/// Second fundamental form in the frame (u, w).
-fn shape_in(curvature: &Curvature, u: Vec3, w: Vec3) -> [f32; 3] {
-    let d = curvature.direction;
-    let (x, y) = (d.dot(u), d.dot(w));
-    // The direction of κ₂ is that of κ₁ turned by 90°.
-    let (k1, k2) = (curvature.k1, curvature.k2);
-    let shape = [k1 * x * x + k2 * y * y, (k1 - k2) * x * y, k1 * y * y + k2 * x * x];
-    if shape.iter().all(|k| k.is_finite()) { shape } else { [0.0; 3] }
 }
 
 /// Slots of a new particle: the parent's is known.

@@ -72,7 +72,7 @@ impl Front {
                 self.uniform.reset(radius, match_tolerance, tolerance, bounds, self.max_particles);
             }
             Sampling::Adaptive => {
-                self.adaptive.reset(settings, radii, self.survey, bounds, expected);
+                self.adaptive.reset(settings, radii, self.survey, bounds);
             }
         }
     }

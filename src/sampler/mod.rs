@@ -80,7 +80,7 @@ const COUNT_ROOM: f64 = 1.1;
 /// but no more than the peak that tests/memory.rs holds it to.
 const BYTES_PER_PARTICLE: usize = 95;
 /// The same for an adaptive run.
-const BYTES_PER_ADAPTIVE_PARTICLE: usize = 125;
+const BYTES_PER_ADAPTIVE_PARTICLE: usize = 95;
 
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.

@@ -1,5 +1,7 @@
 //! Neighbour lists for the relaxation: every pair once, under the larger index.
 
+use crate::math::push_gently;
+
 /// Neighbours that a list has room for. Within the reach of the relaxation a lattice has 6 to 12, half of them of a
 /// smaller index; one particle in a hundred has more than eight.
 pub(super) const ROOM: usize = 8;
@@ -102,14 +104,6 @@ impl Pairs {
     pub(super) fn far(&self) -> &[[u32; 2]] {
         &self.far
     }
-}
-
-/// Grows by a sixteenth where a vector would double.
-fn push_gently<T>(items: &mut Vec<T>, item: T) {
-    if items.len() == items.capacity() {
-        items.reserve_exact(64 + items.len() / 16);
-    }
-    items.push(item);
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! * The paper names no step lengths.
 //! * After the projection on the circle C(p, r_i + r_j) the radius is evaluated once more, on the surface.
 
+use super::parents::Bend;
 use super::{AdaptiveFront, MAX_CHILDREN, Occupant, SLOTS, Surface, What, initial_slots};
 use crate::math::functions::{atan2, cos, sin};
 use crate::particles::{Particles, SlotFate};
@@ -198,8 +199,7 @@ impl AdaptiveFront {
         let level = particles.level[parent] + 1;
         self.grids.insert(position, radius, self.settled as u32);
         particles.push(position, normal, radius, id, level, initial_slots());
-        self.curvature.push(spot.curvature);
-        self.slope.push(Vec3::ZERO);
+        self.parents.born.push(Bend { curvature: spot.curvature, slope: Vec3::ZERO });
         self.settled += 1;
         self.filled += u64::from(self.fills > 0);
         self.ring.push(position - circle.centre, radius, true);
