@@ -50,7 +50,7 @@ pub(super) struct Singular {
     /// Whether f is 0 there but for rounding.
     pub(super) is_zero: bool,
     /// Whether it is alone: the second derivatives tell that the gradient vanishes nowhere else near it.
-    is_alone: bool,
+    pub(super) is_alone: bool,
 }
 
 /// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.

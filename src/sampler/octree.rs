@@ -354,6 +354,10 @@ impl Octree {
         if point.is_zero && at.cmpge(self.lo).all() && at.cmple(self.hi).all() {
             self.singular.push(point);
         }
+        // Through the faces of a box on a curve of such points the curve goes on.
+        if !point.is_alone {
+            return false;
+        }
         let within = [self.lo, self.hi];
         let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };
         self.isolated.push(around);

@@ -15,7 +15,7 @@ const UNITS: u32 = 16;
 /// Particles that a witness is tried to be connected with.
 const MOST_TRIED: usize = 6;
 /// The same by a way of several pieces.
-const MOST_TRIED_BY_PIECES: usize = 3;
+const MOST_TRIED_BY_PIECES: usize = 2;
 /// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
 const MAX_STEPS: u32 = 12;
 /// Most steps that bring a witness in the margin outside the box to its piece within.
