@@ -114,7 +114,9 @@ pub(super) fn places(points: &[Singular]) -> u64 {
 pub(super) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);
-    let widest = points.iter().filter(|point| !point.is_alone).map(|point| point.reach).fold(0.0, f64::max);
+    // The distance between those of a curve that were found last, all along it: the first ones looked much farther.
+    let on_curves = points.iter().filter(|point| !point.is_alone).map(|point| point.reach);
+    let widest = on_curves.reduce(f64::min).unwrap_or(0.0);
     let mut near = Vec::new();
     for i in 0..particles.len() {
         let (p, reach) = (particles.position[i], 2.0 * particles.radius[i]);

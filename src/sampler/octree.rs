@@ -64,7 +64,7 @@ const HARDLY_MORE: f64 = 1.3;
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
 /// Most cells in which they are looked for, in a part: there are more where they form a curve.
-const MOST_TRIED: usize = 1_024;
+const MOST_TRIED: usize = 512;
 /// Singular points nearer to each other than this share of a cell are one.
 const SAME: f64 = 1e-6;
 /// Cells looked at together; how a budget cuts the work does not change what is found.
