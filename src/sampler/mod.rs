@@ -85,6 +85,8 @@ const BYTES_PER_ADAPTIVE_PARTICLE: usize = 95;
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
 const SEARCH_SLICE: u32 = 8_192;
+/// The same of the relaxation, whose stages differ tenfold in the time of a unit.
+const RELAXATION_SLICE: u32 = 16_384;
 
 /// What [`Sampler::start`] found out.
 #[derive(Clone, Debug, Serialize)]
@@ -492,7 +494,7 @@ impl Sampler {
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
     /// relaxation step. Returns early where the relaxation begins, so that the particles of the front can be seen, and now and
-    /// then in the search for first points.
+    /// then in the search for first points and in the relaxation.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
         let field = &mut Scaled::new(field, self.factor);
         let mut left = budget;
@@ -538,10 +540,10 @@ impl Sampler {
                         projector: &mut self.projector,
                         sizing: self.sizing.as_ref(),
                     };
-                    let (rest, moved) =
-                        self.relaxation.step(&mut surface, &mut self.pairs, &mut self.particles, left);
-                    self.moved |= moved;
-                    left = rest;
+                    let slice = left.min(RELAXATION_SLICE);
+                    self.moved |=
+                        self.relaxation.step(&mut surface, &mut self.pairs, &mut self.particles, slice);
+                    left = 0;
                     self.counts.relaxation_evaluations += self.projector.evaluations - start;
                     if self.relaxation.is_done() {
                         let reason = if self.front.capped() { StopReason::Cap } else { StopReason::Complete };

@@ -34,6 +34,9 @@ pub(super) const MAX_MOVE: f32 = 0.35;
 /// A Newton correction shorter than this, in radii, leaves a residual of the order of its square.
 const TRUSTED_CORRECTION: f32 = 0.02;
 
+/// Units that a new list counts for: it takes ten times as long as a particle's forces.
+const REFRESH_UNITS: u32 = 10;
+
 /// What a relaxation does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
@@ -110,6 +113,8 @@ pub(super) struct Relaxation {
     farthest: f32,
     drift: f32,
     found: Vec<Neighbour>,
+    /// Units done beyond the budgets so far, to be paid from the next ones.
+    debt: u32,
     /// Whether a list is to be made anew.
     is_old: bool,
     /// Force on each particle, the sum of `offset * weight` over its pairs, zero when the summation begins; and in `w` the
@@ -149,6 +154,7 @@ impl Relaxation {
             farthest: 0.0,
             drift: 0.0,
             found: Vec::new(),
+            debt: 0,
             is_old: false,
             force: Vec::new(),
             bundle: Box::new(Bundle::new()),
@@ -199,6 +205,7 @@ impl Relaxation {
         self.farthest = 0.0;
         self.drift = f32::INFINITY;
         self.sum = 0.0;
+        self.debt = 0;
         self.is_old = false;
         self.steep = false;
         let resized = if matches!(law, Law::Overlap { .. }) { particles } else { 0 };
@@ -240,7 +247,7 @@ impl Relaxation {
         self.next = 0;
     }
 
-    /// Does up to `budget` units (one particle in one stage); returns what is left and whether particles moved. `sizing` is
+    /// Does up to `budget` units (one particle in one stage, a dear one for several); returns whether particles moved. `sizing` is
     /// the radius field of an adaptive run.
     pub(super) fn step(
         &mut self,
@@ -248,7 +255,7 @@ impl Relaxation {
         pairs: &mut Pairs,
         particles: &mut Particles,
         budget: u32,
-    ) -> (u32, bool) {
+    ) -> bool {
         match (self.law, surface.sizing) {
             (Law::Gaussian { radius, tolerance }, _) => {
                 self.run(&Gaussian::new(radius, tolerance), surface, pairs, particles, budget)
@@ -268,13 +275,17 @@ impl Relaxation {
         pairs: &mut Pairs,
         particles: &mut Particles,
         mut budget: u32,
-    ) -> (u32, bool) {
+    ) -> bool {
         let n = particles.len();
         let mut moved = false;
+        let paid = self.debt.min(budget);
+        self.debt -= paid;
+        budget -= paid;
         while budget > 0 && self.stage != Stage::Done {
-            let last = n.min(self.next + budget as usize);
+            let (last, units) = self.affordable::<L>(budget, n);
             let range = self.next..last;
-            budget -= range.len() as u32;
+            self.debt = units.saturating_sub(budget);
+            budget = budget.saturating_sub(units);
             self.next = last;
             match self.stage {
                 Stage::Grid => {
@@ -385,7 +396,22 @@ impl Relaxation {
                 Stage::Done => {}
             }
         }
-        (budget, moved)
+        moved
+    }
+
+    /// Where the stage comes to with a budget, and the units that takes: the last particle may go beyond it.
+    fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
+        let cost = |i: usize| match self.stage {
+            Stage::Refresh if self.force[i].w.is_infinite() => REFRESH_UNITS,
+            Stage::Polish => L::POLISH_UNITS,
+            _ => 1,
+        };
+        let (mut last, mut units) = (self.next, 0);
+        while last < n && units < budget {
+            units += cost(last);
+            last += 1;
+        }
+        (last, units)
     }
 
     /// Makes all lists anew.

@@ -47,6 +47,8 @@ pub(super) trait Repulsion {
     const SKIN: f32;
     /// How far particles may go until the grid in which neighbours are found is made anew.
     const SLACK: f32;
+    /// Units that bringing a particle up to date at the end counts for.
+    const POLISH_UNITS: u32;
     /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
@@ -94,6 +96,7 @@ impl Repulsion for Gaussian {
     const RANGE: f32 = 3.0;
     const SKIN: f32 = 0.4;
     const SLACK: f32 = 0.5;
+    const POLISH_UNITS: u32 = 1;
     /// In units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
     /// below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in ten
     /// steps and set the squeezed rows trembling.
@@ -181,6 +184,8 @@ impl Repulsion for Overlap<'_> {
     const SKIN: f32 = 0.8;
     /// The grid goes by radii, which change.
     const SLACK: f32 = 0.0;
+    /// Every one asks for a Hessian.
+    const POLISH_UNITS: u32 = 8;
     /// The stiffest wave of the hexagonal lattice has the eigenvalue 6 less six times the share by which it is compressed,
     /// so steps below 0.36 are stable. Shorter ones mend less in ten.
     const STEP: f32 = 0.33;
