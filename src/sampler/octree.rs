@@ -55,7 +55,7 @@ const IRREGULAR_DEPTH: u8 = 6;
 /// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a third of a
 /// particle. Smooth surfaces of the gallery take a hundred to eight thousand, but for two that take sixty and seventy thousand,
 /// and those with up to sixteen cone points no more; the fifty of Barth's sextic take 36,000.
-const MOST_CELLS: usize = 16_384;
+const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Most cells looked at where each level has hardly more of them than the one before it, so that the end is near.
 const MOST_AT_THE_END: usize = 65_536;
