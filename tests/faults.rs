@@ -2,6 +2,7 @@
 //! The sampler ends on all of them, places particles only on zeros, and says in words what it met.
 
 use glam::Vec3;
+use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Progress, Settings, StopReason};
@@ -134,6 +135,25 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
 }
 
 #[test]
+fn a_run_that_is_cancelled_marks_the_particles_next_to_singular_points() {
+    let (mut session, _, _) = sampled("x^2 + y^2 = z^2", 1.0, &coarse());
+    let whole = session.count();
+    session.start(&Settings { relax_steps: 50, ..coarse() }).expect("valid settings");
+    let mut progress = session.step(0);
+    while progress.relax_step < 2 {
+        progress = session.step(500);
+    }
+    assert_eq!(session.cancel().stop_reason, Some(StopReason::Cancelled));
+    assert_eq!(session.count(), whole);
+    assert_eq!(session.report().singular_points, Some(1));
+    let columns = session.particles();
+    for (p, slots) in columns.position.iter().zip(&columns.slots) {
+        assert!(p.length() > 1.9 * columns.radius[0] || slots.is_singular(), "{p} is not marked");
+    }
+    assert!(columns.slots.iter().any(|slots| slots.is_singular()), "none is marked");
+}
+
+#[test]
 fn powers_of_a_factor_have_the_surface_of_the_factor() {
     for (formula, factor) in [
         ("x^2", "x"),
@@ -153,6 +173,19 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         assert!((0.95..1.05).contains(&share), "{formula}: {} and {}", powers.count(), simple.count());
         assert!(report.warnings.iter().any(|w| w.contains("is sampled")), "{formula}: {:?}", report.warnings);
         assert!(!report.warnings.iter().any(|w| w.contains("twice")), "{formula}: {:?}", report.warnings);
+    }
+    // In a product a root says where the other factors count, and a pole what order of a zero is one.
+    for formula in [
+        "z sqrt(1 - x^2 - y^2)",
+        "y x^0.5",
+        "z sqrt(x)/3",
+        "(x/y)^0.5",
+        "x^3/x",
+        "sin(x)^2/x",
+        "(x - 1)^2/(y - 2)",
+    ] {
+        let field = FormulaField::parse(formula, &[]).expect(formula).without_powers();
+        assert_eq!(field.evaluated_as(), None, "{formula}");
     }
     // A constant factor, another side, and a pole are left alone, and nothing is said.
     for formula in ["x^2 = 0.3", "a^2 x", "x^3 + y", "x/(y + 3)^2"] {

@@ -79,8 +79,6 @@ const COUNT_ROOM: f64 = 1.1;
 /// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
 /// but no more than the peak that tests/memory.rs holds it to.
 const BYTES_PER_PARTICLE: usize = 95;
-/// The same for an adaptive run.
-const BYTES_PER_ADAPTIVE_PARTICLE: usize = 95;
 
 /// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
 /// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
@@ -181,6 +179,8 @@ pub struct Sampler {
     particles: Particles,
     counts: Counts,
     moved: bool,
+    /// Whether the particles next to singular points are still to be marked.
+    is_unmarked: bool,
     /// Most bytes that a run may need.
     memory_limit: usize,
 }
@@ -218,6 +218,7 @@ impl Sampler {
             particles: Particles::default(),
             counts: Counts::default(),
             moved: false,
+            is_unmarked: false,
             memory_limit: usize::MAX,
         }
     }
@@ -425,11 +426,7 @@ impl Sampler {
     /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
     /// of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
-        let each = match self.settings.sampling {
-            Sampling::Uniform => BYTES_PER_PARTICLE,
-            Sampling::Adaptive => BYTES_PER_ADAPTIVE_PARTICLE,
-        };
-        let bytes = |particles: usize| particles.checked_mul(each);
+        let bytes = |particles: usize| particles.checked_mul(BYTES_PER_PARTICLE);
         let more = particles.saturating_sub(self.particles.position.capacity());
         bytes(particles).is_some_and(|all| all <= self.memory_limit)
             && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
@@ -438,6 +435,7 @@ impl Sampler {
     /// Empties the columns and prepares a front of the present radius.
     fn begin_attempt(&mut self) {
         self.moved = true;
+        self.is_unmarked = false;
         self.particles.clear();
         self.pairs.clear();
         // Growing by doubling would hold twice the columns, and four times while they are copied.
@@ -479,7 +477,8 @@ impl Sampler {
         }
     }
 
-    /// Ends the run where it is; the particles placed so far stay.
+    /// Ends the run where it is; the particles placed so far stay. The next step, of no budget even, marks those next to singular
+    /// points.
     pub fn cancel(&mut self) {
         if matches!(self.phase, Phase::Seeding | Phase::Generation | Phase::Relaxation) {
             if self.phase == Phase::Relaxation {
@@ -500,7 +499,6 @@ impl Sampler {
         let mut left = budget;
         let before = self.projector.evaluations;
         let relaxing = self.phase == Phase::Relaxation;
-        let is_running = !matches!(self.phase, Phase::Idle | Phase::Done);
         while left > 0 && (relaxing || self.phase != Phase::Relaxation) {
             match self.phase {
                 Phase::Idle | Phase::Done => break,
@@ -552,7 +550,7 @@ impl Sampler {
                 }
             }
         }
-        if is_running && self.phase == Phase::Done && !self.seeds.singular().is_empty() {
+        if self.phase == Phase::Done && core::mem::take(&mut self.is_unmarked) {
             nodes::mark(field, self.seeds.singular(), &mut self.particles);
             self.moved = true;
         }
@@ -749,6 +747,7 @@ impl Sampler {
     fn finish(&mut self, reason: StopReason) {
         self.stop_reason = Some(reason);
         self.phase = Phase::Done;
+        self.is_unmarked = !self.seeds.singular().is_empty();
     }
 }
 

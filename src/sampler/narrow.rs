@@ -108,7 +108,11 @@ pub(super) fn narrowed(
                     if !row.iter().all(|entry| entry.is_finite()) {
                         continue;
                     }
-                    let combined = |v: [Range; 2]| add(scaled(v[0], row[0]), scaled(v[1], row[1]));
+                    // The two may nearly cancel.
+                    let combined = |v: [Range; 2]| {
+                        let slack = ROUNDING * (row[0].abs() * size(v[0]) + row[1].abs() * size(v[1]));
+                        add(add(scaled(v[0], row[0]), scaled(v[1], row[1])), [-slack, slack])
+                    };
                     let coefficients = [combined([h(i, i), h(j, i)]), combined([h(i, j), h(j, j)])];
                     let (axis, other) = if k == 0 { (i, j) } else { (j, i) };
                     let rest = negated(product(coefficients[1 - k], d[other]));

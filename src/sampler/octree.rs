@@ -222,6 +222,11 @@ impl Octree {
         push_boundary(&mut self.level, [self.lo, self.hi]);
     }
 
+    /// Smallest and largest corner of what is searched: the box and the margin around it.
+    pub(super) fn searched(&self) -> [DVec3; 2] {
+        [self.lo, self.hi]
+    }
+
     /// What the box is enlarged by.
     pub(super) fn margin(&self) -> f64 {
         self.margin
@@ -264,6 +269,7 @@ impl Octree {
             }
             if self.level.is_empty() || self.cells >= self.allowed() {
                 let open = self.level[self.next..].iter().chain(&self.halves);
+                let open = open.filter(|cell| !is_left_out(cell, &self.isolated));
                 self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
                 self.halves.clear();
                 if self.part + 1 < self.parts {
@@ -278,9 +284,8 @@ impl Octree {
 
     fn look_at(&mut self, field: &mut dyn Field, range: core::ops::Range<usize>) {
         self.open.clear();
-        let isolated = &self.isolated;
-        let is_left = |cell: &&Cell| !isolated.iter().any(|around| is_inside(cell, around));
-        self.open.extend(self.level[range].iter().filter(is_left));
+        let searched = self.level[range].iter().filter(|cell| !is_left_out(cell, &self.isolated));
+        self.open.extend(searched);
         self.boxes.clear();
         self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
         self.enclose(field);
@@ -330,7 +335,7 @@ impl Octree {
     /// Whether the cell lies in a box that is left out of the search: one there is already, or a new one around a singular
     /// point in or near the cell.
     fn is_isolated(&mut self, field: &mut dyn Field, cell: &Cell, known: &Enclosure) -> bool {
-        if self.isolated.iter().any(|around| is_inside(cell, around)) {
+        if is_left_out(cell, &self.isolated) {
             return true;
         }
         let (sides, _) = cell.axes();
@@ -544,6 +549,11 @@ fn push_boundary(level: &mut Vec<Cell>, [bottom, top]: [DVec3; 2]) {
 /// Whether a cell lies in the interior of a box.
 fn is_inside(cell: &Cell, [lo, hi]: &[DVec3; 2]) -> bool {
     cell.lo.cmpgt(*lo).all() && cell.hi.cmplt(*hi).all()
+}
+
+/// Whether a cell lies in a box that is left out of the search.
+fn is_left_out(cell: &Cell, isolated: &[[DVec3; 2]]) -> bool {
+    isolated.iter().any(|around| is_inside(cell, around))
 }
 
 /// Whether no highest point lies in a cell on which f is defined and continuous.

@@ -199,6 +199,8 @@ impl Relaxation {
                 Law::Overlap { .. } => Overlap::STEP,
             };
         }
+        // A first step that was cancelled has moved particles, and the lists of the front no longer hold.
+        let is_first = self.energy.is_empty();
         self.energy.truncate(self.done as usize);
         fill(&mut self.force, particles, Vec4::ZERO);
         fill(&mut self.previous, particles, Vec3::ZERO);
@@ -212,7 +214,7 @@ impl Relaxation {
         fill(&mut self.since, resized, 0.0);
         fill(&mut self.previous_radius, resized, 0.0);
         self.ending = target == 0 && matches!(law, Law::Overlap { .. });
-        if pairs.len() == particles && self.done == 0 && !self.ending {
+        if pairs.len() == particles && is_first && !self.ending {
             self.after_lists();
         } else {
             pairs.extend_to(particles);

@@ -223,12 +223,13 @@ impl Seeds {
         for (pair, &j) in pairs.iter_mut().zip(&near) {
             pair.1 = place_of(j);
         }
+        let within = (self.octree.searched(), self.octree.margin());
         let mut place = Place::Bare;
         if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
                 .take(MOST_TRIED_BY_PIECES)
-                .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack))
+                .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack, within))
         {
             place = Place::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {

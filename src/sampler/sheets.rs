@@ -113,17 +113,22 @@ pub(super) fn are_connected(
 }
 
 /// Whether the way between two points of the surface, cut into pieces, is [connected](are_connected): for points too far from
-/// each other, as the surface bends, for one box. A piece that is not is cut in two, again and again.
+/// each other, as the surface bends, for one box. A piece that is not is cut in two, again and again, at
+/// a point in the box from `lo` to `hi`; one outside is brought at least `margin` inside and back to the surface by turns.
 pub(super) fn is_connected_by_pieces(
     field: &mut dyn Field,
     part: usize,
     from: Oriented,
     to: DVec3,
     slack: f64,
+    ([lo, hi], margin): ([DVec3; 2], f64),
 ) -> bool {
+    /// Most turns that bring a point back into the box.
+    const MOST_TURNS: u32 = 8;
     /// Most rounds of looking at pieces, and most pieces that wait.
     const MOST_ROUNDS: u32 = 8;
     const MOST_WAITING: usize = 3 * TOGETHER;
+    let is_inside = |p: DVec3| p.cmpge(lo).all() && p.cmple(hi).all();
     let mut waiting = [(from, to); MOST_WAITING];
     let mut count = 1;
     for _ in 0..MOST_ROUNDS {
@@ -135,10 +140,20 @@ pub(super) fn is_connected_by_pieces(
         for k in (0..tried).filter(|&k| !connected[k]) {
             let (start, end) = pairs[k];
             let chord = end - start.0;
-            let Some(middle) = land(field, start.0 + 0.5 * chord) else { return false };
+            let Some(mut middle) = land(field, start.0 + 0.5 * chord) else { return false };
+            for _ in 0..MOST_TURNS {
+                if is_inside(middle.0) {
+                    break;
+                }
+                let Some(next) = land(field, middle.0.clamp(lo + margin, hi - margin)) else { return false };
+                middle = next;
+            }
             // Elsewhere than between the two.
             let offset = middle.0 - (start.0 + 0.5 * chord);
-            if count + 2 > MOST_WAITING || offset.length_squared() > 0.25 * chord.length_squared() {
+            if count + 2 > MOST_WAITING
+                || offset.length_squared() > 0.25 * chord.length_squared()
+                || !is_inside(middle.0)
+            {
                 return false;
             }
             waiting[count] = (start, middle.0);

@@ -76,7 +76,7 @@ pub(super) struct Place {
     pub(super) inverse: f32,
 }
 
-/// f, and for `N` = 4 also ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
+/// f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
 ///
 /// What it calls is not inlined: only where lanes go in and out by memory does the compiler keep each of them in registers
 /// of its own.
@@ -107,9 +107,7 @@ fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z
             if N == 10 {
                 second = second * x + first;
             }
-            if N >= 4 {
-                first = first * x + value;
-            }
+            first = first * x + value;
             value = value * x + row;
         }
         if N == 10 {
@@ -117,10 +115,8 @@ fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z
             fxz = fxz * z + fx;
             fxx = fxx * z + second;
         }
-        if N >= 4 {
-            fz = fz * z + f;
-            fx = fx * z + first;
-        }
+        fz = fz * z + f;
+        fx = fx * z + first;
         f = f * z + value;
     }
     *planes = [f, fx, fz, fxx, fxz, fzz];
@@ -148,9 +144,6 @@ fn weigh<const N: usize>(sums: &mut [Lanes; N], planes: &[Lanes; 6], powers: &La
     let [f, fx, fz, fxx, fxz, fzz] = *planes;
     let mut power = *powers;
     sums[0] = f * power;
-    if N == 1 {
-        return;
-    }
     let inverse = Lanes::splat(inverse);
     power = power * inverse;
     let mut first = slope(power);
@@ -189,9 +182,6 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
     let r = square.sqrt();
     let along = bx * dx + by * dy + bz * dz;
     sums[0] += r * (near.alpha * square + along);
-    if N == 1 {
-        return;
-    }
     let inverse = Lanes::splat(1.0) / r.map(|r| if r > LEAST_DISTANCE { r } else { LEAST_DISTANCE });
     let stretch = near.alpha3 * r;
     let slope = along * inverse;
@@ -259,9 +249,7 @@ fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &
                 if N == 10 {
                     second = second * x + first;
                 }
-                if N >= 4 {
-                    first = first * x + value;
-                }
+                first = first * x + value;
                 value = value * x + Lanes::splat(row.0[j]);
             }
             if N == 10 {
@@ -269,30 +257,26 @@ fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &
                 fxz = fxz * z + fx;
                 fxx = fxx * z + second;
             }
-            if N >= 4 {
-                fz = fz * z + f;
-                fx = fx * z + first;
-            }
+            fz = fz * z + f;
+            fx = fx * z + first;
             f = f * z + value;
         }
         sums[0] = f * power;
-        if N >= 4 {
-            let scaled = power * inverse;
-            let first = Lanes::splat(j as f32) * power_before;
-            sums[1] = fx * scaled;
-            sums[2] = f * first;
-            sums[3] = fz * scaled;
-            power_before = scaled;
-            if N == 10 {
-                let (scaled, first) = (scaled * inverse, first * inverse);
-                sums[4] = (fxx + fxx) * scaled;
-                sums[5] = fx * first;
-                sums[6] = fxz * scaled;
-                sums[7] = f * (Lanes::splat(j as f32) * first_before);
-                sums[8] = fz * first;
-                sums[9] = (fzz + fzz) * scaled;
-                first_before = first;
-            }
+        let scaled = power * inverse;
+        let first = Lanes::splat(j as f32) * power_before;
+        sums[1] = fx * scaled;
+        sums[2] = f * first;
+        sums[3] = fz * scaled;
+        power_before = scaled;
+        if N == 10 {
+            let (scaled, first) = (scaled * inverse, first * inverse);
+            sums[4] = (fxx + fxx) * scaled;
+            sums[5] = fx * first;
+            sums[6] = fxz * scaled;
+            sums[7] = f * (Lanes::splat(j as f32) * first_before);
+            sums[8] = fz * first;
+            sums[9] = (fzz + fzz) * scaled;
+            first_before = first;
         }
         power = power * y;
     }

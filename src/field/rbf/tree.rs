@@ -157,7 +157,7 @@ impl Tree {
         (index & !LEAF) as usize
     }
 
-    /// Gives to `store` with the index of each point f, and for `N` = 4 also ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy,
+    /// Gives to `store` with the index of each point f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy,
     /// yz, zz).
     #[inline(always)]
     fn sums<const N: usize>(
@@ -220,7 +220,8 @@ impl Tree {
     }
 
     pub(super) fn values(&mut self, data: &RbfData, points: &[Vec3], value: &mut [f32]) {
-        self.sums(data, points, |n, [v]| value[n] = v);
+        // Values alone are asked for now and then: no code of their own.
+        self.sums(data, points, |n, [v, ..]: [f32; 4]| value[n] = v);
     }
 
     pub(super) fn gradients(
