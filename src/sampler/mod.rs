@@ -384,14 +384,14 @@ impl Sampler {
         let mut warnings = Vec::new();
         if predicted > f64::from(settings.max_particles) {
             warnings.push(format!(
-                "about {} particles would fit, more than the limit of {}; the run will stop there",
+                "about {} particles would fit, more than the limit of {}; the run will stop there.",
                 predicted as u64, settings.max_particles
             ));
         }
         if self.survey.touches {
             warnings.push(
                 "f touches zero without changing its sign: both sides of the surface are sampled, which covers it twice. \
-                 If f is a square, enter what is squared instead"
+                 If f is a square, enter what is squared instead."
                     .into(),
             );
         }

@@ -43,8 +43,8 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> 
     }
     if counts.left_out > 0 {
         warnings.push(format!(
-            "{} features smaller than a particle lie within 2r of other particles and got none of their own: a smaller radius \
-             shows whether they are pieces by themselves.",
+            "Within 2r of other particles lie features too small for a particle of their own, {} in all: a smaller radius shows \
+             whether they are pieces by themselves.",
             counts.left_out
         ));
     }
