@@ -304,12 +304,15 @@ export function createEngine({ canvasHost }) {
       viewer.growing = store.busy.value;
     }),
     effect(() => {
-      if (!store.report.value || Number.isNaN(typed_ms)) return;
+      // Also where the last word was a mistake: the surface that stays may be one that was typed on the way to it.
+      const rests = () => !store.busy.value && store.report.value !== null;
+      if (!rests() || Number.isNaN(typed_ms)) return;
       clearTimeout(fit_timer);
       // Once the typing rests: the picture stands still meanwhile.
       fit_timer = setTimeout(() => {
+        if (!rests()) return;
         typed_ms = NaN;
-        if (store.report.value && viewer.camera.state.fit) viewer.fit();
+        if (viewer.camera.state.fit) viewer.fit();
       }, typed_ms + TYPING_MS - performance.now());
     }),
     effect(() => {
@@ -444,9 +447,10 @@ export function createEngine({ canvasHost }) {
       return png(picture.width, picture.height, picture.pixels);
     },
     async exportFile(format) {
-      if (store.empty.value) throw new Error('There is no surface.');
-      const { field, model } = store;
-      const what = model.value ? `${model.value.name}, interpolated from ${model.value.centres} points` : `f = ${field.value?.formula ?? ''}`;
+      if (!sampling.shown) throw new Error('There is no surface.');
+      const { field } = sampling.shown.request;
+      const model = field.points && loader.client.get(field.points)?.info.info;
+      const what = model ? `${model.name}, interpolated from ${model.centres} points` : `f = ${field.formula ?? surfaceOf(description(), field.surface ?? '')?.formula}`;
       return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
     },
     dismissNotice() {

@@ -26,7 +26,11 @@ const done = (/** @type {number} */ id, /** @type {string} */ outcome, /** @type
   type: 'done', id, outcome, progress: progress(n, { phase: 'done', stop_reason: outcome === 'stopped' ? 'cancelled' : 'complete' }), seconds, predicted: n, message: '', report_follows: false, ...more,
 });
 
-/** @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, jobs: () => any[]}} */
+const reportMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
+  type: 'report', id, report: { count: n, seconds }, valence: new Uint8Array(n), nearest: new Float32Array(n), residual: new Float32Array(n), component: new Uint32Array(n),
+});
+
+/** @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, jobs: () => any[]}} */
 function page() {
   const store = createStore();
   const columns = new Columns();
@@ -56,7 +60,8 @@ function page() {
   client.start();
   const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
   say({ type: 'ready', description });
-  return { client, store, columns, say, jobs: () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'job').map((/** @type {any} */ m) => m.job) };
+  const accept = (/** @type {number} */ id, formula = 'x') => say({ type: 'field', id, answer: answer(formula) });
+  return { client, store, columns, say, accept, jobs: () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'job').map((/** @type {any} */ m) => m.job) };
 }
 /** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
 const request = (formula, more = {}) => ({
@@ -109,11 +114,11 @@ test('the curvature is asked for while it is shown, of a new worker again', () =
 
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
-    const { client, store, columns, say, jobs } = page();
+    const { client, store, columns, say, jobs, accept } = page();
     client.sample(request('x', { fit: true }));
     expect(store.busy.value).toBe(true);
     expect(jobs()).toHaveLength(1);
-    say({ type: 'field', id: 1, answer: answer('x') });
+    accept(1);
     say(columnsMessage(1, 5));
     expect(columns.count).toBe(5);
     expect(workers[0].posted.at(-1)).toEqual({ type: 'drawn', id: 1 });
@@ -121,7 +126,7 @@ describe('a run', () => {
     expect(store.busy.value).toBe(false);
     expect(store.progress.value.phase).toBe('quality');
     expect(store.report.value).toBe(null);
-    say({ type: 'report', id: 1, report: { count: 5, seconds }, valence: new Uint8Array(5), nearest: new Float32Array(5), residual: new Float32Array(5), component: new Uint32Array(5) });
+    say(reportMessage(1, 5));
     expect(store.report.value?.count).toBe(5);
     expect(store.progress.value.phase).toBe('done');
     expect(columns.valence).toHaveLength(5);
@@ -138,40 +143,44 @@ describe('a run', () => {
   });
 
   test('that was overtaken is not listened to any more', () => {
-    const { client, store, columns, say } = page();
+    const { client, store, columns, say, accept } = page();
     client.sample(request('x'));
+    accept(1);
     client.sample(request('y'));
-    say({ type: 'field', id: 1, answer: answer('x') });
+    accept(2, 'y');
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     expect(columns.count).toBe(0);
-    expect(store.field.value).toBe(null);
+    expect(store.field.value?.formula).toBe('y');
     expect(store.busy.value).toBe(true);
-    expect(client.stale).toBe(3);
+    expect(client.stale).toBe(2);
   });
 
   test('that was stopped keeps its particles and is labelled', () => {
-    const { client, store, columns, say } = page();
+    const { client, store, columns, say, accept } = page();
     client.sample(request('x'));
+    accept(1);
     say(columnsMessage(1, 7));
     client.stop();
-    expect(workers[0].posted.at(-1)).toEqual({ type: 'stop', id: 1 });
+    expect(workers[0].posted.at(-1)).toEqual({ type: 'stop' });
     say(done(1, 'stopped', 7));
     expect(columns.count).toBe(7);
     expect(store.partial.value).toBe(true);
     client.sample(request('x'));
+    accept(2);
     say(columnsMessage(2, 9));
     say(done(2, 'complete', 9));
     expect(store.partial.value).toBe(false);
   });
 
   test('without a surface keeps the last one, dimmed and of no account, until there is another', () => {
-    const { client, store, columns, say } = page();
+    const { client, store, columns, say, accept } = page();
     client.sample(request('x'));
+    accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     client.sample(request('y'));
-    say({ type: 'field', id: 2, answer: answer('y') });
+    accept(2, 'y');
     // The worker sends what fates there are, also of no particle.
     say(columnsMessage(2, 0));
     say({ ...done(2, 'complete', 0), progress: progress(0, { phase: 'done', stop_reason: 'no_surface' }) });
@@ -182,11 +191,11 @@ describe('a run', () => {
     for (const [id, kind] of /** @type {const} */ ([[3, 'syntax'], [4, 'empty']])) {
       client.sample(request(''));
       say({ type: 'field', id, answer: { ok: false, error: { kind, message: '', start: 0, end: 0, suggestion: null, names: [] } } });
-      say(done(id, 'field_error'));
       expect(told.at(-1)).toBe('dim');
     }
     expect(columns.stale).toBe(true);
     client.sample(request('x'));
+    accept(5);
     expect(told.at(-1)).toBe('dim');
     say(columnsMessage(5, 5));
     expect(store.empty.value).toBe(false);
@@ -197,16 +206,18 @@ describe('a run', () => {
   });
 
   test('that brings a surface back while the formula has a fault leaves it dimmed', () => {
-    const { client, say } = page();
+    const { client, say, accept } = page();
     client.sample(request('x', { restoring: true }));
+    accept(1);
     say(columnsMessage(1, 7));
     expect(told).not.toContain('clear');
   });
 
   test('counts up with every piece that may change what is told of the particles', () => {
-    const { client, store, say } = page();
+    const { client, store, say, accept } = page();
     const seen = [store.revision.value];
     client.sample(request('x'));
+    accept(1);
     for (const message of [columnsMessage(1, 7), done(1, 'complete', 7)]) {
       say(message);
       seen.push(store.revision.value);
@@ -215,9 +226,10 @@ describe('a run', () => {
   });
 
   test('that needs more particles than agreed is asked about, once', () => {
-    const { client, say, jobs } = page();
+    const { client, say, jobs, accept } = page();
     client.sample(request('x'));
     expect(jobs()[0].ask_above).toBe(1000);
+    accept(1);
     say(done(1, 'ask', 0, { predicted: 50_000 }));
     expect(asked).toEqual([50_000]);
     client.sample(request('x', { confirmed: true }));
@@ -226,11 +238,14 @@ describe('a run', () => {
 });
 
 test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
-  const { client, store, columns, say } = page();
+  const { client, store, columns, say, accept } = page();
   client.sample(request('x'));
+  accept(1);
   say(columnsMessage(1, 7));
-  say(done(1, 'complete', 7));
+  say(done(1, 'complete', 7, { report_follows: true }));
+  say(reportMessage(1, 7));
   client.sample(request('x'));
+  accept(2);
   say(done(2, 'refused', 0, { progress: null, message: 'there is not enough memory for about 3000000 particles: choose fewer' }));
   expect(store.notice.value).toMatchObject({ id: 'refused', kind: 'warn' });
   expect(store.notice.value?.text).toContain('choose fewer');
@@ -243,15 +258,14 @@ describe('a formula with a fault', () => {
   const fault = { ok: false, error: { kind: 'syntax', message: 'no', start: 0, end: 1, suggestion: null, names: [] } };
 
   test('leaves the last surface, dimmed', () => {
-    const { client, store, columns, say } = page();
+    const { client, store, columns, say, accept } = page();
     client.sample(request('x'));
-    say({ type: 'field', id: 1, answer: answer('x') });
+    accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     told = [];
     client.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
-    say({ ...done(2, 'field_error'), progress: null });
     expect(columns.count).toBe(7);
     expect(store.field.value?.formula).toBe('x');
     expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
@@ -267,19 +281,156 @@ describe('a formula with a fault', () => {
     expect(told).toEqual(['clear']);
   });
 
-  test('typed during a run lets that run be made again, and stays reported', () => {
-    const { client, store, say, jobs } = page();
+  test('that is the first of all is the end of it', () => {
+    const { client, store, say } = page();
+    client.sample(request('x+'));
+    say({ type: 'field', id: 1, answer: fault });
+    expect(store.busy.value).toBe(false);
+    expect(store.progress.value.phase).toBe('done');
+  });
+
+  test('typed during a run lets that run go on, dimmed, with its figures', () => {
+    const { client, store, columns, say, accept, jobs } = page();
+    client.sample(request('x', { fit: true }));
+    accept(1);
+    client.sample(request('x+'));
+    // What comes before the answer is the run's too.
+    say(columnsMessage(1, 3));
+    say({ type: 'field', id: 2, answer: fault });
+    expect(store.busy.value).toBe(true);
+    say(columnsMessage(1, 7));
+    expect(columns.count).toBe(7);
+    expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
+    say(done(1, 'complete', 7, { report_follows: true }));
+    expect(store.busy.value).toBe(false);
+    expect(told.at(-1)).toBe('fit');
+    say(reportMessage(1, 7));
+    expect(store.report.value?.count).toBe(7);
+    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
+    expect(jobs()).toHaveLength(2);
+  });
+
+  test('dims also what comes to the page only after it', () => {
+    const { client, say, accept } = page();
     client.sample(request('x'));
-    say({ type: 'field', id: 1, answer: answer('x') });
+    accept(1);
     client.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
-    say({ ...done(2, 'field_error'), progress: null });
-    expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
-    say({ type: 'field', id: 3, answer: answer('x') });
-    expect(store.fieldError.value).not.toBe(null);
+    say(columnsMessage(1, 7));
+    expect(told.at(-2)).toBe('dim');
+  });
+
+  test('typed during a measurement lets the figures come', () => {
+    const { client, store, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    client.sample(request('x+'));
+    say({ type: 'field', id: 2, answer: fault });
+    expect(store.busy.value).toBe(false);
+    say(reportMessage(1, 7));
+    expect(store.report.value?.count).toBe(7);
+    // And the surface that stayed can be relaxed on.
+    client.relax(1);
+    expect(workers[0].posted.at(-1)).toMatchObject({ job: { kind: 'relax', of: 1 } });
+  });
+
+  test('that was followed by another that is accepted is forgotten, answered or not', () => {
+    const { client, store, say, accept } = page();
+    client.sample(request('x'));
+    client.sample(request('x+'));
+    client.sample(request('y'));
+    accept(1);
+    expect(store.busy.value).toBe(true);
+    accept(3, 'y');
     say(columnsMessage(3, 7));
     say(done(3, 'complete', 7));
-    expect(jobs()).toHaveLength(3);
+    expect(store.busy.value).toBe(false);
+    expect(store.field.value?.formula).toBe('y');
+  });
+
+  test('taken back while the run before it is under way is no fault any more', () => {
+    const { client, store, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    client.sample(request('x+'));
+    say({ type: 'field', id: 2, answer: fault });
+    client.sample(request('x'));
+    accept(3);
+    expect(store.fieldError.value).toBe(null);
+  });
+
+  test('and the worker’s end in the middle of the run before it: that run is made again', () => {
+    const { client, say, accept, jobs } = page();
+    client.sample(request('x'));
+    accept(1);
+    client.sample(request('x+'));
+    say({ type: 'field', id: 2, answer: fault });
+    say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
+    expect(jobs()).toMatchObject([{ field: { formula: 'x' } }]);
+  });
+});
+
+describe('the surface that stays', () => {
+  test('because another would need too many particles, or is refused, gets the figures it has not had', () => {
+    for (const outcome of ['ask', 'refused']) {
+      const { client, store, say, accept, jobs } = page();
+      client.sample(request('x'));
+      accept(1);
+      say(columnsMessage(1, 7));
+      client.sample(request('y'));
+      accept(2, 'y');
+      say(done(2, outcome, 0, { progress: null }));
+      expect(told.at(-1)).toBe('dim');
+      expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
+      accept(3);
+      expect(store.field.value?.formula).toBe('y');
+      say(columnsMessage(3, 9));
+      say(done(3, 'complete', 9, { report_follows: true }));
+      say(reportMessage(3, 9));
+      expect(store.report.value?.count).toBe(9);
+      expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
+      // With its figures there it is left alone.
+      client.sample(request('z'));
+      accept(4, 'z');
+      say(done(4, outcome, 0, { progress: null }));
+      expect(jobs()).toHaveLength(4);
+      expect(store.report.value?.count).toBe(9);
+    }
+  });
+
+  test('because the next was stopped before its first particle is whole, and dimmed', () => {
+    const { client, store, columns, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(reportMessage(1, 7));
+    client.sample(request('y'));
+    accept(2, 'y');
+    client.stop();
+    say(columnsMessage(2, 0));
+    say(done(2, 'stopped', 0));
+    expect(columns).toMatchObject({ count: 7, stale: false });
+    expect(store.partial.value).toBe(false);
+    expect(store.report.value?.count).toBe(7);
+    expect(store.progress.value).toMatchObject({ phase: 'done', particles: 7 });
+    expect(told.at(-1)).toBe('dim');
+  });
+
+  test('keeps its figures until there are particles of another', () => {
+    const { client, store, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(reportMessage(1, 7));
+    client.sample(request('y'));
+    accept(2, 'y');
+    expect(store.report.value?.count).toBe(7);
+    say(columnsMessage(2, 5));
+    expect(store.report.value).toBe(null);
   });
 });
 
@@ -311,6 +462,17 @@ describe('a worker that fails', () => {
     expect(jobs()).toHaveLength(1);
   });
 
+  test('in the middle of a measurement owes the figures: that run is made again', () => {
+    const { client, store, say, accept, jobs } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(crash);
+    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
+    expect(store.busy.value).toBe(true);
+  });
+
   test('by silence is replaced too', () => {
     const { client, store, jobs } = page();
     client.sample(request('x'));
@@ -321,8 +483,9 @@ describe('a worker that fails', () => {
   });
 
   test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
-    const { client, store, columns, say, jobs } = page();
+    const { client, store, columns, say, jobs, accept } = page();
     client.sample(request('kept'));
+    accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     for (let k = 0; k < 4; k += 1) {
@@ -340,8 +503,9 @@ describe('a worker that fails', () => {
   });
 
   test('after it, relaxing makes the whole run again with the steps added', () => {
-    const { client, say, jobs } = page();
+    const { client, say, jobs, accept } = page();
     client.sample(request('x'));
+    accept(1);
     say(columnsMessage(1, 7));
     say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
     client.relax(5);
@@ -351,6 +515,12 @@ describe('a worker that fails', () => {
     expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
     say(crash);
     // The relaxation that was lost cannot be made again on its own.
+    expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' } }]);
+    accept(4);
+    say(columnsMessage(4, 7));
+    say(done(4, 'complete', 7, { report_follows: true }));
+    say(reportMessage(4, 7));
+    say(crash);
     expect(jobs()).toHaveLength(0);
     client.relax(2);
     expect(jobs()[0]).toMatchObject({ kind: 'sample', field: { formula: 'whole' } });
@@ -366,13 +536,15 @@ describe('a worker that fails', () => {
 });
 
 test('a drag is counted: what was asked for, what was shown, how late', () => {
-  const { client, store, say } = page();
+  const { client, store, say, accept } = page();
   client.sampleLive(request('x'), 3);
   client.sampleLive(request('y'), 3);
   client.sampleLive(request('z'), 3);
+  accept(1);
   vi.advanceTimersByTime(20);
   say(columnsMessage(1, 7));
   say(done(1, 'complete', 7));
+  accept(2);
   vi.advanceTimersByTime(30);
   say(columnsMessage(2, 7));
   say(done(2, 'complete', 7));

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, report, settled, state, typeFormula } from './helpers.js';
+import { atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('a typed formula gets sliders for its unknown names, and dragging one samples anew', async ({ page }) => {
   const { clean } = await open(page);
@@ -36,6 +36,43 @@ test('an error names its place, the last surface stays, and a press on the sugge
   await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + sqrt(z) = 1');
   await clean();
 });
+
+for (const phase of ['relaxation', 'quality']) {
+  test(`a mistake typed during the ${phase === 'quality' ? 'measurement' : 'run'} leaves the surface whole, with its own figures, in the middle of the picture`, async ({ page }) => {
+    const { clean } = await open(page, { width: 390, height: 844 });
+    const before = await report(page);
+    await page.evaluate(async (wanted) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.setSetting('radius_share', 0.003);
+      engine.setFormula('x^2');
+      await new Promise((/** @type {(value?: unknown) => void} */ resolve) => {
+        engine.progress.subscribe((/** @type {any} */ now) => {
+          if (now.phase === wanted && engine.field.value.formula === 'x^2') resolve();
+        });
+      });
+      engine.setFormula('x^2 + sqr(y) + z^2 = k');
+    }, phase);
+    await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
+    await settled(page);
+    const after = await report(page);
+    expect(after.digest).not.toBe(before.digest);
+    const { count, positions } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles());
+    expect(after.count).toBe(count);
+    expect(Math.max(...Object.values(positions).filter((_, i) => i % 3 === 0).map(Math.abs))).toBeLessThan(1e-3);
+    await expect(page.locator('#report .figures, .figures').first()).toBeAttached();
+    await expect(page.locator('.stale .figures')).toHaveCount(0);
+    // The camera comes once the typing rests: where it then stands is where a fit would put it.
+    const camera = async () => (await state(page)).view.camera;
+    const old = await camera();
+    await expect.poll(camera).not.toEqual(old);
+    await atRest(page);
+    const { distance, target } = await camera();
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
+    await atRest(page);
+    expect(await camera()).toMatchObject({ distance: expect.closeTo(distance, 2), target: target.map((/** @type {number} */ v) => expect.closeTo(v, 2)) });
+    await clean();
+  });
+}
 
 test('beyond four unknown names a slider is added on request', async ({ page }) => {
   await open(page);

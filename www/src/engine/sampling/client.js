@@ -21,7 +21,8 @@ import { Supervisor } from './supervisor.js';
  */
 /**
  * A wish for a run. `settings` are complete. `fit` lets the camera follow when the run is done; `confirmed` skips the question
- * whether so many particles are wanted; `restoring` brings back a surface while the formula in the editor has a fault.
+ * whether so many particles are wanted; `restoring` makes the surface that stays on the page whole, while the state asks for
+ * another that cannot be had.
  * @typedef {object} SampleRequest
  * @property {'sample'} kind
  * @property {FieldRequest} field
@@ -36,6 +37,10 @@ import { Supervisor } from './supervisor.js';
 /** @typedef {import('../points/protocol.js').Solved} Solved */
 /** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
+/**
+ * A job at the worker. `begun`: its particles are on the page; `ended`: all of them are; `over`: nothing more is to come.
+ * @typedef {{id: number, request: RunRequest, begun: boolean, ended: boolean, over: boolean, predicted: number, since_ms: number}} Run
+ */
 /**
  * What the picture does about it all.
  * @typedef {object} Picture
@@ -85,14 +90,16 @@ export class SamplingClient {
       onSafeMode: (crash) => this.safeMode(crash),
       onLoadError: (message) => this.loadFailed(`The sampler did not load: ${message}.`),
     });
-    /** The job whose messages count. @type {{id: number, request: RunRequest, begun: boolean, ended: boolean, predicted: number, since_ms: number} | null} */
+    /** Jobs of whose field the worker has not spoken, by id. @type {Map<number, Run>} */
+    this.asked = new Map();
+    /** The job whose messages count: the last whose field was accepted. @type {Run | null} */
     this.current = null;
     /** Job whose particles the worker holds. */
     this.held = 0;
     /** The last sampling asked for that was accepted by the core. @type {SampleRequest | null} */
     this.accepted = null;
-    /** A run that was cut short by one that then failed on its formula. @type {SampleRequest | null} */
-    this.interrupted = null;
+    /** The sampling whose particles are on the page, and whether their report is too. @type {{request: SampleRequest, reported: boolean} | null} */
+    this.shown = null;
     this.crashed_input = '';
     /** Messages of runs that are over. */
     this.stale = 0;
@@ -123,9 +130,9 @@ export class SamplingClient {
 
   /** @param {SampleRequest} request */
   sample(request) {
-    const { current } = this;
-    // A second Run with the same input while the first is under way would only begin again.
-    if (current && !current.ended && !request.live && !current.request.live && inputOf(current.request) === inputOf(request)) return;
+    const { running } = this.scheduler;
+    // A second Run with the same input while the first is under way would only begin again. After a fault it says that there is none any more.
+    if (running && !this.store.fieldError.value && !request.live && !running.request.live && inputOf(running.request) === inputOf(request)) return;
     this.scheduler.submit(request);
   }
 
@@ -146,8 +153,7 @@ export class SamplingClient {
 
   /** Relaxes the particles the worker holds; where they are gone, the whole run is made with so many steps more. @param {number} steps */
   relax(steps) {
-    const { current } = this;
-    if (current && !current.ended) return;
+    if (this.store.busy.value) return;
     if (this.held > 0 && this.columns.count > 0) {
       this.scheduler.submit({ kind: 'relax', of: this.held, steps, live: false, grow: true, fit: false });
     } else {
@@ -158,23 +164,20 @@ export class SamplingClient {
   }
 
   stop() {
-    const { current } = this;
-    if (!current || current.ended) return;
+    if (!this.store.busy.value) return;
     this.scheduler.waiting = null;
-    this.supervisor.post({ type: 'stop', id: current.id });
+    this.supervisor.post({ type: 'stop' });
   }
 
   /** @param {number} id @param {RunRequest} request */
   dispatch(id, request) {
-    const { store } = this;
     if (!this.supervisor.worker) {
       // Safe mode: the wish is in the state, and is met when the sampler is started again.
       this.scheduler.drop();
       return;
     }
-    const before = this.current;
-    if (before && !before.ended && before.request.kind === 'sample' && this.accepted === before.request) this.interrupted = before.request;
-    this.current = { id, request, begun: false, ended: false, predicted: 0, since_ms: this.now_ms() };
+    /** @type {Run} */
+    const run = { id, request, begun: false, ended: false, over: false, predicted: 0, since_ms: this.now_ms() };
     /** @type {Job} */
     const job = request.kind === 'relax'
       ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
@@ -184,14 +187,30 @@ export class SamplingClient {
         // A drag is never asked about: it stops at the limit.
         ask_above: request.confirmed || request.live || request.restoring ? Number.MAX_SAFE_INTEGER : Number(request.settings.max_particles),
       };
-    if (request.kind === 'sample') this.held = 0;
-    batch(() => {
-      store.busy.value = true;
-      store.report.value = null;
-      store.progress.value = { ...idleProgress(), run: id, live: request.live, phase: request.kind === 'relax' ? 'relaxation' : 'seeding' };
-    });
     this.supervisor.post({ type: 'job', job });
-    this.supervisor.setBusy(true);
+    if (request.kind === 'relax') {
+      this.begin(run);
+    } else {
+      this.asked.set(id, run);
+      this.attend();
+    }
+  }
+
+  /** The worker is at another job: what is still on the way of the one before is not listened to. @param {Run} run */
+  begin(run) {
+    const { store } = this;
+    const { id, request } = run;
+    this.current = run;
+    if (request.kind === 'sample') this.held = 0;
+    store.progress.value = { ...idleProgress(), run: id, live: request.live, phase: request.kind === 'relax' ? 'relaxation' : 'seeding' };
+    this.attend();
+  }
+
+  /** Something is under way: for the page until the particles are there, for the worker until their report is. */
+  attend() {
+    const { asked, current } = this;
+    this.store.busy.value = asked.size > 0 || (current !== null && !current.ended);
+    this.supervisor.setBusy(asked.size > 0 || (current !== null && !current.over));
   }
 
   // ---- what the worker sends --------------------------------------------------------------------------------------------
@@ -202,22 +221,20 @@ export class SamplingClient {
     if (message.type === 'ready') {
       const first = store.description.value === null;
       store.description.value = message.description;
-      this.supervisor.setBusy(this.current !== null && !this.current.ended);
+      this.attend();
       if (this.curvature) this.supervisor.post({ type: 'curvature', on: true });
       if (first) this.onReady();
       return;
     }
     if (message.type === 'failed') return this.loadFailed(message.message);
     if (message.type === 'beat' || message.type === 'crashed') return;
+    if (message.type === 'field') return this.fieldAnswered(message.id, message.answer);
     const { current } = this;
     if (!current || message.id !== current.id) {
       this.stale += 1;
       return;
     }
     switch (message.type) {
-      case 'field':
-        this.fieldAnswered(message.answer, current.request);
-        break;
       case 'started':
         current.predicted = message.predicted;
         break;
@@ -243,32 +260,44 @@ export class SamplingClient {
     if (current) this.store.progress.value = { ...progress, run: current.id, live: current.request.live };
   }
 
-  /** @param {import('../types.js').FieldAnswer} answer @param {RunRequest} request */
-  fieldAnswered(answer, request) {
-    const { store } = this;
-    const restoring = request.kind === 'sample' && request.restoring;
-    if (answer.ok) {
-      this.accepted = request.kind === 'sample' ? request : this.accepted;
-      if (restoring) return;
-      batch(() => {
-        store.field.value = request.kind === 'sample' && request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
+  /** @param {number} id @param {import('../types.js').FieldAnswer} answer */
+  fieldAnswered(id, answer) {
+    const { store, asked, current } = this;
+    const run = asked.get(id);
+    if (!run || run.request.kind !== 'sample') return;
+    // Jobs are asked about in their order: the worker never looked at those before that are still here.
+    for (const other of asked.keys()) if (other <= id) asked.delete(other);
+    const { request } = run;
+    batch(() => {
+      if (answer.ok) {
+        this.begin(run);
+        this.accepted = request;
+        if (request.restoring) return;
+        store.field.value = request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
         store.model.value = answer.model ?? null;
         store.fieldError.value = null;
         store.fieldPreview.value = answer.mathml;
-      });
-    } else if (!restoring) {
-      batch(() => {
+      } else {
         store.fieldError.value = answer.error;
         store.fieldPreview.value = answer.mathml ?? null;
-      });
-      // An empty editor is no mistake: nothing is dimmed for it.
-      this.picture.dim(this.columns.stale || answer.error.kind !== 'empty');
-    }
+        if (!current) store.progress.value = { ...idleProgress(), run: id, phase: 'done', particles: this.columns.count };
+        this.dim();
+        this.attend();
+        this.scheduler.ended(id, current && !current.ended ? current : null);
+      }
+    });
+  }
+
+  /** Dims a surface that is not the one asked for. An empty editor is no mistake: nothing is dimmed for it. @param {boolean} [other] */
+  dim(other = false) {
+    const fault = this.store.fieldError.value;
+    this.picture.dim(other || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
   }
 
   /** @param {import('./protocol.js').ColumnsMessage} message @param {NonNullable<SamplingClient['current']>} current */
   takeColumns(message, current) {
     const { columns, picture } = this;
+    const { request } = current;
     const drawn = () => this.supervisor.post({ type: 'drawn', id: message.id });
     if (message.total === 0) {
       // No particle takes the place of those of the last surface: whether there will be one the end of the run tells.
@@ -277,16 +306,18 @@ export class SamplingClient {
     }
     if (!current.begun) {
       current.begun = true;
-      this.interrupted = null;
-      if (current.request.kind === 'sample') {
-        columns.clear(current.request.settings.sampling === 'adaptive');
-        picture.begin({ grow: current.request.grow });
+      this.store.report.value = null;
+      if (request.kind === 'sample') {
+        this.shown = { request, reported: false };
+        columns.clear(request.settings.sampling === 'adaptive');
+        picture.begin({ grow: request.grow });
         batch(() => {
           this.store.hover.value = null;
           this.store.empty.value = false;
         });
-        // A surface that comes back while the formula has a fault is still not that formula's.
-        if (!current.request.restoring) picture.dim(false);
+        this.dim(request.restoring);
+      } else if (this.shown) {
+        this.shown.reported = false;
       }
     }
     const n = message.radii.length;
@@ -311,19 +342,22 @@ export class SamplingClient {
     const { store, columns, picture } = this;
     const { outcome, progress, seconds } = message;
     const { request } = current;
+    const particles = progress?.particles ?? 0;
     current.ended = true;
+    current.over = !message.report_follows;
     batch(() => {
-      store.busy.value = false;
-      if (outcome === 'complete' || outcome === 'stopped') {
-        const particles = progress?.particles ?? 0;
-        const none = outcome === 'complete' && particles === 0;
+      this.attend();
+      if (outcome === 'complete' || (outcome === 'stopped' && particles > 0)) {
+        const none = particles === 0;
         if (none) {
           // The last surface stays until there is another, dimmed, and is nothing to measure or to take away.
           columns.stale = columns.count > 0;
-          picture.dim(columns.stale);
+          this.shown = null;
+          this.dim();
+          store.report.value = null;
           store.hover.value = null;
         }
-        this.held = particles > 0 ? current.id : 0;
+        this.held = none ? 0 : current.id;
         store.empty.value = none;
         store.revision.value += 1;
         store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
@@ -331,20 +365,18 @@ export class SamplingClient {
         this.note(seconds, particles, progress?.relax_step ?? 0, progress?.radius ?? 0, current);
         if (request.fit && particles > 0) picture.fit();
       } else {
+        // The surface before stays, and is not the one asked for.
         store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
-        if (outcome === 'refused') {
-          store.notice.value = { id: 'refused', kind: 'warn', text: message.message };
-          picture.dim(columns.count > 0);
-        }
+        this.dim(columns.count > 0);
+        if (outcome === 'refused') store.notice.value = { id: 'refused', kind: 'warn', text: message.message };
       }
     });
-    if (!message.report_follows) this.supervisor.setBusy(false);
     this.scheduler.ended(message.id);
-    if (request.kind === 'sample' && outcome === 'ask') this.onAsk(message.predicted, request);
-    if (outcome === 'field_error' && this.interrupted && this.scheduler.running === null) {
-      const { interrupted } = this;
-      this.interrupted = null;
-      this.scheduler.submit({ ...interrupted, live: false, grow: false, restoring: true });
+    if (request.kind !== 'sample') return;
+    if (outcome === 'ask') this.onAsk(message.predicted, request);
+    const { shown } = this;
+    if ((outcome === 'ask' || outcome === 'refused') && shown && !shown.reported && !request.restoring && this.scheduler.running === null) {
+      this.scheduler.submit({ ...shown.request, live: false, grow: false, restoring: true });
     }
   }
 
@@ -397,7 +429,9 @@ export class SamplingClient {
       store.timing.value = { total, seconds, us_per_particle: ((total - seconds.quality) * 1e6) / Math.max(1, count), particles: count, live: false };
     });
     picture.recolour(0, columns.count);
-    if (current.ended && this.scheduler.running === null) this.supervisor.setBusy(false);
+    current.over = true;
+    if (this.shown) this.shown.reported = true;
+    this.attend();
   }
 
   // ---- when the worker fails ----------------------------------------------------------------------------------------------
@@ -414,13 +448,15 @@ export class SamplingClient {
     ].filter(Boolean).join('\n');
   }
 
-  /** @returns {RunRequest | null} */
+  /** Nothing is under way any more. @returns {RunRequest | null} what was, with a report that is still owed */
   forget() {
-    const lost = this.scheduler.drop();
+    const { shown } = this;
+    const lost = this.scheduler.drop() ?? (shown && !shown.reported ? { ...shown.request, live: false, grow: false } : null);
     this.current = null;
+    this.asked.clear();
     this.held = 0;
     batch(() => {
-      this.store.busy.value = false;
+      this.attend();
       this.store.progress.value = { ...idleProgress(), particles: this.columns.count };
     });
     return lost;

@@ -1,5 +1,5 @@
 /**
- * One job in the worker, from the field to the report: the step loop, its pace and what it posts. The clock, the pause
+ * One job in the worker, from its start on the field that the core has to the report: the step loop, its pace and what it posts. The clock, the pause
  * between steps and the way out are handed in, so that the loop can be run in tests on a scripted core.
  *
  * @module
@@ -70,17 +70,6 @@ export function nextBudget(/** @type {number} */ budget, /** @type {number} */ t
   return Math.round(Math.min(LARGEST_BUDGET, Math.max(1, budget * factor)));
 }
 
-/**
- * A model is set anew for every job: its few kilobytes cost less than to know which one the core of this worker has.
- * @param {CoreLike} core @param {import('./protocol.js').SampleJob} job
- * @returns {import('../types.js').FieldAnswer}
- */
-function setField(core, { field, points }) {
-  if (!points) return JSON.parse(core.set_field(JSON.stringify(field)));
-  const { info, bounds } = points.info;
-  return JSON.parse(core.set_points(points.field, JSON.stringify({ info, bounds: field.bounds ?? bounds })));
-}
-
 /** Columns of no particle. */
 const none = () => ({
   positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0),
@@ -121,9 +110,6 @@ export async function runJob(core, job, env, memory) {
     env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, report_follows });
 
   if (job.kind === 'sample') {
-    const answer = setField(core, job);
-    env.post({ type: 'field', id, answer });
-    if (!answer.ok) return done('field_error');
     memory.held = 0;
     // The search for the surface begins with the start, and on a model most of it is there.
     const before = env.now_ms();
@@ -184,7 +170,7 @@ export async function runJob(core, job, env, memory) {
     const why = env.interrupt();
     if (why === 'replace') {
       memory.held = 0;
-      return done('replaced');
+      return;
     }
     if (why === 'stop') {
       last = JSON.parse(core.cancel());

@@ -40,11 +40,12 @@
 /** @typedef {SampleJob | RelaxJob} Job */
 
 /**
- * `curvature` says whether the page shows the curvature: it then comes with the other columns, and at once for the particles
+ * A `job` takes over from the one before once the core has accepted its field; until then, and for good where the field is
+ * refused, that one goes on. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature: it then comes with the other columns, and at once for the particles
  * that are held.
  * @typedef {{type: 'job', job: Job}
  *   | {type: 'curvature', on: boolean}
- *   | {type: 'stop', id: number}
+ *   | {type: 'stop'}
  *   | {type: 'drawn', id: number}
  *   | {type: 'provoke', fault: Fault}} ToWorker
  */
@@ -52,8 +53,9 @@
 
 /**
  * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `ask_above` are expected;
- * `lost`: the particles to relax are no longer there.
- * @typedef {'complete' | 'stopped' | 'field_error' | 'refused' | 'ask' | 'replaced' | 'lost'} Outcome
+ * `lost`: the particles to relax are no longer there. A job whose field was refused has ended with that answer, and one that
+ * a newer one takes over from ends without a word.
+ * @typedef {'complete' | 'stopped' | 'refused' | 'ask' | 'lost'} Outcome
  */
 /**
  * @typedef {object} ColumnsMessage

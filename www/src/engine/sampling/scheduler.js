@@ -54,10 +54,15 @@ export class Scheduler {
     this.dispatch(this.last_id, request);
   }
 
-  /** The worker is done with a job. @param {number} id @returns {boolean} false for a job that is no longer the present one */
-  ended(id) {
+  /**
+   * The worker is done with a job.
+   * @param {number} id
+   * @param {Scheduler<T>['running']} [before]  the job that goes on, where this one's field was refused
+   * @returns {boolean} false for a job that is no longer the present one
+   */
+  ended(id, before = null) {
     if (this.running?.id !== id) return false;
-    this.running = null;
+    this.running = before;
     const { waiting } = this;
     this.waiting = null;
     if (waiting) this.send(waiting);

@@ -7,6 +7,7 @@
 import init, { Core } from '../../wasm/core/core.js';
 import wasmUrl from '../../wasm/core/core_bg.wasm?url';
 import { curvatureColumn, runJob } from './job.js';
+import { Jobs } from './jobs.js';
 import { loadModule, LoadError, words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
@@ -25,12 +26,9 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) => (userAgentDa
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-/** @type {Job | null} */
-let next = null;
+const jobs = new Jobs(post);
 /** @type {Job | null} */
 let running = null;
-/** @type {'stop' | null} */
-let asked = null;
 /** Pictures under way to the page. */
 let undrawn = 0;
 /** @type {import('./protocol.js').Fault | null} */
@@ -83,14 +81,13 @@ function provoke() {
 }
 
 async function pump() {
-  while (next && core && !dead) {
-    running = next;
-    next = null;
-    asked = null;
-    undrawn = 0;
-    const job = running;
+  while (core && !dead) {
+    const ours = core;
     try {
-      await runJob(core, job, {
+      running = jobs.take(ours);
+      if (!running) return;
+      undrawn = 0;
+      await runJob(ours, running, {
         now_ms: () => performance.now(),
         pause,
         post: (message, transfer) => {
@@ -99,13 +96,13 @@ async function pump() {
         },
         interrupt: () => {
           if (provoked) provoke();
-          return next ? 'replace' : asked;
+          return jobs.interrupt(ours);
         },
         curvature: () => curvature,
         room: () => undrawn < 2,
       }, memory);
     } catch (error) {
-      crashed(job.id, error);
+      crashed(running?.id ?? 0, error);
     }
     running = null;
   }
@@ -122,7 +119,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   if (dead) return;
   switch (data.type) {
     case 'job':
-      next = data.job;
+      jobs.add(data.job);
       if (!running) void pump();
       break;
     case 'curvature':
@@ -136,12 +133,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       }
       break;
     case 'stop':
-      if (running && data.id === running.id) asked = 'stop';
-      else if (next && data.id === next.id) {
-        next = null;
-        const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
-        post({ type: 'done', id: data.id, outcome: 'replaced', progress: null, seconds, predicted: 0, message: '', report_follows: false });
-      }
+      jobs.stop();
       break;
     case 'drawn':
       if (running && data.id === running.id) undrawn = Math.max(0, undrawn - 1);
