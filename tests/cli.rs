@@ -180,10 +180,30 @@ fn mistakes_in_the_command_are_told_from_each_other() {
     assert!(fails(2, &["sample", "--surface", "sphere", "--param", "q=1"]).contains("its parameters: r"));
     assert!(fails(2, &["sample", "--param", "a"]).contains("NAME=VALUE"));
     assert!(fails(2, &["sample", "--radius", "0"]).contains("positive"));
-    assert!(fails(2, &["sample", "--radius", "90%"]).contains("radius_share"));
+    let range = "is 90% of the box diagonal, but must lie between 0.01% and 20%";
+    assert!(fails(2, &["sample", "--radius", "90%"]).contains(&format!("--radius {range}")));
+    assert!(
+        fails(2, &["sample", "--adaptive", "--radius-min", "90%"]).contains(&format!("--radius-min {range}"))
+    );
+    assert!(fails(2, &["sample", "--radius", "1e-9"]).contains("between 0.01% and 20%"));
     assert!(fails(2, &["sample", "--radius", "1%", "--count", "10"]).contains("cannot be used with"));
     assert!(fails(2, &["sample", "--box", "1,2"]).contains("one, three or six"));
-    assert!(fails(2, &["sample", "--match-tolerance", "3"]).contains("match_tolerance"));
+    for bad in ["1,1,0", "1e39", "1e-310", "1e9,0,0,1000000001,1,1"] {
+        let message = fails(2, &["sample", "--formula", "x + y + z", "--box", bad]);
+        assert!(message.contains("a diagonal between 1e-12 and 1e12"), "{bad}: {message}");
+    }
+    for (option, range) in
+        [("--match-tolerance", "0.5 and 0.9"), ("--relax", "0 and 1000"), ("--count", "1 and 4000000")]
+    {
+        let message = fails(2, &["sample", option, "5000000"]);
+        assert!(message.contains(&format!("{option} is 5000000, but must lie between {range}")), "{message}");
+    }
+    // A name that no parameter can have is shown without a place in the formula.
+    let message = fails(2, &["sample", "--formula", "x = a", "--param", "a b=2"]);
+    assert!(
+        message.contains("`a b` cannot be the name of a parameter") && !message.contains('^'),
+        "{message}"
+    );
     let out = file("mesh.obj");
     let message = fails(2, &["sample", "--out", out.to_str().expect("a plain path")]);
     assert!(message.contains("ply, csv, xyz, npy"), "{message}");

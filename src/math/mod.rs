@@ -58,11 +58,23 @@ impl Bounds {
         p.cmpge(self.lo()).all() && p.cmple(self.hi()).all()
     }
 
-    /// Whether every corner is finite and every side has positive length.
+    /// Whether particles, whose places are in single precision, can be put in the box: every side has positive length, the
+    /// diagonal lies between 10⁻¹² and 10¹², so that squares of radii are normal numbers, and no corner is farther from the
+    /// origin than 1,000 diagonals, where rounding already moves a particle of the default radius by a hundredth of it.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        (0..3).all(|k| self.min[k].is_finite() && self.max[k].is_finite() && self.min[k] < self.max[k])
+        const FARTHEST: f64 = 1e3;
+        let diagonal = self.diagonal();
+        let farthest = self.lo().abs().max(self.hi().abs()).max_element();
+        // No corner with a NaN gets through: it makes the diagonal one.
+        (1e-12..=1e12).contains(&diagonal)
+            && farthest <= FARTHEST * diagonal
+            && (0..3).all(|k| self.min[k] < self.max[k])
     }
+
+    /// What [`Bounds::is_valid`] asks for, as the end of a sentence about the box.
+    pub const REQUIREMENT: &str = "must have a positive size on every axis, a diagonal between 1e-12 and 1e12, and lie within \
+        1,000 diagonals of the origin";
 }
 
 /// A symmetric 3×3 matrix, by its upper triangle.
@@ -183,7 +195,23 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{sort_few, sort_numbers};
+    use super::{Bounds, sort_few, sort_numbers};
+
+    #[test]
+    fn boxes_in_which_single_precision_fails_are_not_valid() {
+        let far = |offset: f64| Bounds { min: [offset, -1.0, -1.0], max: [offset + 2.0, 1.0, 1.0] };
+        for good in [Bounds::cube(1.0), Bounds::cube(2e11), Bounds::cube(5e-13), far(3000.0), far(-3000.0)] {
+            assert!(good.is_valid(), "{good:?}");
+        }
+        let flat = Bounds { min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 0.0] };
+        let open = Bounds { min: [f64::NEG_INFINITY; 3], max: [f64::INFINITY; 3] };
+        let turned = Bounds { min: [1.0; 3], max: [-1.0; 3] };
+        let nan = Bounds { min: [0.0, f64::NAN, 0.0], max: [1.0; 3] };
+        let [huge, tiny] = [1e12, 1e-13].map(Bounds::cube);
+        for bad in [flat, open, turned, nan, huge, tiny, Bounds::cube(1e308), far(4000.0), far(1e9)] {
+            assert!(!bad.is_valid(), "{bad:?}");
+        }
+    }
 
     #[test]
     fn sorting_is_the_standard_librarys() {

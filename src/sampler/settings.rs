@@ -1,5 +1,6 @@
 //! What a caller may choose, with the paper's values as defaults.
 
+use crate::math::Bounds;
 use crate::math::decimal::text;
 use core::fmt;
 use serde::Serialize;
@@ -124,8 +125,8 @@ pub enum SettingsError {
         /// Largest value allowed.
         max: f64,
     },
-    /// The clip box has no volume or a corner that is not a number.
-    #[error("the box must have finite corners and a positive size on every axis")]
+    /// The clip box is not [valid](Bounds::is_valid).
+    #[error("the box {}", Bounds::REQUIREMENT)]
     Box,
     /// The columns of that many particles do not fit into the memory.
     #[error("there is not enough memory for about {particles} particles: choose fewer, or a larger radius")]

@@ -99,7 +99,7 @@ pub enum FieldError {
     #[error("there is no surface `{0}` in the gallery")]
     UnknownSurface(String),
     /// The box is not one.
-    #[error("the box must have finite corners and a positive size on every axis")]
+    #[error("the box {}", Bounds::REQUIREMENT)]
     Box,
     /// The centres and coefficients make no field.
     #[error(transparent)]

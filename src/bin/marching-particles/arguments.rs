@@ -175,8 +175,8 @@ pub(crate) struct Sample {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
     pub(crate) max_particles: Option<u32>,
 
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence), csv (the same), xyz
-    /// or npy (position, normal). May be given again; replaces what is there
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, and
+    /// whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 
@@ -254,7 +254,8 @@ fn bounds(text: &str) -> Result<Bounds, String> {
     if bounds.is_valid() {
         Ok(bounds)
     } else {
-        Err("the box is empty: give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1".to_owned())
+        let how = "give half-widths, or the smallest corner and then the largest, as x0,y0,z0,x1,y1,z1";
+        Err(format!("the box {}: {how}", Bounds::REQUIREMENT))
     }
 }
 
@@ -283,7 +284,19 @@ mod tests {
         assert_eq!(bounds("1.5"), Ok(Bounds::cube(1.5)));
         assert_eq!(bounds("1, 2,3"), Ok(Bounds::symmetric([1.0, 2.0, 3.0])));
         assert_eq!(bounds("-1,0,0,1,2,3"), Ok(Bounds { min: [-1.0, 0.0, 0.0], max: [1.0, 2.0, 3.0] }));
-        for bad in ["", "1,2", "0", "-1", "1,0,1", "0,0,0,1,1,0", "a", "1e999"] {
+        for bad in [
+            "",
+            "1,2",
+            "0",
+            "-1",
+            "1,0,1",
+            "0,0,0,1,1,0",
+            "a",
+            "nan",
+            "1e39",
+            "1e-30",
+            "1e9,0,0,1000000001,1,1",
+        ] {
             assert!(bounds(bad).is_err(), "{bad}");
         }
     }

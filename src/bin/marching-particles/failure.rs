@@ -1,6 +1,6 @@
 //! What can go wrong, in words, and the exit code it has.
 
-use marching_particles::field::formula::FormulaError;
+use marching_particles::field::formula::{FormulaError, FormulaErrorKind};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -76,9 +76,10 @@ impl fmt::Display for Failure {
 /// The message, the formula, and carets under the place.
 fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt::Result {
     write!(f, "error: {}", error.message)?;
-    // A very long formula says nothing to the eye.
+    // A very long formula says nothing to the eye, and a mistake in --param is at no place of it.
     const LONGEST: usize = 240;
-    if !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
+    let is_here = error.kind != FormulaErrorKind::BadParameter;
+    if is_here && !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
         // One column per character: line breaks and tabs would shift the carets.
         let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let before = text[..error.span.start].chars().count();

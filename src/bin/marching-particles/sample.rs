@@ -8,10 +8,10 @@ use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model::{self, ModelInfo};
-use marching_particles::math::Bounds;
+use marching_particles::math::{Bounds, decimal};
 use marching_particles::points::fit::Fit;
 use marching_particles::sampler::{
-    GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason,
+    GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode, StopReason,
 };
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Report, Session};
 use serde::Serialize;
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let settings = settings(arguments, &answer.bounds);
 
     let clock = Clock::start();
-    let start = session.start(&settings).map_err(|error| Failure::Usage(error.to_string()))?;
+    let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
     seconds.seeding += clock.seconds();
     if start.predicted_count > u64::from(settings.max_particles) {
         return Err(Failure::Limit(format!(
@@ -259,6 +259,25 @@ fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
             wanted.max(default.max_particles)
         }),
     }
+}
+
+/// Why the settings are refused, by the name of the option and with shares as they are typed.
+fn refusal(error: &SettingsError) -> String {
+    let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let option = match *name {
+        "relax_steps" => "relax".to_owned(),
+        name => name.trim_end_matches("_share").replace('_', "-"),
+    };
+    if name.ends_with("_share") || *name == "chord_error" {
+        let percent = |share: f64| {
+            let short: Option<f64> = format!("{:.3e}", 100.0 * share).parse().ok();
+            decimal::text(short.unwrap_or(share))
+        };
+        let [value, min, max] = [*value, *min, *max].map(percent);
+        return format!("--{option} is {value}% of the box diagonal, but must lie between {min}% and {max}%");
+    }
+    let [value, min, max] = [*value, *min, *max].map(decimal::text);
+    format!("--{option} is {value}, but must lie between {min} and {max}")
 }
 
 /// Steps the session to its end.
