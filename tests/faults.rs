@@ -5,7 +5,7 @@ use glam::Vec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Progress, Settings, StopReason};
+use marching_particles::sampler::{Placement, Progress, Sampling, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 /// Samples `formula` in the cube of half-width `half`.
@@ -63,6 +63,46 @@ fn poles_are_not_taken_for_zeros() {
     assert!((0.9..1.2).contains(&share), "{} particles are {share} of a cover", report.count);
     // The holes are those of the zeros: the poles are no surface that the particles leave bare.
     assert!(report.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.quality);
+}
+
+#[test]
+fn no_particle_sits_where_the_gradient_overflows() {
+    // Beside such a pole f is small against its gradient, whatever it is. `sampled` looks at every normal.
+    for (formula, half) in [("exp(x) = x y", 1e4), ("cosh(z x/y)^12 = 1.6 + z", 100.0)] {
+        for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+            let settings = Settings { sampling, radius_share: 0.03, radius_min_share: 0.01, ..coarse() };
+            let (session, _, _) = sampled(formula, half, &settings);
+            assert!(session.count() > 20, "{formula}: {} particles", session.count());
+        }
+    }
+}
+
+#[test]
+fn adaptive_runs_say_that_there_is_no_surface_as_uniform_ones_do() {
+    for formula in ["x^2 + y^2 + z^2 + 1", "x = 5", "1/x", "sign(x)", "1", "ln(-1 - x^2)", "x^2 + y^2", "a"] {
+        let (_, uniform, _) = sampled(formula, 1.0, &coarse());
+        for placement in [Placement::Direct, Placement::Faithful] {
+            let settings = Settings { sampling: Sampling::Adaptive, placement, ..coarse() };
+            let (session, progress, report) = sampled(formula, 1.0, &settings);
+            assert_eq!((session.count(), report.count), (0, 0), "{formula}");
+            assert_eq!(progress.stop_reason, uniform.stop_reason, "{formula}");
+            assert_eq!(progress.message, uniform.message, "{formula}");
+        }
+    }
+}
+
+#[test]
+fn no_particle_is_smaller_than_the_smallest_radius() {
+    // Sheets that cross at poles and steps, where neighbours' radii foretell nothing of each other's.
+    for formula in ["x*(floor(y) + z^-1) = cbrt(x)", "x y z", "tan(3x) + y"] {
+        for seed in [0, 4, 1_327_422_460_186_159_666] {
+            let settings =
+                Settings { sampling: Sampling::Adaptive, seed, radius_min_share: 0.005, ..coarse() };
+            let (session, _, report) = sampled(formula, 2.0, &settings);
+            let least = 0.005 * session.bounds().diagonal();
+            assert!(report.radius_min > 0.999 * least, "{formula}: {} < {least}", report.radius_min);
+        }
+    }
 }
 
 #[test]

@@ -104,7 +104,6 @@ impl Law {
         Self { factor: self.factor * factor as f32, ..self }
     }
 
-    #[cfg(test)]
     /// Smallest radius that the law gives.
     pub(super) fn least(&self) -> f32 {
         self.least * self.factor

@@ -51,11 +51,13 @@ pub(super) struct Proposal {
 }
 
 impl Proposal {
-    /// The radius that the law gives, as far as the particles around allow it.
+    /// The radius that the law gives, as far as the particles around allow it. They never ask for less than `least`, the
+    /// law's own least, but siblings may, whose radii are still guesses.
     #[inline(always)]
-    fn graded(&self, radius: f32) -> f32 {
+    fn graded(&self, radius: f32, least: f32) -> f32 {
+        let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.
-        if radius > self.largest { self.largest } else { radius }
+        if radius > largest { largest } else { radius }
     }
 }
 
@@ -216,10 +218,11 @@ impl Placement {
         let hessian = &self.hessian[k];
         let curvature = self.curvature[k];
         let slope = gradient.length();
-        let radius = proposal.graded(sizing.radius(position, &curvature));
-        let Tolerance { residual, min_gradient } = tolerance(radius);
+        let radius = proposal.graded(sizing.radius(position, &curvature), sizing.least());
+        let tolerance = tolerance(radius);
+        let residual = tolerance.residual;
         // NaN is never greater.
-        if !(slope > min_gradient && radius > 0.0) {
+        if !(tolerance.is_slope(slope) && radius > 0.0) {
             return Step::Lost;
         }
         let touch = a.distance - proposal.parent_radius - radius;
@@ -244,6 +247,7 @@ impl Placement {
         let corrected_slope = corrected_gradient.length();
         let left = value + 0.5 * (gradient + corrected_gradient).dot(moved);
         if left.abs() <= 0.5 * residual * corrected_slope
+            && tolerance.is_slope(corrected_slope)
             && moved.length_squared() <= (TRUSTED_MOVE * radius) * (TRUSTED_MOVE * radius)
             && pull.abs() <= TRUSTED_PULL * radius
         {
@@ -294,7 +298,7 @@ impl Placement {
                 _ => break,
             };
             let mut spot = self.look(field, projector, sizing, position);
-            spot.radius = proposal.graded(spot.radius);
+            spot.radius = proposal.graded(spot.radius, sizing.least());
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
                 return Landed::Undefined;
             }

@@ -85,6 +85,15 @@ pub(super) struct Tolerance {
     pub(super) min_gradient: f32,
 }
 
+impl Tolerance {
+    /// Whether |∇f| tells where the surface is: not where it counts as zero, nor where it overflows, as beside a pole, and
+    /// any value would be small against it.
+    #[inline(always)]
+    pub(super) fn is_slope(&self, slope: f32) -> bool {
+        slope > self.min_gradient && slope < f32::INFINITY
+    }
+}
+
 /// How far a point may go along the gradient, and when it has arrived.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Descent {
@@ -202,7 +211,7 @@ impl Projector {
                 let circle = &circles[a.circle as usize];
                 let (value, gradient) = (self.value[k], self.gradient[k]);
                 let slope = gradient.length();
-                if value.abs() <= tolerance.residual * slope && slope > tolerance.min_gradient {
+                if value.abs() <= tolerance.residual * slope && tolerance.is_slope(slope) {
                     landing[a.circle as usize] =
                         Landing::On { position: self.points[k], normal: gradient / slope };
                     continue;
@@ -217,7 +226,7 @@ impl Projector {
                     && a.steps < MAX_NEWTON_STEPS;
                 a.last = value.abs();
                 // A NaN anywhere makes `settles` false or stays in the position until it does.
-                if settles && half.is_finite() && slope > tolerance.min_gradient {
+                if settles && half.is_finite() && tolerance.is_slope(slope) {
                     active[kept] = a;
                     kept += 1;
                 } else {
@@ -301,7 +310,7 @@ impl Projector {
             }
             let slope = gradient.length();
             if value.abs() <= tolerance.residual * slope {
-                return Some(if slope > tolerance.min_gradient {
+                return Some(if tolerance.is_slope(slope) {
                     Landing::On { position, normal: gradient / slope }
                 } else {
                     Landing::Undefined

@@ -102,6 +102,11 @@ impl Sizing {
         self.predicted
     }
 
+    /// Smallest radius that a particle may have.
+    pub(super) fn least(&self) -> f32 {
+        self.law.least()
+    }
+
     /// Smallest radius among the points of the survey.
     pub(super) fn smallest(&self) -> f32 {
         self.smallest
@@ -142,6 +147,10 @@ impl Sizing {
             self.predicted += f64::from(site.weight) / (CELL_AREA * f64::from(radius) * f64::from(radius));
             self.smallest = self.smallest.min(radius);
             self.largest = self.largest.max(radius);
+        }
+        if self.site.is_empty() {
+            // The survey has found no surface. What the search for pieces may still find has some radius.
+            (self.smallest, self.largest) = (self.law.greatest(), self.law.greatest());
         }
     }
 }

@@ -191,6 +191,9 @@ impl AdaptiveFront {
         let sizing = surface.sizing();
         let spot = self.placement.look(surface.field, surface.projector, sizing, position);
         let (normal, radius) = (spot.normal, spot.radius);
+        if !(radius > 0.0 && normal.is_finite()) {
+            return SlotFate::Undefined;
+        }
         self.trace.note_child(id, self.born, || Step::Landed { position, normal, radius });
         if self.collides(surface.particles, position, normal, radius) {
             return SlotFate::Matched;
