@@ -10,7 +10,6 @@ import { CAMERA_MS, installConsole } from './console.js';
 import { ModelLoader, shapeOf } from './points/loader.js';
 import { SamplingClient } from './sampling/client.js';
 import { decode, encode } from './share/codec.js';
-import { csv, LARGEST_PICTURE_PX, ply, png } from './share/exports.js';
 import { completeSettings, defaultState, fieldRequest, fromPoints, modelOf, sanitize, surfaceOf, validBounds, validSetting, validView } from './share/state.js';
 import { createStore } from './store.js';
 import { FILE_SURFACE } from './types.js';
@@ -30,6 +29,8 @@ const REST_MS = 250;
 const TYPING_MS = 900;
 /** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
 const ADDRESS_MS = 500;
+/** Writing files is not part of the first picture: fetched once the sampler is there, so that it is there when it is wanted. */
+const files = () => import('./share/exports.js');
 /** Ceiling for particles that a person may confirm. */
 const MOST_PARTICLES = 4_000_000;
 
@@ -150,12 +151,13 @@ export function createEngine({ canvasHost }) {
     solved: (key) => loader.client.get(key),
     onReady() {
       void loadUrl(location.hash, true);
+      files().catch(() => {});
     },
     onAsk(predicted, asked) {
       const limit = Number(asked.settings.max_particles);
       const raised = Math.min(MOST_PARTICLES, Math.ceil(predicted * 1.1));
       store.notice.value = {
-        id: 'cap',
+        id: 'size',
         kind: 'warn',
         text: `About ${predicted.toLocaleString()} particles would be needed; the limit is ${limit.toLocaleString()}.`,
         action: {
@@ -304,8 +306,8 @@ export function createEngine({ canvasHost }) {
       viewer.growing = store.busy.value;
     }),
     effect(() => {
-      // Also where the last word was a mistake: the surface that stays may be one that was typed on the way to it.
-      const rests = () => !store.busy.value && store.report.value !== null;
+      // Also where the last word was a mistake, or has no surface: what stays may be a surface typed on the way to it.
+      const rests = () => !store.busy.value && (store.report.value !== null || store.empty.value);
       if (!rests() || Number.isNaN(typed_ms)) return;
       clearTimeout(fit_timer);
       // Once the typing rests: the picture stands still meanwhile.
@@ -393,6 +395,7 @@ export function createEngine({ canvasHost }) {
     },
     restore(shape) {
       const another = shape.surface !== store.state.value.surface;
+      if (another) allLevels();
       change(shape);
       showLook();
       choose({ grow: another, fit: another });
@@ -441,6 +444,7 @@ export function createEngine({ canvasHost }) {
     },
     loadUrl: (hash) => loadUrl(hash),
     async savePng({ width, height, transparent = false } = {}) {
+      const { LARGEST_PICTURE_PX, png } = await files();
       const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
         Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
       const picture = await viewer.pixels(side(width, viewer.width), side(height, viewer.height), transparent);
@@ -451,6 +455,7 @@ export function createEngine({ canvasHost }) {
       const { field } = sampling.shown.request;
       const model = field.points && loader.client.get(field.points)?.info.info;
       const what = model ? `${model.name}, interpolated from ${model.centres} points` : `f = ${field.formula ?? surfaceOf(description(), field.surface ?? '')?.formula}`;
+      const { csv, ply } = await files();
       return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
     },
     dismissNotice() {

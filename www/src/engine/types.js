@@ -264,8 +264,9 @@
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**
- * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `cap`, `file`,
- * `share-file`, …); a later notice of the same cause replaces it. `details` is a report worth copying.
+ * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`, `file`,
+ * `share-file`, …); a later notice of the same cause replaces it, and one that no longer holds goes. `details` is a report worth
+ * copying.
  * @typedef {object} Notice
  * @property {string} id
  * @property {'info' | 'warn' | 'error'} kind

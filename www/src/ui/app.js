@@ -95,6 +95,7 @@ export function mountInterface(engine) {
     mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
     mountReport(byId('report-body'), engine, description);
     view.prepend(createLegend(engine, description), createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
+    layout.measure();
     shell.dataset.ready = '';
     import('./levels/timeline.js').then(
       ({ createTimeline }) => { timeline = createTimeline(byId('levels-body'), engine, told); },

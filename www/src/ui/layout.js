@@ -5,6 +5,8 @@ import { icon } from './icons.js';
 
 /** Below this width the report starts folded, so that the picture has room. */
 const NARROW = '(max-width: 1079px)';
+/** A phone held upright: panels and tabs below the picture. */
+const COMPACT = '(max-width: 719px)';
 
 /** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
 
@@ -46,15 +48,19 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
     if (hidden && document.activeElement instanceof HTMLElement && document.activeElement.offsetParent === null) unhide.focus();
   }
 
+  const compact = matchMedia(COMPACT);
   const measure = () => {
     const { left, top, right, bottom } = view.getBoundingClientRect();
-    inset({ left, top, right: innerWidth - right, bottom: innerHeight - bottom });
+    // On a phone the tools would lie over the surface: they stand beside it.
+    const tools = compact.matches ? view.querySelector('.toolbar')?.clientWidth ?? 0 : 0;
+    inset({ left, top, right: innerWidth - right + tools, bottom: innerHeight - bottom });
   };
   new ResizeObserver(measure).observe(view);
   addEventListener('resize', measure);
   measure();
 
   return {
+    measure,
     toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
   };
 }

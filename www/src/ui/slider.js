@@ -110,6 +110,8 @@ export function createSlider(options) {
   });
   range.addEventListener('pointermove', (event) => {
     if (!dragging) return;
+    // A slider that was hidden under the hand has no places to go to.
+    if (!range.checkVisibility()) return end();
     const width = Math.max(1, range.getBoundingClientRect().width - 14);
     const fineness = event.shiftKey ? 10 : 1;
     place += (event.clientX - lastX) / width / fineness;

@@ -55,9 +55,11 @@ export function mountToasts(host, engine, isTold) {
     shown.set(id, { element, timer: stays ? 0 : count() });
   };
 
+  let last = '';
   effect(() => {
     const notice = engine.notice.value;
-    if (!notice) return;
+    if (!notice) return remove(last);
+    last = notice.id;
     if (isTold(notice)) queueMicrotask(() => engine.dismissNotice());
     else toast(notice);
   });

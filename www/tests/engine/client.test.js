@@ -247,11 +247,14 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   client.sample(request('x'));
   accept(2);
   say(done(2, 'refused', 0, { progress: null, message: 'there is not enough memory for about 3000000 particles: choose fewer' }));
-  expect(store.notice.value).toMatchObject({ id: 'refused', kind: 'warn' });
-  expect(store.notice.value?.text).toContain('choose fewer');
+  expect(store.notice.value).toMatchObject({ id: 'size', kind: 'error', text: 'There is not enough memory for about 3000000 particles: choose fewer.' });
   expect(store.busy.value).toBe(false);
   expect(columns.count).toBe(7);
   expect(told.at(-1)).toBe('dim');
+  // Until fewer are asked for.
+  client.sample(request('x'));
+  accept(3);
+  expect(store.notice.value).toBe(null);
 });
 
 describe('a formula with a fault', () => {

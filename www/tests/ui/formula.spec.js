@@ -74,6 +74,22 @@ for (const phase of ['relaxation', 'quality']) {
   });
 }
 
+test('where a formula on its way has no surface, the camera comes to the whole box, with the last surface in it', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  await typeFormula(page, 'x^2');
+  await settled(page);
+  const old = (await state(page)).view.camera;
+  await typeFormula(page, 'x^2 + 1');
+  await expect.poll(async () => (await state(page)).view.camera.distance).not.toBe(old.distance);
+  await atRest(page);
+  const { camera } = (await state(page)).view;
+  // The box of the ellipsoid, as wide as its corners reach.
+  const { min, max } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.field.value.bounds);
+  const radius = Math.hypot(...max.map((/** @type {number} */ v, /** @type {number} */ k) => v - min[k])) / 2;
+  expect(camera.distance).toBeGreaterThan(radius / Math.sin(Math.PI / 12));
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.count)).toBeGreaterThan(0);
+});
+
 test('beyond four unknown names a slider is added on request', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');

@@ -31,6 +31,16 @@ test('surface, formula and settings are undone and redone, by buttons and by key
   await clean();
 });
 
+test('another surface that comes back is seen with all its levels', async ({ page }) => {
+  await open(page);
+  await page.locator('.tile[data-surface="torus"]').click();
+  await settled(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 3 }));
+  await undo(page).click();
+  await settled(page);
+  expect((await state(page)).view.level).toBe(null);
+});
+
 test('in a text field the keys undo the typing, not the page', async ({ page }) => {
   await open(page);
   await page.locator('.tile[data-surface="sphere"]').click();

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { open, scan, settled, state } from './helpers.js';
+import { atRest, open, scan, settled, state } from './helpers.js';
 
 const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
 
@@ -55,6 +55,24 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
     });
   }
 }
+
+test('on a phone the surface stands beside the tools, not under them', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  await page.locator('.tile[data-surface="sphere"]').click();
+  await settled(page);
+  await atRest(page);
+  const { under, beside } = await page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const { left, right, top, bottom } = /** @type {Element} */ (document.querySelector('.toolbar')).getBoundingClientRect();
+    const [xs, ys] = [[], []].map(() => /** @type {number[]} */ ([]));
+    for (let x = left; x <= right; x += 4) xs.push(x);
+    for (let y = top; y <= bottom; y += 4) ys.push(y);
+    const hit = (/** @type {number} */ x) => ys.some((y) => engine.pick(x, y) !== null);
+    return { under: xs.filter(hit), beside: hit(left - 40) };
+  });
+  expect(under).toEqual([]);
+  expect(beside).toBe(true);
+});
 
 test('targets are at least 24 pixels', async ({ page }) => {
   await open(page, { width: 1440, height: 900 });

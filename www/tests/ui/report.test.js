@@ -105,6 +105,7 @@ describe('the caption', () => {
   it('says so when a run was stopped or met its limit', () => {
     const done = { ...progress, phase: 'done' };
     expect(captionOf({ ...done, stop_reason: 'cancelled' }, { ...facts, busy: false, partial: true })).toBe('Stopped · 1,463 particles');
+    expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false })).toBe('');
     expect(captionOf({ ...done, stop_reason: 'cap' }, { ...facts, busy: false, partial: true })).toBe('Stopped at the limit · 1,463 particles');
     expect(captionOf({ ...done, stop_reason: 'complete' }, { ...facts, busy: false, seconds: 0.05 })).toBe('1,463 particles · 50\u202fms');
     expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false, empty: true })).toBe('');

@@ -45,6 +45,56 @@ test('Uniform and Adaptive each show their own settings, and the bar keeps its h
   await clean();
 });
 
+test('a slider that goes away under the hand keeps its value', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const box = await page.getByRole('slider', { name: 'Radius' }).boundingBox();
+  if (!box) throw new Error('the slider has no box');
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 20, y, { steps: 2 });
+  await expect.poll(async () => (await state(page)).settings.radius_share).toBeDefined();
+  const { radius_share } = (await state(page)).settings;
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('sampling', 'adaptive'));
+  await page.mouse.move(x + 60, y, { steps: 3 });
+  await page.mouse.up();
+  await settled(page);
+  expect((await state(page)).settings).toEqual({ radius_share, sampling: 'adaptive' });
+  await clean();
+});
+
+for (const device of ['desk', 'phone']) {
+  test(`more particles than the memory of a ${device} holds are refused in words, and fewer are sampled`, async ({ browser }) => {
+    const phone = device === 'phone' ? { userAgent: 'Mozilla/5.0 (Linux; Android 14) AppleWebKit/537.36 Chrome/140.0.0.0 Mobile Safari/537.36', isMobile: true, hasTouch: true } : {};
+    const context = await browser.newContext(phone);
+    const page = await context.newPage();
+    const { clean } = await open(page);
+    const count = (/** @type {number} */ n) => page.evaluate((wanted) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      engine.setSetting('max_particles', wanted);
+      engine.setSetting('size_mode', 'count');
+      engine.setSetting('count', wanted);
+    }, n);
+    const toast = page.locator('.toast');
+    // 512 MB on a desk, 256 MB on a phone: about 1.4 and 0.7 million.
+    await count(1_000_000);
+    if (device === 'phone') {
+      await expect(toast).toContainText('There is not enough memory for about 1000000 particles');
+      await count(5000);
+    } else {
+      await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.progress.value.particles)).toBeGreaterThan(200_000);
+      await count(2_000_000);
+      await expect(toast).toContainText('There is not enough memory for about 2000000 particles');
+      await count(5000);
+    }
+    await settled(page);
+    await expect(toast).toHaveCount(0);
+    expect((await report(page)).count).toBeGreaterThan(4500);
+    await clean();
+    await context.close();
+  });
+}
+
 test('what few need is behind a button that says how much of it was changed', async ({ page }) => {
   await open(page, { width: 1440, height: 900 });
   const more = page.getByRole('button', { name: 'Advanced' });

@@ -201,7 +201,11 @@ export class SamplingClient {
     const { store } = this;
     const { id, request } = run;
     this.current = run;
-    if (request.kind === 'sample') this.held = 0;
+    if (request.kind === 'sample') {
+      this.held = 0;
+      // Too many particles were asked for before: no longer.
+      if (!request.restoring && store.notice.value?.id === 'size') store.notice.value = null;
+    }
     store.progress.value = { ...idleProgress(), run: id, live: request.live, phase: request.kind === 'relax' ? 'relaxation' : 'seeding' };
     this.attend();
   }
@@ -368,7 +372,10 @@ export class SamplingClient {
         // The surface before stays, and is not the one asked for.
         store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
         this.dim(columns.count > 0);
-        if (outcome === 'refused') store.notice.value = { id: 'refused', kind: 'warn', text: message.message };
+        if (outcome === 'refused') {
+          const { message: text } = message;
+          store.notice.value = { id: 'size', kind: 'error', text: `${text.charAt(0).toUpperCase()}${text.slice(1)}.` };
+        }
       }
     });
     this.scheduler.ended(message.id);

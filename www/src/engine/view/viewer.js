@@ -229,10 +229,10 @@ export class Viewer {
     return this.level === null ? null : Math.min(this.level, this.columns.last_level);
   }
 
-  /** What a fit shows: the particles, else the clip box, all of it where it is drawn. */
+  /** What a fit shows: the particles of the present field, else its clip box, all of it where it is drawn. */
   ball() {
     const { columns } = this;
-    const bounds = columns.bounds();
+    const bounds = columns.stale ? null : columns.bounds();
     if (!bounds) return this.box ? this.scene : this.box_ball;
     const { centre } = ballOf(bounds);
     let far_sq = 0;

@@ -34,6 +34,7 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
     if (empty) return '';
     if (progress.stop_reason === 'cap') return `Stopped at the limit · ${particles}`;
     if (partial || progress.stop_reason === 'cancelled') return `Stopped · ${particles}`;
+    if (progress.particles === 0) return '';
     return seconds === null ? particles : `${particles} · ${formatSeconds(seconds)}`;
   }
 }
