@@ -133,6 +133,32 @@ fn the_count_is_met_within_three_percent() {
 }
 
 #[test]
+fn a_count_that_cannot_be_met_is_said_to_be_missed() {
+    let said = |field: &str, count: u32| {
+        let mut session = Session::new();
+        session.set_field(&request(field)).expect("a field");
+        run(&mut session, &sized(count), u32::MAX);
+        let report = session.report();
+        let miss = (report.count as f64 / f64::from(count) - 1.0).abs();
+        let is_said =
+            report.warnings.iter().any(|warning| warning.contains(&format!("not the {count} wanted")));
+        assert_eq!(
+            is_said,
+            miss > 0.03,
+            "{field}, {count}: {} particles, {:?}",
+            report.count,
+            report.warnings
+        );
+        is_said
+    };
+    // A strip narrower than its particles, and bars thinner than theirs.
+    assert!(said(r#"{"formula":"x","bounds":{"min":[-1,-1,-1e-4],"max":[1,1,1e-4]}}"#, 500));
+    assert!(said(r#"{"surface":"decocube"}"#, 10));
+    assert!(!said(r#"{"surface":"decocube"}"#, 1000));
+    assert!(!said(r#"{"surface":"sphere"}"#, 1));
+}
+
+#[test]
 fn cancelling_keeps_what_is_there() {
     for budget in [100, 2_000, 6_000, 20_000] {
         let mut session = Session::new();

@@ -68,7 +68,7 @@ const PILOT_SHARE: f64 = 1.0 / 20.0;
 const RESERVE: f64 = 1.05;
 
 /// A wanted count counts as met within this share.
-const COUNT_TOLERANCE: f64 = 0.03;
+pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
 
 /// Attempts at meeting a wanted count.
 const MAX_ATTEMPTS: u32 = 4;
@@ -700,7 +700,6 @@ impl Sampler {
         if self.settings.size_mode == SizeMode::Count
             && (self.pilot || (miss - 1.0).abs() > COUNT_TOLERANCE)
             && self.attempt < MAX_ATTEMPTS
-            && count > 1
             && !self.front.capped()
         {
             self.packing *= count as f64 / self.expected_count();

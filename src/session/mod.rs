@@ -20,7 +20,8 @@ use crate::particles::Particles;
 use crate::pieces::{self, Work};
 use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
-    FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, Start, StopReason,
+    FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, SizeMode, Start,
+    StopReason,
 };
 use glam::Vec3;
 use serde::Serialize;
@@ -534,7 +535,14 @@ impl Session {
         let counts = self.sampler.counts();
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
+        let stop_reason = self.last.as_ref().and_then(|progress| progress.stop_reason);
         let mut warnings = self.warnings.clone();
+        let settings = self.sampler.settings();
+        if settings.size_mode == SizeMode::Count
+            && matches!(stop_reason, Some(StopReason::Complete | StopReason::OneParticle))
+        {
+            warnings.extend(warnings::about_count(count, settings.count));
+        }
         warnings.extend(warnings::about(count, facing, &counts));
         Report {
             count,
@@ -551,7 +559,7 @@ impl Session {
             evaluations,
             evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,
             fates: counts.fates,
-            stop_reason: self.last.as_ref().and_then(|progress| progress.stop_reason),
+            stop_reason,
             warnings,
             level_counts,
             energy: self.sampler.energy().to_vec(),

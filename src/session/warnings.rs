@@ -2,7 +2,7 @@
 
 use super::Kept;
 use crate::pieces::{piece, ranges};
-use crate::sampler::{Counts, FateCounts};
+use crate::sampler::{COUNT_TOLERANCE, Counts, FateCounts};
 use crate::spatial::tree::Tree;
 
 /// Sheets are said to be close if at least this share of the particles face one, and at least this many.
@@ -15,6 +15,17 @@ pub(super) fn about_powers(equation: String) -> String {
         "f has powers, roots or absolute values of whole factors, which take its gradient on the surface. The same surface \
          with every factor once is sampled: {equation}"
     )
+}
+
+/// What is said where a wanted number of particles is missed by more than the 3 % that are promised.
+pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
+    let is_met = (total as f64 / f64::from(wanted) - 1.0).abs() <= COUNT_TOLERANCE;
+    (!is_met).then(|| {
+        format!(
+            "There are {total} particles, not the {wanted} wanted: where they are large against the surface or its box, their \
+             number changes by leaps."
+        )
+    })
 }
 
 /// Warnings about what became of `total` particles, of which `close` face another sheet.
