@@ -48,10 +48,16 @@ impl Layers {
     /// Range of a radius, which counts as met there.
     #[inline(always)]
     fn admit(&mut self, radius: f32) -> usize {
-        let last = self.count - 1;
-        let layer = (0..last).find(|&k| radius <= self.largest[k]).unwrap_or(last);
+        let layer = self.of(radius);
         self.grow(layer, radius);
         layer
+    }
+
+    /// Range of a radius.
+    #[inline(always)]
+    fn of(&self, radius: f32) -> usize {
+        let last = self.count - 1;
+        (0..last).find(|&k| radius <= self.largest[k]).unwrap_or(last)
     }
 
     /// Counts a radius as met in a range.
@@ -146,20 +152,18 @@ impl RadiusChains {
         self.chains.insert(layer, position, index);
     }
 
-    /// Collects the particles at `positions` within a distance of `centre` that may depend on the largest radius of a range,
-    /// and maybe some within the largest such distance.
-    pub(super) fn gather(
-        &mut self,
+    /// Particles of about this radius that were put into the cell of `position` and are there, if they are `meant`.
+    pub(super) fn beside(
+        &self,
         positions: &[Vec3],
-        centre: Vec3,
-        reach: impl Fn(f32) -> f32,
-        found: &mut Vec<Neighbour>,
-    ) {
-        self.chains.gather(
-            positions,
-            centre,
-            self.layers.largest.iter().map(|&largest| reach(largest)),
-            found,
-        );
+        (position, radius): (Vec3, f32),
+        meant: impl Fn(u32) -> bool,
+    ) -> impl Iterator<Item = u32> {
+        self.chains.beside(positions, self.layers.of(radius), position, meant)
+    }
+
+    /// Visits the particles within a distance of a box that may depend on the largest radius of a range, and some beyond.
+    pub(super) fn visit(&mut self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
+        self.chains.visit(bounds, self.layers.largest.iter().map(|&largest| reach(largest)), visit);
     }
 }

@@ -9,7 +9,9 @@
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
 //!   so the energy falls at every step.
 
-use super::adaptive_grid::RadiusChains;
+mod lists;
+
+use self::lists::{Lists, is_old};
 use super::pairs::{Pairs, ROOM};
 use super::project::{BATCH, Projector, Tolerance};
 use super::repulsion::{Gaussian, Overlap, Points, Repulsion};
@@ -17,7 +19,6 @@ use super::sizing::Sizing;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Mat4, Vec3, Vec4};
 
@@ -108,11 +109,9 @@ pub(super) struct Relaxation {
     done: u32,
     stage: Stage,
     next: usize,
-    grid: RadiusChains,
-    /// The farthest that a particle has gone in this move, and at most since the grid was made.
+    lists: Lists,
+    /// The farthest that a particle has gone in this move.
     farthest: f32,
-    drift: f32,
-    found: Vec<Neighbour>,
     /// Units done beyond the budgets so far, to be paid from the next ones.
     debt: u32,
     /// Whether a list is to be made anew.
@@ -150,10 +149,8 @@ impl Relaxation {
             done: 0,
             stage: Stage::Done,
             next: 0,
-            grid: RadiusChains::new(),
+            lists: Lists::new(),
             farthest: 0.0,
-            drift: 0.0,
-            found: Vec::new(),
             debt: 0,
             is_old: false,
             force: Vec::new(),
@@ -205,7 +202,7 @@ impl Relaxation {
         fill(&mut self.force, particles, Vec4::ZERO);
         fill(&mut self.previous, particles, Vec3::ZERO);
         self.farthest = 0.0;
-        self.drift = f32::INFINITY;
+        self.lists.drift = f32::INFINITY;
         self.sum = 0.0;
         self.debt = 0;
         self.is_old = false;
@@ -292,12 +289,10 @@ impl Relaxation {
             match self.stage {
                 Stage::Grid => {
                     if range.start == 0 {
-                        let (smallest, largest) = law.extent(particles);
-                        self.grid.reset(smallest, largest, L::RANGE + L::SKIN + L::SLACK, n);
-                        self.drift = 0.0;
+                        self.lists.reset(law.extent(particles), (L::RANGE + L::SKIN, L::SLACK), n);
                     }
                     for i in range {
-                        self.grid.insert(particles.position[i], law.radius(particles, i), i as u32);
+                        self.lists.insert(particles, i);
                     }
                     if last == n {
                         self.enter(Stage::Refresh);
@@ -305,11 +300,13 @@ impl Relaxation {
                 }
                 Stage::Refresh => {
                     if range.start == 0 {
-                        pairs.drop_far(|i| self.force[i].w.is_infinite());
+                        pairs.drop_far(|i| is_old(self.force[i]));
                     }
                     for i in range {
-                        if self.force[i].w.is_infinite() {
-                            self.refresh(law, pairs, particles, i);
+                        if is_old(self.force[i]) {
+                            let made = self.lists.make(pairs, particles, &mut self.force, i);
+                            let beyond = made.iter().filter(|&&j| j as usize >= last).count() as u32;
+                            self.debt += beyond * REFRESH_UNITS;
                         }
                     }
                     if last == n {
@@ -404,7 +401,7 @@ impl Relaxation {
     /// Where the stage comes to with a budget, and the units that takes: the last particle may go beyond it.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
         let cost = |i: usize| match self.stage {
-            Stage::Refresh if self.force[i].w.is_infinite() => REFRESH_UNITS,
+            Stage::Refresh if is_old(self.force[i]) => REFRESH_UNITS,
             Stage::Polish => L::POLISH_UNITS,
             _ => 1,
         };
@@ -443,10 +440,10 @@ impl Relaxation {
 
     /// Goes on from new places, by way of new lists where the old ones may miss a pair.
     fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) {
-        self.drift += core::mem::take(&mut self.farthest);
+        self.lists.drift += core::mem::take(&mut self.farthest);
         if !self.is_old {
             self.after_lists();
-        } else if self.drift < L::SLACK * law.radius(particles, 0) {
+        } else if self.lists.drift < L::SLACK * law.radius(particles, 0) {
             self.enter(Stage::Refresh);
         } else {
             self.enter(Stage::Grid);
@@ -467,31 +464,6 @@ impl Relaxation {
             way = f32::INFINITY;
         }
         self.force[i].w = way;
-    }
-
-    /// Makes the list of particle `i` anew: those of its sheet and of a smaller index within the range and the skin. Those of
-    /// a larger index get it into their lists.
-    fn refresh<L: Repulsion>(&mut self, law: &L, pairs: &mut Pairs, particles: &Particles, i: usize) {
-        let radius = law.radius(particles, i);
-        let listed = |other: f32| 0.5 * (L::RANGE + L::SKIN) * (radius + other);
-        let reach = |other: f32| listed(other) + self.drift;
-        self.grid.gather(&particles.position, particles.position[i], reach, &mut self.found);
-        let normal = particles.normal[i];
-        self.found.retain(|near| {
-            let j = near.index as usize;
-            let reach = listed(law.radius(particles, j));
-            j != i && near.distance_sq <= reach * reach && particles.normal[j].dot(normal) > 0.0
-        });
-        let (smaller, larger) = (|j: &u32| (*j as usize) < i, |j: &u32| *j as usize > i);
-        let found = self.found.iter().map(|near| near.index);
-        pairs.fill(i, found.clone().map(|j| (j, smaller(&j))));
-        for j in found.filter(larger) {
-            // Those whose own lists are made anew find it themselves.
-            if self.force[j as usize].w.is_finite() {
-                pairs.insert(j as usize, i as u32);
-            }
-        }
-        self.force[i].w = f32::NEG_INFINITY;
     }
 
     /// Adds the repulsion between each particle of a bundle and its listed neighbours to the forces on both, and to the

@@ -1,7 +1,7 @@
-//! Points in linked lists by cell: made in one pass and in little memory, for queries that are few. The points stay where
-//! they are; the lists hold their indices.
+//! Points in linked lists by cell, made in one pass and in little memory. The points stay where they are; the lists hold their
+//! indices.
 
-use super::{NONE, Neighbour, coordinate};
+use super::{NONE, coordinate};
 use glam::Vec3;
 
 /// Points per list head, over all cells: of more heads most would stay empty, of fewer many would be shared.
@@ -19,7 +19,7 @@ pub(crate) struct Chains {
     head: Vec<u32>,
     /// The point after each in its list.
     next: Vec<u32>,
-    /// Heads of the query under way.
+    /// Heads of the visit under way.
     wanted: Vec<u32>,
 }
 
@@ -45,24 +45,34 @@ impl Chains {
         self.head[head as usize] = index;
     }
 
-    /// Collects every point within `reach[k]` of `centre` that was added to layer k, and maybe some of other layers within
-    /// the largest reach, by where `points` has them now, no point twice. They have to be in the cells in which they were
-    /// added. Replaces the content of `found`.
-    pub(crate) fn gather(
-        &mut self,
+    /// Those of `points` that were added to the cell of `place` in a layer and are there now, if they are `meant`.
+    pub(crate) fn beside(
+        &self,
         points: &[Vec3],
-        centre: Vec3,
+        layer: usize,
+        place: Vec3,
+        meant: impl Fn(u32) -> bool,
+    ) -> impl Iterator<Item = u32> {
+        let inverse_side = self.inverse_side[layer];
+        let cell = move |point: Vec3| point.to_array().map(|c| coordinate(c * inverse_side));
+        let [x, y, z] = cell(place);
+        let list = self.list(self.head_of(layer, x, y, z));
+        list.filter(move |&index| meant(index) && cell(points[index as usize]) == [x, y, z])
+    }
+
+    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some beyond, none
+    /// twice.
+    pub(crate) fn visit(
+        &mut self,
+        [lo, hi]: [Vec3; 2],
         reach: impl IntoIterator<Item = f32>,
-        found: &mut Vec<Neighbour>,
+        mut visit: impl FnMut(u32),
     ) {
-        found.clear();
         let mut wanted = core::mem::take(&mut self.wanted);
         wanted.clear();
-        let mut largest = 0.0;
-        for (layer, (&inverse_side, radius)) in self.inverse_side.iter().zip(reach).enumerate() {
-            largest = if radius > largest { radius } else { largest };
-            let lo = (centre - radius).to_array().map(|c| coordinate(c * inverse_side));
-            let hi = (centre + radius).to_array().map(|c| coordinate(c * inverse_side));
+        for (layer, (&inverse_side, reach)) in self.inverse_side.iter().zip(reach).enumerate() {
+            let lo = (lo - reach).to_array().map(|c| coordinate(c * inverse_side));
+            let hi = (hi + reach).to_array().map(|c| coordinate(c * inverse_side));
             for z in lo[2]..=hi[2] {
                 for y in lo[1]..=hi[1] {
                     for x in lo[0]..=hi[0] {
@@ -74,18 +84,21 @@ impl Chains {
         // Cells share lists.
         wanted.sort_unstable();
         wanted.dedup();
-        for &head in &wanted {
-            let mut index = self.head[head as usize];
-            while index != NONE {
-                let offset = points[index as usize] - centre;
-                let distance_sq = offset.length_squared();
-                if distance_sq <= largest * largest {
-                    found.push(Neighbour { index, distance_sq, offset });
-                }
-                index = self.next[index as usize];
-            }
-        }
+        wanted.iter().for_each(|&head| self.list(head).for_each(&mut visit));
         self.wanted = wanted;
+    }
+
+    /// The points of a list.
+    #[inline(always)]
+    fn list(&self, head: u32) -> impl Iterator<Item = u32> {
+        let mut index = self.head[head as usize];
+        core::iter::from_fn(move || {
+            let this = index;
+            (this != NONE).then(|| {
+                index = self.next[this as usize];
+                this
+            })
+        })
     }
 
     #[inline(always)]
@@ -105,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gather_finds_what_the_naive_search_finds() {
+    fn visit_comes_to_all_that_the_naive_search_finds_once() {
         let points = cloud(3000);
         let mut chains = Chains::default();
         for side in [0.3, 1.7] {
@@ -113,15 +126,40 @@ mod tests {
             for (i, &p) in points.iter().enumerate() {
                 chains.insert(i % 2, p, i as u32);
             }
-            let mut found = Vec::new();
-            for &centre in points.iter().step_by(37) {
-                for radius in [0.0, 0.1, 0.4] {
-                    chains.gather(&points, centre, [radius; 2], &mut found);
-                    let mut got: Vec<u32> = found.iter().map(|n| n.index).collect();
-                    got.sort_unstable();
-                    assert_eq!(got, gather_naive(&points, centre, radius), "side {side} radius {radius}");
+            for (&a, &b) in points.iter().zip(&points[1..]).step_by(37) {
+                let (lo, hi) = (a.min(b), a.max(b).min(a + 0.2));
+                for reach in [0.0, 0.1, 0.4] {
+                    let mut visited = vec![0; points.len()];
+                    chains.visit([lo, hi], [reach; 2], |index| visited[index as usize] += 1);
+                    assert!(visited.iter().all(|&times| times <= 1), "side {side} reach {reach}");
+                    for centre in [lo, hi, 0.5 * (lo + hi)] {
+                        for index in gather_naive(&points, centre, reach) {
+                            assert_eq!(visited[index as usize], 1, "side {side} reach {reach}");
+                        }
+                    }
                 }
             }
         }
+    }
+
+    #[test]
+    fn those_beside_a_point_are_all_in_one_cell() {
+        let points = cloud(3000);
+        let mut chains = Chains::default();
+        let side = 0.3;
+        chains.reset([side, 2.0 * side], points.len());
+        for (i, &p) in points.iter().enumerate() {
+            chains.insert(0, p, i as u32);
+        }
+        let mut times = vec![0; points.len()];
+        for &p in &points {
+            for index in chains.beside(&points, 0, p, |index| index % 3 > 0) {
+                assert!(index % 3 > 0);
+                assert!((points[index as usize] - p).abs().max_element() <= side);
+                times[index as usize] += 1;
+            }
+        }
+        // Every point is beside as many points as there are in its cell, itself among them.
+        assert!(times.iter().enumerate().all(|(index, &times)| (times > 0) == (index % 3 > 0)));
     }
 }
