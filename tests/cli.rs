@@ -132,6 +132,27 @@ fn files_hold_every_particle() {
     assert_eq!((npy.len() - 24 * count) % 64, 0);
 }
 
+#[cfg(unix)]
+#[test]
+fn file_whose_name_is_no_unicode_is_written_and_reported() {
+    use std::os::unix::ffi::OsStrExt;
+    let path = file("").join(std::ffi::OsStr::from_bytes(b"odd \xff.xyz"));
+    let output = Command::new(env!("CARGO_BIN_EXE_marching-particles"))
+        .args(["sample", "--surface", "sphere", "--radius", "5%", "--json", "--out"])
+        .arg(&path)
+        .output()
+        .expect("the tool was built with this test");
+    assert!(output.status.success(), "{}", stderr(&output));
+    let run: Value = serde_json::from_str(&stdout(&output)).expect("a line of JSON");
+    assert!(
+        run["files"][0].as_str().is_some_and(|name| name.ends_with("odd \u{FFFD}.xyz")),
+        "{}",
+        run["files"]
+    );
+    let lines = std::fs::read_to_string(&path).expect("the file was written").lines().count();
+    assert_eq!(Some(lines as u64), run["count"].as_u64());
+}
+
 #[test]
 fn existing_file_is_replaced() {
     let path = file("replaced.csv");

@@ -60,7 +60,8 @@ pub(crate) struct Outcome {
     pub(crate) peak_mb: Option<f64>,
     /// The same at the end of the sampling, before quality and files.
     pub(crate) peak_sampling_mb: Option<f64>,
-    pub(crate) files: Vec<PathBuf>,
+    /// Names of the files written; what is no Unicode in them is replaced.
+    pub(crate) files: Vec<String>,
 }
 
 pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
@@ -129,7 +130,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         seconds,
         peak_mb: peak_mb(),
         peak_sampling_mb,
-        files: arguments.out.clone(),
+        files: arguments.out.iter().map(|path| path.display().to_string()).collect(),
     };
     let mut out = std::io::stdout().lock();
     if arguments.json {

@@ -52,7 +52,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         writeln!(out, "warning: {warning}")?;
     }
     for file in &outcome.files {
-        writeln!(out, "wrote {}", file.display())?;
+        writeln!(out, "wrote {file}")?;
     }
     Ok(())
 }
