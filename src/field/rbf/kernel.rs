@@ -97,28 +97,37 @@ pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], place: &Place) ->
 #[inline(never)]
 fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z: &Lanes) {
     let (x, z) = (*x, *z);
-    let [mut f, mut fx, mut fz, mut fxx, mut fxz, mut fzz] = *planes;
+    let mut nested = *planes;
     let mut rest = rows.as_slice();
     for i in (0..=DEGREE).rev() {
         let (plane, others) = rest.split_at(DEGREE - i + 1);
         rest = others;
-        let [mut value, mut first, mut second] = [Lanes::splat(0.0); 3];
-        for &row in plane {
-            if N == 10 {
-                second = second * x + first;
-            }
-            first = first * x + value;
-            value = value * x + row;
-        }
-        if N == 10 {
-            fzz = fzz * z + fz;
-            fxz = fxz * z + fx;
-            fxx = fxx * z + second;
-        }
-        fz = fz * z + f;
-        fx = fx * z + first;
-        f = f * z + value;
+        nest::<N>(&mut nested, x, z, plane.iter().copied());
     }
+    *planes = nested;
+}
+
+/// One step of that along z: takes in the polynomial in x that belongs to the next smaller power of z, given by its
+/// coefficients from the largest power of x down.
+#[inline(always)]
+fn nest<const N: usize>(planes: &mut [Lanes; 6], x: Lanes, z: Lanes, row: impl Iterator<Item = Lanes>) {
+    let [mut f, mut fx, mut fz, mut fxx, mut fxz, mut fzz] = *planes;
+    let [mut value, mut first, mut second] = [Lanes::splat(0.0); 3];
+    for coefficient in row {
+        if N == 10 {
+            second = second * x + first;
+        }
+        first = first * x + value;
+        value = value * x + coefficient;
+    }
+    if N == 10 {
+        fzz = fzz * z + fz;
+        fxz = fxz * z + fx;
+        fxx = fxx * z + second;
+    }
+    fz = fz * z + f;
+    fx = fx * z + first;
+    f = f * z + value;
     *planes = [f, fx, fz, fxx, fxz, fzz];
 }
 
@@ -240,27 +249,14 @@ fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &
     let mut power = Lanes::splat(1.0);
     let [mut power_before, mut first_before] = [Lanes::splat(0.0); 2];
     for (j, sums) in sums.iter_mut().enumerate() {
-        let [mut f, mut fx, mut fz, mut fxx, mut fxz, mut fzz] = [Lanes::splat(0.0); 6];
+        let mut planes = [Lanes::splat(0.0); 6];
         for i in (0..=DEGREE - j).rev() {
             // The rows of this power of z begin behind those of the larger ones.
             let last = (DEGREE - i + 1) * (DEGREE - i + 2) / 2;
-            let [mut value, mut first, mut second] = [Lanes::splat(0.0); 3];
-            for row in &rows[last - (DEGREE - i - j + 1)..last] {
-                if N == 10 {
-                    second = second * x + first;
-                }
-                first = first * x + value;
-                value = value * x + Lanes::splat(row.0[j]);
-            }
-            if N == 10 {
-                fzz = fzz * z + fz;
-                fxz = fxz * z + fx;
-                fxx = fxx * z + second;
-            }
-            fz = fz * z + f;
-            fx = fx * z + first;
-            f = f * z + value;
+            let row = rows[last - (DEGREE - i - j + 1)..last].iter();
+            nest::<N>(&mut planes, x, z, row.map(|row| Lanes::splat(row.0[j])));
         }
+        let [f, fx, fz, fxx, fxz, fzz] = planes;
         sums[0] = f * power;
         let scaled = power * inverse;
         let first = Lanes::splat(j as f32) * power_before;
