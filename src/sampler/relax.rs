@@ -7,7 +7,8 @@
 //! # Differs from the paper
 //!
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
-//!   so the energy falls at every step.
+//!   so the energy falls at every step. It may rise only where the radius does not resolve a bend, and pairs come and go as
+//!   their normals turn past 90° from each other.
 
 mod lists;
 

@@ -63,12 +63,13 @@ pub(crate) fn find(project: &Project) -> Result<PathBuf> {
             return Ok(path);
         }
     }
+    // What helps stands last: the output of the attempts is long.
     bail!(
-        "No Chromium was found, and none could be installed. Any one of these helps:\n\
+        "{}\n\nNo Chromium was found, and none could be installed. Any one of these helps:\n\
          \x20 apt-get install chromium                     (Debian, as root)\n\
          \x20 cd www && npx playwright install chromium    (Playwright's own)\n\
          \x20 CHROME=/path/to/chrome cargo xtask test      (one that is installed elsewhere)\n\
-         \x20 cargo xtask test --fast                      (the tests that need no browser)\n\n{}",
+         \x20 cargo xtask test --fast                      (the tests that need no browser)",
         attempts.join("\n\n")
     )
 }
