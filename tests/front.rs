@@ -259,7 +259,7 @@ fn a_front_covers_smooth_surfaces_in_order() {
         assert!(figures.cover <= 1.5, "{context}");
         assert_eq!(figures.open, 0, "{context}");
         assert_eq!(figures.components, 1, "{context}");
-        assert!((figures.euler - euler).abs() <= 1, "{context}");
+        assert_eq!(figures.euler, euler, "{context}");
         // 10⁻⁴ r is half of that in units of the spacing; f32 rounding adds its own.
         assert!(figures.err_max <= 2.5e-4, "{context}");
         // Nothing is closer than the match tolerance.

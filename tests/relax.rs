@@ -75,7 +75,7 @@ fn the_reported_energy_is_that_of_all_pairs() {
 
 #[test]
 fn holes_and_crowded_pairs_shrink() {
-    for id in ["sphere", "ellipsoid", "torus", "tanglecube"] {
+    for (id, euler) in [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)] {
         let surface = gallery::find(id).expect("a gallery surface");
         let settings = Settings { size_mode: SizeMode::Count, count: 14_000, ..Settings::default() };
         let (before, sampler) = before_and_after(surface, &settings);
@@ -86,6 +86,7 @@ fn holes_and_crowded_pairs_shrink() {
         assert!(is.rho_1 > was.rho_1, "{context}");
         assert!(is.gt90 < was.gt90, "{context}");
         assert!(is.edge_cv < was.edge_cv, "{context}");
+        assert_eq!((is.euler, is.open), (euler, 0), "{context}");
         assert_eq!(before.len(), sampler.particles().len());
     }
 }
