@@ -115,6 +115,10 @@ fn every_error_names_its_kind_its_place_and_its_remedy() {
         ("sin x", Kind::MissingBrackets, 0..5, Some("sin(x)")),
         ("2 sin x^2 + 1", Kind::MissingBrackets, 2..9, Some("sin(x^2)")),
         ("sin", Kind::MissingBrackets, 0..3, Some("sin(…)")),
+        ("sin 2x + 1", Kind::MissingBrackets, 0..6, Some("sin(2x)")),
+        ("sin xy", Kind::MissingBrackets, 0..6, Some("sin(xy)")),
+        ("cos x y", Kind::MissingBrackets, 0..5, Some("cos(x)")),
+        ("x == 1", Kind::UnexpectedSymbol, 2..4, Some("=")),
         ("x = y = z", Kind::TooManyEquations, 6..7, None),
         ("= x", Kind::UnexpectedSymbol, 0..1, None),
         ("x =", Kind::UnexpectedEnd, 3..3, None),
@@ -143,6 +147,10 @@ fn every_error_names_its_kind_its_place_and_its_remedy() {
         ("sn(x)", Kind::UnknownFunction, 0..2, Some("sin")),
         ("foo(x)", Kind::UnknownFunction, 0..3, Some("foo*")),
         ("Sin(x)", Kind::UnknownFunction, 0..3, Some("sin")),
+        ("log(x)", Kind::UnknownFunction, 0..3, Some("ln")),
+        ("x + lg(y)", Kind::UnknownFunction, 4..6, Some("log10")),
+        ("pow(x, 2)", Kind::UnknownFunction, 0..3, None),
+        ("log x", Kind::UnknownName, 0..3, Some("ln")),
         ("atan2(x)", Kind::WrongArity, 0..8, None),
         ("sin(x, y)", Kind::WrongArity, 0..9, None),
         ("sin()", Kind::WrongArity, 0..5, None),
@@ -190,9 +198,21 @@ fn spans_convert_to_the_units_of_a_text_field() {
 
 #[test]
 fn a_suggestion_put_in_place_of_the_span_mends_the_formula() {
-    for text in
-        ["sin x", "2 sin x^2 + 1", "0,5 x", "1/2x", "(x", "cosx", "x2 + y2", "X + 1", "x ** 2", "sn(x)"]
-    {
+    for text in [
+        "sin x",
+        "2 sin x^2 + 1",
+        "0,5 x",
+        "1/2x",
+        "(x",
+        "cosx",
+        "x2 + y2",
+        "X + 1",
+        "x ** 2",
+        "sn(x)",
+        "sin 2x",
+        "x == 1",
+        "log(x)",
+    ] {
         let mut mended = text.to_owned();
         for _ in 0..3 {
             let Err(error) = FormulaField::parse(&mended, &[]) else { break };

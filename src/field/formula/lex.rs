@@ -115,6 +115,15 @@ pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, Form
             '(' => Token::Open,
             ')' => Token::Close,
             ',' => Token::Comma,
+            '=' if get(i) == Some('=') => {
+                let span = at(start)..at(i + 1);
+                return Err(FormulaError::new(
+                    ErrorKind::UnexpectedSymbol,
+                    span,
+                    "An equation is written with one `=`",
+                )
+                .suggest("="));
+            }
             '=' => Token::Equals,
             '0'..='9' | '.' => {
                 let digits = |mut i: usize| {

@@ -426,6 +426,10 @@ fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
             return Some((meant, message));
         }
     }
+    if let Some(meant) = parse::elsewhere(name) {
+        let message = format!("Unknown name `{name}`: did you mean `{meant}(…)`? Or add a slider `{name}`");
+        return Some((meant.to_owned(), message));
+    }
     if name.chars().count() == 1 && !COORDINATES.iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
         return None;
     }

@@ -251,6 +251,10 @@ impl Parser<'_> {
         }
         if self.peek().token == Token::Open && !self.declared.contains(&name.as_str()) {
             let guess = self.similar(&name);
+            if name == "pow" {
+                let message = "A power is written `a^b`";
+                return Err(FormulaError::new(ErrorKind::UnknownFunction, span, message));
+            }
             let message = match guess {
                 Some(guess) => format!("There is no function `{name}`: did you mean `{guess}`?"),
                 None => format!("There is no function `{name}`; to multiply, write `{name}*(`"),
@@ -331,19 +335,25 @@ impl Parser<'_> {
         let message = format!("`{name}` needs brackets around what it is applied to");
         let error = FormulaError::new(ErrorKind::MissingBrackets, span.clone(), message);
         let starts_operand = matches!(self.peek().token, Token::Name(_) | Token::Number(_));
-        // What follows, if it is an operand, is what the brackets should hold.
+        // What follows, if it is an operand, is what the brackets should hold, with what is written right behind it: `sin 2x`.
         match if starts_operand { self.deeper(Self::power) } else { Err(error.clone()) } {
             Ok(operand) => {
-                let inner = part(self.text, &operand.span);
-                let span = span.start..operand.span.end;
-                FormulaError { span, ..error }.suggest(format!("{name}({inner})"))
+                let mut held = operand.span;
+                while matches!(self.peek().token, Token::Name(_)) && self.peek().span.start == held.end {
+                    match self.deeper(Self::power) {
+                        Ok(factor) => held.end = factor.span.end,
+                        Err(_) => break,
+                    }
+                }
+                let inner = part(self.text, &held);
+                FormulaError { span: span.start..held.end, ..error }.suggest(format!("{name}({inner})"))
             }
             Err(_) => error.suggest(format!("{name}(…)")),
         }
     }
 
     fn similar(&self, name: &str) -> Option<&'static str> {
-        similar(name, Function::ALL.iter().map(|function| function.name()))
+        elsewhere(name).or_else(|| similar(name, Function::ALL.iter().map(|function| function.name())))
     }
 }
 
@@ -362,6 +372,19 @@ fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> Kind) -> Ex
     let start = items.first().map_or(0, |(_, item)| item.span.start);
     let end = items.last().map_or(0, |(_, item)| item.span.end);
     Expr { kind: list(items), span: start..end }
+}
+
+/// The function that goes by `name` in other languages and books.
+pub(super) fn elsewhere(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "log" => "ln",
+        "lg" => "log10",
+        "arcsin" => "asin",
+        "arccos" => "acos",
+        "arctan" => "atan",
+        "sgn" => "sign",
+        _ => return None,
+    })
 }
 
 /// The word of `known` that `name` is probably a slip of, if any: another case, or one edit away (two for a long
