@@ -243,8 +243,9 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         let reason = loop {
             let before = start.elapsed().as_secs_f64();
             // Small steps, so that hardly any of the front is counted with it.
-            let progress = sampler.step(&mut field, if phase == Phase::Seeding { 64 } else { 4_096 });
-            if phase == Phase::Seeding {
+            let is_seeding = matches!(phase, Phase::Seeding | Phase::Search);
+            let progress = sampler.step(&mut field, if is_seeding { 64 } else { 4_096 });
+            if is_seeding {
                 seeding += start.elapsed().as_secs_f64() - before;
             }
             phase = progress.phase;

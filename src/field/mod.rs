@@ -108,6 +108,11 @@ pub trait Field: Send {
     /// no point of the surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
 
+    /// Whether there are bounds of f, for [`Field::enclose`]; they may still be too wide to say anything.
+    fn has_bounds(&self) -> bool {
+        false
+    }
+
     /// Number of functions whose zeros together are those of f, for [`Field::enclose`]: the factors of a product, else 1.
     fn parts(&mut self) -> usize {
         1

@@ -115,6 +115,10 @@ impl Field for Scaled<'_> {
         Interval { lo: range.lo * factor, hi: range.hi * factor, ..range }
     }
 
+    fn has_bounds(&self) -> bool {
+        self.field.has_bounds()
+    }
+
     fn parts(&mut self) -> usize {
         self.field.parts()
     }

@@ -166,7 +166,12 @@ impl<T: Read, const N: usize> Read for [T; N] {
 
 impl Read for BTreeMap<String, f64> {
     fn read(value: Value) -> Result<Self, Error> {
-        value.fields()?.0.into_iter().map(|(key, value)| Ok((key, f64::read(value)?))).collect()
+        // Collected, they would be sorted first, by code that nothing else needs.
+        let mut map = Self::new();
+        for (key, value) in value.fields()?.0 {
+            map.insert(key, f64::read(value)?);
+        }
+        Ok(map)
     }
 }
 

@@ -211,6 +211,7 @@ impl AdaptiveFront {
 
     /// Prepares for particles of radii from `radii[0]` to `radii[1]`; `resolution` and `gradient_scale` are what the survey
     /// found.
+    #[inline(never)]
     pub(super) fn reset(
         &mut self,
         settings: &Settings,
@@ -260,6 +261,7 @@ impl AdaptiveFront {
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
+    #[inline(never)]
     pub(super) fn is_covered(
         &mut self,
         field: &mut dyn Field,
@@ -274,6 +276,7 @@ impl AdaptiveFront {
     }
 
     /// Those particles, nearest first, in `near`.
+    #[inline(never)]
     pub(super) fn near(
         &mut self,
         particles: &Particles,
@@ -298,6 +301,7 @@ impl AdaptiveFront {
     }
 
     /// Takes the last seed back if it stayed alone and touches another particle, of whatever sheet: see the uniform front.
+    #[inline(never)]
     pub(super) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
         let last = particles.len() - 1;
         if particles.parent[last] != Particles::NO_PARENT {
@@ -322,6 +326,7 @@ impl AdaptiveFront {
     }
 
     /// Adds a first particle. Only between levels. Says whether the place has a radius.
+    #[inline(never)]
     pub(super) fn add_seed(&mut self, surface: &mut Surface, position: Vec3, normal: Vec3) -> bool {
         debug_assert!(self.is_done());
         let sizing = surface.sizing();
@@ -345,6 +350,7 @@ impl AdaptiveFront {
     }
 
     /// Has the particles that lost a child look for room again; false if there is nothing more to do.
+    #[inline(never)]
     pub(super) fn fill(&mut self) -> bool {
         if self.fills >= MAX_FILLS || self.capped || !self.parents.fill() {
             return false;
@@ -355,6 +361,7 @@ impl AdaptiveFront {
     }
 
     /// Does up to `budget` units (a particle's arcs, a child's projection, a child's fate) and returns what is left.
+    #[inline(never)]
     pub(super) fn step(&mut self, surface: &mut Surface, mut budget: u32) -> u32 {
         while budget > 0 && !self.is_done() {
             match self.stage {
@@ -400,6 +407,7 @@ impl AdaptiveFront {
     }
 
     /// Ends the front where it is: provisional children are dropped.
+    #[inline(never)]
     pub(super) fn stop(&mut self, particles: &mut Particles) {
         particles.truncate(self.settled);
         self.children.clear();

@@ -67,6 +67,7 @@ impl Gaps {
     }
 
     /// Looks at up to `budget` particles and returns what is left.
+    #[inline(never)]
     pub(super) fn step(
         &mut self,
         field: &mut dyn Field,

@@ -339,7 +339,7 @@ impl Sampler {
         self.seeds.expect(0.0);
         if !is_known {
             self.factor = comfortable_factor(field, spread(bounds));
-            let is_dense = !self.seeds.can_prove();
+            let is_dense = !field.has_bounds();
             let field_in_units = &mut Scaled::new(field, self.factor);
             self.survey = survey(field_in_units, bounds, is_dense, &mut self.projector);
         }
@@ -415,6 +415,7 @@ impl Sampler {
 
     /// Finishes the search for first points at once, where the survey has found none: the area is that of spheres with the
     /// curvature at those points.
+    #[inline(never)]
     fn search_all(&mut self, field: &mut dyn Field) {
         let field = &mut Scaled::new(field, self.factor);
         let tolerance = self.survey.tolerance();
@@ -480,7 +481,7 @@ impl Sampler {
     /// Ends the run where it is; the particles placed so far stay. The next step, of no budget even, marks those next to singular
     /// points.
     pub fn cancel(&mut self) {
-        if matches!(self.phase, Phase::Seeding | Phase::Generation | Phase::Relaxation) {
+        if !matches!(self.phase, Phase::Idle | Phase::Done) {
             if self.phase == Phase::Relaxation {
                 self.moved |= self.relaxation.abandon(&mut self.particles);
             }
@@ -492,17 +493,18 @@ impl Sampler {
     }
 
     /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
-    /// relaxation step. Returns early where the relaxation begins, so that the particles of the front can be seen, and now and
-    /// then in the search for first points and in the relaxation.
+    /// relaxation step. Returns early where a search begins and where the relaxation does, so that the particles of the front
+    /// can be seen, and now and then within both.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
         let field = &mut Scaled::new(field, self.factor);
         let mut left = budget;
         let before = self.projector.evaluations;
-        let relaxing = self.phase == Phase::Relaxation;
-        while left > 0 && (relaxing || self.phase != Phase::Relaxation) {
+        let first = self.phase;
+        while left > 0 && (self.phase == first || !self.is_turning()) {
             match self.phase {
                 Phase::Idle | Phase::Done => break,
                 Phase::Seeding => left = self.seed(field, left),
+                Phase::Search => left = self.look_for_pieces(field, left),
                 Phase::Generation => {
                     let start = self.projector.evaluations;
                     let mut surface = Surface {
@@ -524,11 +526,7 @@ impl Sampler {
                         let placed = self.particles.len();
                         self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
                         self.counts.left_out += u32::from(self.particles.len() < placed);
-                        if self.front.capped() {
-                            self.end_generation();
-                        } else {
-                            self.phase = Phase::Seeding;
-                        }
+                        self.phase = if self.front.capped() { Phase::Search } else { Phase::Seeding };
                     }
                 }
                 Phase::Relaxation => {
@@ -558,6 +556,14 @@ impl Sampler {
         self.progress()
     }
 
+    /// Whether what comes next is the search or the relaxation.
+    fn is_turning(&self) -> bool {
+        match self.phase {
+            Phase::Search => !self.seeds.is_searched(),
+            phase => phase == Phase::Relaxation,
+        }
+    }
+
     /// The state as of now; the `moved` flag is cleared by reading it.
     pub fn progress(&mut self) -> Progress {
         let particles = match self.phase {
@@ -570,7 +576,7 @@ impl Sampler {
         let generation = 1.0 / (1.0 + 0.25 * relax_steps);
         let fraction = match self.phase {
             Phase::Idle => 0.0,
-            Phase::Seeding | Phase::Generation => {
+            Phase::Seeding | Phase::Generation | Phase::Search => {
                 generation * (particles as f64 / expected.max(1.0)).min(0.99)
             }
             Phase::Relaxation => {
@@ -599,7 +605,8 @@ impl Sampler {
         let count = self.survey.position.len();
         while budget > 0 {
             if self.next_seed >= count {
-                return self.seed_witness(field, budget);
+                self.phase = Phase::Search;
+                return budget;
             }
             budget -= 1;
             let i = match self.next_seed {
@@ -628,8 +635,14 @@ impl Sampler {
         budget
     }
 
-    /// Looks for the next witness that no particle covers and starts a front there; after the last the surface is covered.
-    fn seed_witness(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
+    /// Looks for the next witness that no particle covers and starts a front there; after the last, or where the limit on
+    /// particles is reached, the generation is at its end.
+    #[inline(never)]
+    fn look_for_pieces(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
+        if self.front.capped() {
+            self.end_generation();
+            return budget;
+        }
         let slice = budget.min(SEARCH_SLICE);
         let left = self.seeds.search(field, &mut self.projector, &self.bounds, self.tolerance, slice);
         if left == 0 {
@@ -665,7 +678,7 @@ impl Sampler {
     fn begin_front(&mut self, field: &mut dyn Field, position: Vec3, normal: Vec3) -> bool {
         if self.particles.len() >= self.settings.max_particles as usize {
             self.front.cap();
-            self.end_generation();
+            self.phase = Phase::Search;
             return true;
         }
         let mut surface = Surface {
@@ -684,6 +697,7 @@ impl Sampler {
     }
 
     /// Decides, once the surface is covered, whether the count is met, and goes on to the relaxation.
+    #[inline(never)]
     fn end_generation(&mut self) {
         let count = self.particles.len();
         if count == 0 {
@@ -721,6 +735,7 @@ impl Sampler {
         }
     }
 
+    #[inline(never)]
     fn begin_relaxation(&mut self) {
         self.front.release();
         self.particles.shrink();

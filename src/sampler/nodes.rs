@@ -111,6 +111,7 @@ pub(super) fn places(points: &[Singular]) -> u64 {
 
 /// Marks the particles within 2r of a singular point. Of a curve the `points` are a selection: near it each particle looks for
 /// itself.
+#[inline(never)]
 pub(super) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);

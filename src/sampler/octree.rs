@@ -121,6 +121,8 @@ enum State {
     /// The field has no bounds to search by.
     #[default]
     Unavailable,
+    /// Nothing has been looked at, nor whether the bounds say anything.
+    Ready,
     Running,
     Done,
 }
@@ -194,7 +196,7 @@ fn largest([lo, hi]: [f64; 2]) -> f64 {
 
 impl Octree {
     /// Starts on a new field.
-    pub(super) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+    pub(super) fn begin(&mut self, has_bounds: bool, bounds: &Bounds) {
         self.witnesses.clear();
         self.undecided.clear();
         self.singular.clear();
@@ -202,13 +204,7 @@ impl Octree {
         self.margin = MARGIN * (bounds.hi() - bounds.lo()).max_element();
         let margin = DVec3::splat(self.margin);
         (self.lo, self.hi) = (bounds.lo() - margin, bounds.hi() + margin);
-        self.parts = field.parts();
-        if has_bounds(field, bounds) {
-            self.state = State::Running;
-            self.begin_part(0);
-        } else {
-            self.state = State::Unavailable;
-        }
+        self.state = if has_bounds { State::Ready } else { State::Unavailable };
     }
 
     fn begin_part(&mut self, part: usize) {
@@ -250,11 +246,20 @@ impl Octree {
 
     /// Whether there is nothing left to do.
     pub(super) fn is_done(&self) -> bool {
-        self.state != State::Running
+        !matches!(self.state, State::Ready | State::Running)
     }
 
     /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
     pub(super) fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
+        if self.state == State::Ready {
+            self.parts = field.parts();
+            if bounds_say_something(field, [self.lo, self.hi]) {
+                self.state = State::Running;
+                self.begin_part(0);
+            } else {
+                self.state = State::Unavailable;
+            }
+        }
         while budget > 0 && !self.is_done() {
             let count = CHUNK.min(self.level.len() - self.next);
             self.look_at(field, self.next..self.next + count);
@@ -605,9 +610,9 @@ fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
 }
 
 /// Whether the field bounds its values at all: asked of small boxes here and there.
-fn has_bounds(field: &mut dyn Field, bounds: &Bounds) -> bool {
+fn bounds_say_something(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> bool {
     const SIDE: usize = 3;
-    let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
+    let size = hi - lo;
     let boxes: [[DVec3; 2]; SIDE * SIDE * SIDE] = core::array::from_fn(|i| {
         let node = DVec3::new((i % SIDE) as f64, (i / SIDE % SIDE) as f64, (i / SIDE / SIDE) as f64);
         let corner = lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / SIDE as f64;

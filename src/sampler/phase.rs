@@ -9,11 +9,13 @@ pub enum Phase {
     /// Nothing started.
     #[default]
     Idle,
-    /// Looking for a first point on every component.
+    /// Looking for a first point on every component that the survey has met.
     Seeding,
     /// Placing particles, level by level.
     Generation,
-    /// Relaxing them.
+    /// Looking for components that the survey has missed.
+    Search,
+    /// Relaxing the particles.
     Relaxation,
     /// Finished or stopped.
     Done,

@@ -249,6 +249,7 @@ impl Relaxation {
 
     /// Does up to `budget` units (one particle in one stage, a dear one for several); returns whether particles moved. `sizing` is
     /// the radius field of an adaptive run.
+    #[inline(never)]
     pub(super) fn step(
         &mut self,
         surface: &mut Surface,

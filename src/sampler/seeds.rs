@@ -55,17 +55,12 @@ pub(super) enum Place {
 
 impl Seeds {
     /// Forgets an earlier field.
-    pub(super) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
-        self.octree.begin(field, bounds);
+    pub(super) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
+        self.octree.begin(field.has_bounds(), bounds);
         self.points.clear();
         self.lost = 0;
         self.is_projected = false;
         self.restart();
-    }
-
-    /// Whether the field has bounds to search by.
-    pub(super) fn can_prove(&self) -> bool {
-        self.octree.is_available()
     }
 
     /// Says how many particles the run will have.
@@ -77,6 +72,11 @@ impl Seeds {
     pub(super) fn restart(&mut self) {
         self.next = 0;
         self.unproven = 0;
+    }
+
+    /// Whether the search has come to its end.
+    pub(super) fn is_searched(&self) -> bool {
+        self.octree.is_done()
     }
 
     /// Does up to `budget` units of the search; returns what is left, nothing unless the search has come to its end.

@@ -50,6 +50,7 @@ struct Site {
 
 impl Sizing {
     /// The radius field that `settings` ask for; one Hessian at every point of the survey.
+    #[inline(never)]
     pub(super) fn new(
         field: &mut dyn Field,
         bounds: &Bounds,

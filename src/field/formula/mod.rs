@@ -486,6 +486,10 @@ impl Field for FormulaField {
         self.parts[0].first.whole([lo, hi])
     }
 
+    fn has_bounds(&self) -> bool {
+        true
+    }
+
     fn parts(&mut self) -> usize {
         self.compile_parts();
         self.parts.len()

@@ -139,7 +139,7 @@
 /** @typedef {FieldOk | FieldError} FieldAnswer */
 
 /** @typedef {Record<string, number | string>} Settings  by the settings' names; a missing one has its default */
-/** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'relaxation' | 'done'} CorePhase */
+/** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'search' | 'relaxation' | 'done'} CorePhase */
 /** @typedef {null | 'complete' | 'cancelled' | 'cap' | 'no_surface' | 'constant' | 'undefined' | 'one_particle'} StopReason */
 
 /**

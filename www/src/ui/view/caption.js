@@ -20,6 +20,8 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
       return 'Finding the radius for the wanted count';
     case 'generation':
       return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
+    case 'search':
+      return busy ? `Looking for further pieces · ${particles}` : resting();
     case 'relaxation':
       return busy ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}` : resting();
     case 'quality':
