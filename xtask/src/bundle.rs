@@ -53,6 +53,12 @@ impl Bundle {
         }
     }
 
+    /// Its WebAssembly modules, the one that JavaScript instantiates first.
+    pub(crate) fn modules(self) -> Vec<String> {
+        let rest = (!self.later().is_empty()).then(|| format!("{}_rest.wasm", self.out_name()));
+        [format!("{}_bg.wasm", self.out_name())].into_iter().chain(rest).collect()
+    }
+
     /// The class that JavaScript gets from the bundle.
     fn class(self) -> &'static str {
         match self {
@@ -92,6 +98,62 @@ impl Bundle {
                 "-Cllvm-args=-unroll-runtime=0",
             ],
             Self::Webgpu | Self::Webgl => &[],
+        }
+    }
+
+    /// What the page need not wait for: words in the names of functions that come in a module of their own after the first
+    /// one, with all that only these call. The first part of the core reads a formula, surveys its field and lets uniform
+    /// fronts grow from the points of the survey.
+    fn later(self) -> &'static [&'static str] {
+        match self {
+            Self::Core => &[
+                "panicking::",
+                "core_free",
+                "core_describe",
+                "core_set_points",
+                "core_relax",
+                "core_measure",
+                "core_valence",
+                "core_nearest",
+                "core_residual",
+                "core_component",
+                "core_curvature",
+                "core_digest",
+                "rbf::",
+                "interval::BoxProgram::",
+                "interval::range",
+                "Field>::enclose",
+                "Field>::interval",
+                "Field>::hessians",
+                "Sampler::look_for_pieces",
+                "Sampler::search_all",
+                "Sampler::end_generation",
+                "Sampler::begin_relaxation",
+                "Relaxation::step",
+                "nodes::mark",
+                "AdaptiveFront::",
+                "Gaps::step",
+                "Sizing::",
+                "survey::Dense",
+                "quality::",
+                "Kept::measure",
+                "Session::measure",
+                "spatial::tree",
+                "FormulaField::compile_parts",
+                "libm::math::a",
+                "libm::math::cbrt",
+                "libm::math::cos",
+                "libm::math::exp",
+                "libm::math::log",
+                "libm::math::pow",
+                "libm::math::sin",
+                "libm::math::tan",
+                "math::functions::",
+                "parse::edits",
+                "parse::similar",
+                "Parser::unexpected",
+            ],
+            Self::Points | Self::Webgpu | Self::Webgl => &[],
         }
     }
 
@@ -154,6 +216,9 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
         }
         bind(project, bundle, &module, &stage)?;
         optimise(project, bundle, &stage)?;
+        if bundle == Bundle::Core {
+            describe(&stage)?;
+        }
         publish(&stage, &out_dir)?;
     }
     let mut outputs = serde_json::Map::new();
@@ -190,9 +255,10 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Stri
 fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
     Ok(Fingerprint::default()
         .file(&project.root.join("xtask/bindgen/Cargo.toml"))?
-        .file(&project.root.join("xtask/bindgen/src/main.rs"))?
+        .tree(&project.root.join("xtask/bindgen/src"))?
         .file(&project.www.join("node_modules/binaryen/package.json"))?
         .text("wasm-opt", &bundle.wasm_opt().join(" "))
+        .text("later", &bundle.later().join(" "))
         .finish())
 }
 
@@ -208,6 +274,10 @@ pub(crate) fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
     }
     flags.push(format!("--remap-path-prefix={}=.", project.root.display()));
     flags.extend(bundle.code_generation().iter().map(|&flag| flag.to_owned()));
+    if !bundle.later().is_empty() {
+        // What tells the splitting tool which function uses which constants.
+        flags.push("-Clink-arg=--emit-relocs".to_owned());
+    }
     flags
 }
 
@@ -263,7 +333,7 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
         .context("cargo named no executable for xtask-bindgen")?;
     step::run(
         &format!("{name}: bind"),
-        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()),
+        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()).args(bundle.later()),
         "",
     )?;
     let script = stage.join(format!("{}.js", bundle.out_name()));
@@ -274,7 +344,7 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
     Ok(())
 }
 
-/// Optimises the bound module in place.
+/// Optimises the bound modules in place.
 fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     let tool = project.www.join("node_modules/binaryen/bin/wasm-opt");
     if !tool.is_file() {
@@ -283,12 +353,30 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
             project.relative(&tool).display()
         );
     }
-    let bound = stage.join(format!("{}_bg.wasm", bundle.out_name()));
-    let optimised = stage.join("optimised.wasm");
+    for module in bundle.modules() {
+        let bound = stage.join(&module);
+        let optimised = stage.join("optimised.wasm");
+        let mut command = Command::new(node::node()?);
+        command.arg(&tool).arg(&bound).arg("-o").arg(&optimised).args(bundle.wasm_opt());
+        step::run(&format!("{}: optimise {module} (wasm-opt)", bundle.folder()), &mut command, "")?;
+        fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))?;
+    }
+    Ok(())
+}
+
+/// Writes down what the core says of itself, so that the page has it before the core can be asked.
+fn describe(stage: &Path) -> Result<()> {
+    const SCRIPT: &str = r"
+        import { readFileSync, writeFileSync } from 'node:fs';
+        const { initSync, join, Core } = await import('./core.js');
+        initSync({ module: readFileSync('core_bg.wasm') });
+        join(new WebAssembly.Module(readFileSync('core_rest.wasm')));
+        writeFileSync('description.json', new Core().describe());
+    ";
     let mut command = Command::new(node::node()?);
-    command.arg(tool).arg(&bound).arg("-o").arg(&optimised).args(bundle.wasm_opt());
-    step::run(&format!("{}: optimise (wasm-opt)", bundle.folder()), &mut command, "")?;
-    fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
+    command.args(["--input-type=module", "--eval", SCRIPT]).current_dir(stage);
+    step::run("core: describe", &mut command, "")?;
+    Ok(())
 }
 
 /// Moves the finished files to where the page takes them from. Each file is replaced at once, so that a running

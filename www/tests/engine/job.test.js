@@ -15,9 +15,9 @@ const sampleJob = (part = {}) => ({
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
  * @param {import('../../src/engine/sampling/protocol.js').Job} job
- * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}, rest?: (posted: FromWorker[]) => Promise<void> | null}} [options]
  */
-async function run(core, job, { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 } } = {}) {
+async function run(core, job, { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 }, rest = () => null } = {}) {
   /** @type {FromWorker[]} */
   const posted = [];
   await runJob(core, job, {
@@ -29,6 +29,7 @@ async function run(core, job, { interrupt = () => null, room = () => true, curva
     interrupt: () => interrupt(posted),
     room: () => room(posted),
     curvature: () => curvature(posted),
+    rest: () => rest(posted),
   }, memory);
   return { posted, memory };
 }
@@ -55,6 +56,42 @@ describe('a job', () => {
     expect(done[0].outcome).toBe('complete');
     expect(of(posted, 'report')).toHaveLength(1);
     expect(posted.at(-1)?.type).toBe('report');
+  });
+
+  test('with the first part of the core alone the whole front is shown, and nothing after it is asked for', async () => {
+    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
+    let waits = 0;
+    const { posted } = await run(core, sampleJob(), {
+      rest: (so_far) => {
+        if (waits === 3) return null;
+        waits += 1;
+        // It is asked once before it shows what it has.
+        if (waits > 1) expect(of(so_far, 'columns').at(-1)?.total).toBe(5_000);
+        expect(of(so_far, 'columns').some(({ progress }) => (progress?.relax_step ?? 0) > 0)).toBe(false);
+        return Promise.resolve();
+      },
+    });
+    expect(waits).toBe(3);
+    expect(of(posted, 'done')[0].outcome).toBe('complete');
+    expect(of(posted, 'report')).toHaveLength(1);
+  });
+
+  test('a stop while the rest of the core is awaited keeps the front; its report comes with the rest', async () => {
+    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
+    let waits = 0;
+    const { posted } = await run(core, sampleJob(), {
+      interrupt: () => (waits === 1 ? 'stop' : null),
+      rest: (so_far) => {
+        if (waits === 4) return null;
+        waits += 1;
+        expect(of(so_far, 'report')).toHaveLength(0);
+        return Promise.resolve();
+      },
+    });
+    expect(waits).toBe(4);
+    expect(of(posted, 'done')[0].outcome).toBe('stopped');
+    expect(of(posted, 'columns').at(-1)?.total).toBe(5_000);
+    expect(of(posted, 'report')).toHaveLength(1);
   });
 
   test('the last word on the slots covers every particle', async () => {
@@ -230,6 +267,7 @@ async function work(core, first, meanwhile = () => {}) {
       interrupt: () => jobs.interrupt(core),
       room: () => true,
       curvature: () => false,
+      rest: () => null,
     }, memory);
   }
   return { posted, memory };

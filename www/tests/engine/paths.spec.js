@@ -388,6 +388,53 @@ test.describe('files', () => {
   });
 });
 
+test.describe('the rest of the core', () => {
+  const rest = '**/core_rest*.wasm';
+
+  test('is not awaited to show the first surface, nor to stop', async ({ page }) => {
+    /** @type {() => void} */
+    let send = () => {};
+    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
+    await page.route(rest, async (route) => {
+      await sent;
+      await route.continue();
+    });
+    await page.goto('/');
+    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search');
+    await expect.poll(() => on(page, 'p.particles().count')).toBeGreaterThan(4000);
+    await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
+    await expect(() => expectSurface(page)).toPass();
+    await on(page, '(p.engine.stop(), 0)');
+    await expect.poll(async () => (await status(page)).progress.phase).not.toBe('search');
+    expect(await on(page, 'p.report()')).toBeNull();
+    send();
+    await expect.poll(() => on(page, 'p.report()?.count ?? 0')).toBeGreaterThan(4000);
+    expect(/** @type {any} */ (await on(page, 'p.report()')).stop_reason).toBe('cancelled');
+    const whole = /** @type {any} */ (await on(page, 'p.run()'));
+    expect(whole.stop_reason).toBe('complete');
+  });
+
+  test('is brought at once by a formula that is beyond the first part', async ({ page }) => {
+    await page.route(rest, async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 2500));
+      await route.continue();
+    });
+    const { errors } = await open(page, `/${link({ surface: 'gyroid', settings: { radius_share: 0.02 } })}`);
+    await expectSurface(page);
+    expect(errors).toEqual([]);
+  });
+
+  test('is missed in words', async ({ page }) => {
+    await page.route(rest, (route) => route.fulfill({ status: 404, body: 'not found' }));
+    await page.goto('/');
+    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().notice?.id === 'load');
+    expect((await status(page)).notice.text).toMatch(/core_rest.*404/);
+    await page.unroute(rest);
+    await on(page, '(p.engine.notice.value.action.run(), 0)');
+    await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
+  });
+});
+
 test.describe('a sampler that does not load', () => {
   /** @type {[string, (route: import('@playwright/test').Route) => Promise<void>, RegExp][]} */
   const faults = [

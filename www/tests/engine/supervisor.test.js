@@ -74,6 +74,19 @@ describe('the supervisor', () => {
     expect(workers).toHaveLength(1);
   });
 
+  test('is patient with a worker that waits for the server within a call, and no longer than that', () => {
+    const supervisor = supervised();
+    supervisor.start();
+    workers[0].say(ready);
+    supervisor.setBusy(true);
+    workers[0].say({ type: 'waiting' });
+    vi.advanceTimersByTime(20_000);
+    expect(workers).toHaveLength(1);
+    workers[0].say({ type: 'beat' });
+    vi.advanceTimersByTime(2_500);
+    expect(workers).toHaveLength(2);
+  });
+
   test('does not watch an idle worker', () => {
     const supervisor = supervised();
     supervisor.start();

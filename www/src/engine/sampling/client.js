@@ -231,7 +231,7 @@ export class SamplingClient {
       return;
     }
     if (message.type === 'failed') return this.loadFailed(message.message);
-    if (message.type === 'beat' || message.type === 'crashed') return;
+    if (message.type === 'beat' || message.type === 'waiting' || message.type === 'crashed') return;
     if (message.type === 'field') return this.fieldAnswered(message.id, message.answer);
     const { current } = this;
     if (!current || message.id !== current.id) {

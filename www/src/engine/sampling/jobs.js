@@ -23,6 +23,12 @@ function setField(core, { field, points }) {
   return JSON.parse(core.set_points(points.field, JSON.stringify({ info, bounds: field.bounds ?? bounds })));
 }
 
+/**
+ * Whether a job begins with what the first part of the core cannot do; the others come to need the rest.
+ * @param {Job} job
+ */
+export const needsRest = (job) => job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive';
+
 export class Jobs {
   /** @param {(message: FromWorker) => void} post */
   constructor(post) {

@@ -100,6 +100,7 @@
  * @typedef {{type: 'ready', description: Description}
  *   | {type: 'failed', fault: LoadFault, message: string}
  *   | {type: 'beat'}
+ *   | {type: 'waiting'}
  *   | {type: 'field', id: number, answer: FieldAnswer}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
@@ -113,5 +114,7 @@ export const PROGRESS_MS = 60;
 export const BEAT_MS = 250;
 /** Silence after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;
+/** The same after it has said that it waits for the server, within a call that cannot be left. */
+export const WAIT_MS = 30_000;
 
 export {};

@@ -6,7 +6,7 @@
  *
  * @module
  */
-import { SILENCE_MS } from './protocol.js';
+import { SILENCE_MS, WAIT_MS } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').FromWorker} FromWorker
@@ -63,6 +63,8 @@ export class Supervisor {
     this.busy = false;
     this.heard = false;
     this.deadline = 0;
+    /** When the timer goes off, if there is one. */
+    this.alarm = 0;
     /** @type {any} */
     this.timer = null;
     /** @type {number[]} */
@@ -114,7 +116,7 @@ export class Supervisor {
   /** @param {FromWorker} message */
   receive(message) {
     this.heard = true;
-    this.deadline = this.clock.now() + SILENCE_MS;
+    this.deadline = this.clock.now() + (message.type === 'waiting' ? WAIT_MS : SILENCE_MS);
     if (message.type === 'ready') this.state = 'up';
     if (message.type === 'failed') {
       this.drop();
@@ -133,7 +135,9 @@ export class Supervisor {
     if (!on) {
       this.clock.clearTimeout(this.timer);
       this.timer = null;
-    } else if (this.timer === null) {
+    } else if (this.timer === null || this.deadline < this.alarm) {
+      this.clock.clearTimeout(this.timer);
+      this.alarm = this.deadline;
       this.timer = this.clock.setTimeout(() => this.check(false), Math.max(1, this.deadline - this.clock.now()));
     }
   }

@@ -2,13 +2,19 @@
  * The sampler's worker: loads the core, runs one job at a time, the latest one. A trapped core is never called again: the
  * worker says so and waits to be replaced.
  *
+ * The core comes in two parts. With the first, which takes half as long to come, uniform fronts grow on the surface of a
+ * formula; the rest joins it when it is there, and what needs it waits for it. What calls it earlier all the same (a mistake in
+ * the formula, a sine, a surface that is hard to find) brings it within the call.
+ *
  * @module
  */
-import init, { Core } from '../../wasm/core/core.js';
+import init, { Core, join, whenMissing } from '../../wasm/core/core.js';
 import wasmUrl from '../../wasm/core/core_bg.wasm?url';
+import restUrl from '../../wasm/core/core_rest.wasm?url';
+import description from '../../wasm/core/description.json';
 import { curvatureColumn, runJob } from './job.js';
-import { Jobs } from './jobs.js';
-import { loadModule, LoadError, words } from './load.js';
+import { Jobs, needsRest } from './jobs.js';
+import { loadModule, LoadError, moduleNow, words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -65,6 +71,21 @@ let core = null;
 /** @type {import('../../wasm/core/core.js').InitOutput | null} */
 let raw = null;
 const memory = { held: 0 };
+/** The rest of the core while it is under way. @type {Promise<void> | null} */
+let rest = null;
+/** Has a wait for the rest end early. @type {(() => void) | null} */
+let wake = null;
+
+/** The rest of the core, or a message that may change what is to be done; null if it is there. @returns {Promise<void> | null} */
+function restOrMessage() {
+  if (!rest) return null;
+  const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
+  const message = new Promise((/** @type {(nothing: void) => void} */ resolve) => { wake = () => resolve(); });
+  return Promise.race([rest, message]).finally(() => {
+    clearInterval(beat);
+    wake = null;
+  });
+}
 
 /** Does what tests ask for: a real trap in the instance, or an endless loop. */
 function provoke() {
@@ -80,12 +101,22 @@ function provoke() {
   }
 }
 
+let pumping = false;
 async function pump() {
+  if (pumping) return;
+  pumping = true;
   while (core && !dead) {
     const ours = core;
     try {
+      if (jobs.waiting && needsRest(jobs.waiting)) {
+        const awaited = restOrMessage();
+        if (awaited) {
+          await awaited;
+          continue;
+        }
+      }
       running = jobs.take(ours);
-      if (!running) return;
+      if (!running) break;
       undrawn = 0;
       await runJob(ours, running, {
         now_ms: () => performance.now(),
@@ -100,12 +131,14 @@ async function pump() {
         },
         curvature: () => curvature,
         room: () => undrawn < 2,
+        rest: restOrMessage,
       }, memory);
     } catch (error) {
       crashed(running?.id ?? 0, error);
     }
     running = null;
   }
+  pumping = false;
 }
 
 /** @param {number} id @param {unknown} error */
@@ -120,7 +153,8 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   switch (data.type) {
     case 'job':
       jobs.add(data.job);
-      if (!running) void pump();
+      wake?.();
+      void pump();
       break;
     case 'curvature':
       curvature = data.on;
@@ -134,6 +168,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'stop':
       jobs.stop();
+      wake?.();
       break;
     case 'drawn':
       if (running && data.id === running.id) undrawn = Math.max(0, undrawn - 1);
@@ -152,22 +187,41 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   }
 };
 
+/** @param {unknown} error */
+function failed(error) {
+  dead = true;
+  const fault = error instanceof LoadError ? error.fault : 'init';
+  post({ type: 'failed', fault, message: words(error) });
+}
+
+async function loadRest() {
+  try {
+    join(await loadModule(restUrl, 'second half of the sampler'));
+  } catch (error) {
+    failed(error);
+  }
+  rest = null;
+}
+
 async function boot() {
   const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
   try {
     const module = await loadModule(wasmUrl);
     try {
       raw = await init({ module_or_path: module });
+      whenMissing(() => {
+        post({ type: 'waiting' });
+        return moduleNow(restUrl);
+      });
       core = new Core();
       core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
-      post({ type: 'ready', description: JSON.parse(core.describe()) });
+      rest = loadRest();
+      post({ type: 'ready', description: /** @type {import('../types.js').Description} */ (/** @type {unknown} */ (description)) });
     } catch (error) {
       throw new LoadError('init', `The sampler did not start: ${last_words || words(error)}`);
     }
   } catch (error) {
-    dead = true;
-    const fault = error instanceof LoadError ? error.fault : 'init';
-    post({ type: 'failed', fault, message: words(error) });
+    failed(error);
   } finally {
     clearInterval(beat);
   }
