@@ -205,14 +205,6 @@ describe('a run', () => {
     expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
   });
 
-  test('that brings a surface back while the formula has a fault leaves it dimmed', () => {
-    const { client, say, accept } = page();
-    client.sample(request('x', { restoring: true }));
-    accept(1);
-    say(columnsMessage(1, 7));
-    expect(told).not.toContain('clear');
-  });
-
   test('counts up with every piece that may change what is told of the particles', () => {
     const { client, store, say, accept } = page();
     const seen = [store.revision.value];
@@ -265,7 +257,8 @@ describe('a formula with a fault', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(reportMessage(1, 7));
     told = [];
     client.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
@@ -401,6 +394,58 @@ describe('the surface that stays', () => {
       expect(jobs()).toHaveLength(4);
       expect(store.report.value?.count).toBe(9);
     }
+  });
+
+  test('from a drag that a mistake broke off, or a stop, gets its figures', () => {
+    for (const end of ['mistake', 'mistake meanwhile', 'stop']) {
+      const { client, say, accept, jobs } = page();
+      const ended = () => {
+        say(columnsMessage(1, 7));
+        say(done(1, 'complete', 7));
+      };
+      client.sampleLive(request('x'), 3);
+      accept(1);
+      if (end !== 'mistake meanwhile') ended();
+      expect(jobs()).toHaveLength(1);
+      if (end === 'stop') {
+        client.stop();
+      } else {
+        client.sample(request('x+'));
+        say({ type: 'field', id: 2, answer: { ok: false, error: { kind: 'syntax', message: '', start: 0, end: 0, suggestion: null, names: [] } } });
+      }
+      if (end === 'mistake meanwhile') ended();
+      expect(jobs().at(-1)).toMatchObject({ field: { formula: 'x' }, live: false });
+    }
+  });
+
+  test('because the sampler fails on every other is dimmed and gets its figures', () => {
+    const { client, say, accept, jobs } = page();
+    const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    client.sample(request('y'));
+    accept(2, 'y');
+    say(crash);
+    accept(3, 'y');
+    say(crash);
+    expect(told.at(-1)).toBe('dim');
+    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
+  });
+
+  test('because the same was sampled anew and stopped at once is not dimmed', () => {
+    const { client, columns, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(reportMessage(1, 7));
+    client.sample(request('x'));
+    accept(2);
+    say(done(2, 'stopped', 0));
+    expect(columns.count).toBe(7);
+    expect(told.at(-1)).toBe('clear');
   });
 
   test('because the next was stopped before its first particle is whole, and dimmed', () => {

@@ -193,6 +193,15 @@ describe('a job', () => {
     expect(of(posted, 'done')[0].report_follows).toBe(false);
   });
 
+  test('a live job that is stopped is the last of its drag, and is reported', async () => {
+    const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt: () => 'stop' });
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: false });
+    let calls = 0;
+    const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt: () => ((calls += 1) > 5 ? 'stop' : null) });
+    expect(of(later.posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: true });
+    expect(of(later.posted, 'report')).toHaveLength(1);
+  });
+
   test('without growth, the picture waits until the front is complete', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3 });
     const { posted } = await run(core, sampleJob({ grow: false }));

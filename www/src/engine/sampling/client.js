@@ -98,6 +98,8 @@ export class SamplingClient {
     this.held = 0;
     /** The last sampling asked for that was accepted by the core. @type {SampleRequest | null} */
     this.accepted = null;
+    /** The surface on the page is not the one that was asked for last. */
+    this.astray = false;
     /** The sampling whose particles are on the page, and whether their report is too. @type {{request: SampleRequest, reported: boolean} | null} */
     this.shown = null;
     this.crashed_input = '';
@@ -164,7 +166,7 @@ export class SamplingClient {
   }
 
   stop() {
-    if (!this.store.busy.value) return;
+    if (!this.store.busy.value) return this.settle();
     this.scheduler.waiting = null;
     this.supervisor.post({ type: 'stop' });
   }
@@ -277,6 +279,7 @@ export class SamplingClient {
         this.begin(run);
         this.accepted = request;
         if (request.restoring) return;
+        this.astray = false;
         store.field.value = request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
         store.model.value = answer.model ?? null;
         store.fieldError.value = null;
@@ -288,14 +291,23 @@ export class SamplingClient {
         this.dim();
         this.attend();
         this.scheduler.ended(id, current && !current.ended ? current : null);
+        this.settle();
       }
     });
   }
 
-  /** Dims a surface that is not the one asked for. An empty editor is no mistake: nothing is dimmed for it. @param {boolean} [other] */
-  dim(other = false) {
+  /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
+  settle() {
+    const { shown, current } = this;
+    if (!shown || shown.reported || this.scheduler.running || (current && !current.over)) return;
+    const request = { ...shown.request, live: false, grow: false, restoring: true };
+    if (inputOf(request) !== this.crashed_input) this.scheduler.submit(request);
+  }
+
+  /** Dims a surface that is not the one asked for. An empty editor is no mistake: nothing is dimmed for it. */
+  dim() {
     const fault = this.store.fieldError.value;
-    this.picture.dim(other || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
+    this.picture.dim(this.astray || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
   }
 
   /** @param {import('./protocol.js').ColumnsMessage} message @param {NonNullable<SamplingClient['current']>} current */
@@ -319,7 +331,7 @@ export class SamplingClient {
           this.store.hover.value = null;
           this.store.empty.value = false;
         });
-        this.dim(request.restoring);
+        this.dim();
       } else if (this.shown) {
         this.shown.reported = false;
       }
@@ -347,11 +359,12 @@ export class SamplingClient {
     const { outcome, progress, seconds } = message;
     const { request } = current;
     const particles = progress?.particles ?? 0;
+    const took_place = outcome === 'complete' || (outcome === 'stopped' && particles > 0);
     current.ended = true;
     current.over = !message.report_follows;
     batch(() => {
       this.attend();
-      if (outcome === 'complete' || (outcome === 'stopped' && particles > 0)) {
+      if (took_place) {
         const none = particles === 0;
         if (none) {
           // The last surface stays until there is another, dimmed, and is nothing to measure or to take away.
@@ -369,9 +382,10 @@ export class SamplingClient {
         this.note(seconds, particles, progress?.relax_step ?? 0, progress?.radius ?? 0, current);
         if (request.fit && particles > 0) picture.fit();
       } else {
-        // The surface before stays, and is not the one asked for.
+        // The surface before stays; a run of the same that was stopped at once leaves it what it was.
+        this.astray = outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(this.accepted?.field);
         store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
-        this.dim(columns.count > 0);
+        this.dim();
         if (outcome === 'refused') {
           const { message: text } = message;
           store.notice.value = { id: 'size', kind: 'error', text: `${text.charAt(0).toUpperCase()}${text.slice(1)}.` };
@@ -381,10 +395,8 @@ export class SamplingClient {
     this.scheduler.ended(message.id);
     if (request.kind !== 'sample') return;
     if (outcome === 'ask') this.onAsk(message.predicted, request);
-    const { shown } = this;
-    if ((outcome === 'ask' || outcome === 'refused') && shown && !shown.reported && !request.restoring && this.scheduler.running === null) {
-      this.scheduler.submit({ ...shown.request, live: false, grow: false, restoring: true });
-    }
+    // After a drag that a mistake broke off no whole run comes.
+    if ((!took_place && !request.restoring) || (request.live && store.fieldError.value)) this.settle();
   }
 
   /**
@@ -482,7 +494,11 @@ export class SamplingClient {
       text: again || !lost ? `${what} Nothing was lost.` : `${what} The same input stopped it twice: change the formula or a setting.`,
       details: this.describeCrash(crash, lost),
     };
-    if (!again) return;
+    if (!again) {
+      this.astray = lost !== null;
+      this.dim();
+      return this.settle();
+    }
     // Relaxed particles died with their worker: the run that made them is made again.
     if (lost.kind === 'sample') this.scheduler.submit(lost);
     else if (this.accepted) this.scheduler.submit({ ...this.accepted, live: false, grow: false });

@@ -221,7 +221,7 @@ export async function runJob(core, job, env, memory) {
   };
   tellCurvature();
   const stopped = last.stop_reason === 'cancelled';
-  const reported = !job.live && core.count() > 0;
+  const reported = (!job.live || stopped) && core.count() > 0;
   done(stopped ? 'stopped' : 'complete', '', reported);
   if (!reported) return;
 

@@ -21,7 +21,7 @@
 /**
  * Sample the field from the start. `grow` shows the surface while it grows; otherwise columns come once the front is
  * complete, so that a picture already there stays until its successor is whole. A `live` job comes from a control that is
- * being dragged: columns once, at the end, and no report. `ask_above` is the number of particles beyond which the job is
+ * being dragged: columns once, at the end, and no report unless it is stopped. `ask_above` is the number of particles beyond which the job is
  * handed back unstarted. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
