@@ -185,6 +185,38 @@ fn cancelling_keeps_what_is_there() {
 }
 
 #[test]
+fn another_field_ends_the_run_and_its_particles_stay() {
+    let changes = [
+        r#"{"formula":"x y z"}"#,
+        r#"{"bounds":{"min":[-2,-2,-2],"max":[2,2,2]}}"#,
+        r#"{"parameters":{"a":0.6}}"#,
+    ];
+    for steps in 0..60 {
+        for change in changes {
+            let mut session = Session::new();
+            session.start(&sized(300)).expect("valid settings");
+            for _ in 0..steps {
+                session.step(200);
+            }
+            session.set_field(&request(change)).expect("a field");
+            let count = session.count();
+            assert_eq!(session.particles().len(), count, "{change} after {steps} steps");
+            let progress = session.step(1_000);
+            assert!(progress.stop_reason.is_some(), "{change} after {steps} steps: {progress:?}");
+            session.relax(2);
+            assert_eq!(session.step(1_000).relax_step, progress.relax_step);
+            assert_eq!(session.count(), count);
+            assert_eq!(run(&mut session, &sized(300), 5_000), StopReason::Complete);
+        }
+    }
+    let mut session = Session::new();
+    session.start(&sized(300)).expect("valid settings");
+    session.step(200);
+    session.set_field(&request(r#"{"parameters":{"a":1}}"#)).expect("the field that it is");
+    assert_eq!(session.step(200).stop_reason, None);
+}
+
+#[test]
 fn more_relaxation_can_be_asked_for() {
     let mut session = Session::new();
     run(&mut session, &Settings { relax_steps: 0, ..sized(1_000) }, 500);

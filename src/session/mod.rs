@@ -315,7 +315,7 @@ impl Session {
         }
     }
 
-    /// Changes the field. Particles of an earlier run stay until the next [`Session::start`].
+    /// Changes the field, which ends a run on another one. Its particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
@@ -337,7 +337,7 @@ impl Session {
             (None, None, Some(field)) => field.text(),
             // Of a model from points only the box can be changed.
             (None, None, None) => {
-                self.is_surveyed &= bounds == self.bounds;
+                self.end_run_unless(bounds == self.bounds);
                 self.bounds = bounds;
                 return Ok(self.answer());
             }
@@ -366,7 +366,7 @@ impl Session {
         }
         let is_same =
             present.is_some_and(|p| p.text() == field.text() && p.parameters() == field.parameters());
-        self.is_surveyed &= is_same && bounds == self.bounds;
+        self.end_run_unless(is_same && bounds == self.bounds);
         self.surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
@@ -378,7 +378,7 @@ impl Session {
     }
 
     /// Changes the field to one from points, as `points::fit` makes it. [`Session::set_field`] with a surface or a formula
-    /// changes it back. Particles of an earlier run stay until the next [`Session::start`].
+    /// changes it back. Both end a run on another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors
     ///
@@ -402,12 +402,22 @@ impl Session {
                 false
             }
         };
-        self.is_surveyed &= is_same && bounds == self.bounds;
+        self.end_run_unless(is_same && bounds == self.bounds);
         self.measuring = None;
         self.surface = None;
         self.declared.clear();
         self.bounds = bounds;
         Ok(self.answer())
+    }
+
+    /// Ends the run on a field or a box that changes: nothing that the sampler knows of them holds any more.
+    fn end_run_unless(&mut self, is_same: bool) {
+        if self.is_surveyed && !is_same {
+            self.is_surveyed = false;
+            self.sampler.cancel();
+            let progress = self.sampler.progress();
+            self.remember(progress);
+        }
     }
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
@@ -453,8 +463,12 @@ impl Session {
         self.remember(progress)
     }
 
-    /// Asks for more relaxation steps on the particles of a finished run; [`Session::step`] does them.
+    /// Asks for more relaxation steps on the particles of a finished run; [`Session::step`] does them. Nothing happens if the
+    /// field or the box has changed since.
     pub fn relax(&mut self, steps: u32) {
+        if !self.is_surveyed {
+            return;
+        }
         self.sampler.relax(steps);
         let progress = self.sampler.progress();
         self.remember(progress);
