@@ -62,6 +62,14 @@ fn project_batch(field: &mut dyn Field, place: &mut [Vec3], leash: &[f32], last:
     }
 }
 
+/// Whether a place is on the surface but for another last step. The centre of a triangle with almost no height, as some along
+/// the border of a box have, is far off, and may have found no way to it.
+fn is_reached(field: &mut dyn Field, place: Vec3, leash: f32) -> bool {
+    let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
+    field.gradients(&[place], &mut value, &mut gradient);
+    value[0].abs() <= LAST_STEP * leash * gradient[0].length()
+}
+
 /// Circumcentre and circumradius of a triangle; none for one without area.
 fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
     let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
@@ -183,14 +191,14 @@ impl Gaps {
 
     fn add_corner_batch(&mut self, field: &mut dyn Field, places: &Places, batch: &mut Batch) {
         project_batch(field, &mut batch.place, &batch.leash, LAST_STEP);
-        for (&p, triangle) in batch.place.iter().zip(&batch.triangle) {
+        for ((&p, &leash), triangle) in batch.place.iter().zip(&batch.leash).zip(&batch.triangle) {
             // Corners that cannot beat the largest gaps so far are passed over.
             let bound_sq = places.nearest_of(p, triangle);
             let ideal = places.ideal(triangle);
             let ideal_sq = ideal * ideal;
             if self.exceeds(bound_sq, ideal_sq) {
                 let gap_sq = places.tree.nearest_sq(p, u32::MAX, bound_sq);
-                if self.exceeds(gap_sq, ideal_sq) && places.counts(p) {
+                if self.exceeds(gap_sq, ideal_sq) && places.counts(p) && is_reached(field, p, leash) {
                     self.widen(gap_sq, ideal_sq);
                 }
             }
@@ -259,5 +267,29 @@ impl Batch {
         self.place.push(place);
         self.leash.push(leash);
         self.triangle.push(triangle);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+    use crate::pieces::complete;
+
+    #[test]
+    fn corners_that_do_not_come_to_the_surface_are_no_holes() {
+        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
+        // Almost on a great circle: the centre is near that of the sphere, from where no short way leads to the surface.
+        let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];
+        let wide = [at(-0.1, 0.0), at(0.1, 0.0), at(0.0, 0.2)];
+        for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {
+            let tree = Tree::new(&points);
+            let mesh = [[0, 1, 2]];
+            let places = Places { tree: &tree, mesh: &mesh, border: None, wanted: None, wide: 1.0 };
+            let mut gaps = Gaps::default();
+            complete(gaps.add_corners(&mut field, &places));
+            assert!(holes.contains(&gaps.holes().widest), "{}", gaps.holes().widest);
+        }
     }
 }
