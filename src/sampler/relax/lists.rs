@@ -3,7 +3,7 @@
 use super::super::adaptive_grid::RadiusChains;
 use super::super::pairs::Pairs;
 use crate::particles::Particles;
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 
 /// Most particles whose lists are made together.
 const GROUP: usize = 32;
@@ -103,13 +103,14 @@ impl Lists {
             largest = largest.max(particles.radius[j]);
         }
         let (share, drift, found) = (self.share, self.drift, &mut self.found);
+        let (low, high) = (lo.extend(0.0), hi.extend(0.0));
         let mut count = 0;
         self.grid.visit(
             [lo, hi],
             |other| share * (largest + other) + drift,
             |index| {
-                let q = positions[index as usize];
-                let beyond = (lo - q).max(q - hi).max(Vec3::ZERO);
+                let q = positions[index as usize].extend(0.0);
+                let beyond = (low - q).max(q - high).max(Vec4::ZERO);
                 let reach = share * (largest + particles.radius[index as usize]);
                 if count == found.len() {
                     found.push(0);
