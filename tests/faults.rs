@@ -5,7 +5,7 @@ use glam::Vec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Placement, Progress, Sampling, Settings, StopReason};
+use marching_particles::sampler::{Phase, Placement, Progress, Sampling, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 /// Samples `formula` in the cube of half-width `half`.
@@ -172,6 +172,29 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
             assert!((share - 1.0).abs() < 0.01 || marked(i) == (share < 1.0), "{formula}: {p} at {share}");
         }
     }
+}
+
+#[test]
+fn a_run_that_another_field_ends_marks_the_particles_next_to_its_own_singular_points() {
+    let mut session = Session::new();
+    let cone = FieldRequest {
+        formula: Some("x^2 + y^2 = z^2".into()),
+        bounds: Some(Bounds::cube(1.0)),
+        ..FieldRequest::default()
+    };
+    session.set_field(&cone).unwrap();
+    session.start(&Settings { radius_share: 0.01, ..Settings::default() }).unwrap();
+    while session.step(200).phase != Phase::Relaxation {}
+    let request = FieldRequest { formula: Some("x^2 + y^2 + z^2 = 0.5".into()), ..FieldRequest::default() };
+    session.set_field(&request).unwrap();
+    let marks = |session: &Session| session.particles().slots.iter().filter(|s| s.is_singular()).count();
+    let marked = marks(&session);
+    assert!(marked > 0, "none is marked");
+    assert!(
+        !session.step(0).moved && !session.step(1_000).moved,
+        "something is done to the particles of another field"
+    );
+    assert_eq!(marks(&session), marked);
 }
 
 #[test]

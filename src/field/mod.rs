@@ -108,7 +108,8 @@ pub trait Field: Send {
     /// no point of the surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
 
-    /// Whether there are bounds of f, for [`Field::enclose`]; they may still be too wide to say anything.
+    /// Whether there are bounds of f: without them [`Field::enclose`] is not asked, the survey is dense, and no proof is
+    /// attempted. They may still be too wide to say anything.
     fn has_bounds(&self) -> bool {
         false
     }

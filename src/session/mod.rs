@@ -392,17 +392,16 @@ impl Session {
         if !bounds.is_valid() {
             return Err(FieldError::Box);
         }
-        let is_same = match &mut self.source {
-            Source::Points { field, info: present } if *field.data() == data => {
-                *present = info;
-                true
-            }
-            source => {
-                *source = Source::Points { field: RbfField::new(data)?, info };
-                false
-            }
+        let changed = match &self.source {
+            Source::Points { field, .. } if *field.data() == data => None,
+            _ => Some(RbfField::new(data)?),
         };
-        self.end_run_unless(is_same && bounds == self.bounds);
+        self.end_run_unless(changed.is_none() && bounds == self.bounds);
+        match (changed, &mut self.source) {
+            (None, Source::Points { info: present, .. }) => *present = info,
+            (None, Source::Formula(_)) => {}
+            (Some(field), source) => *source = Source::Points { field, info },
+        }
         self.measuring = None;
         self.surface = None;
         self.declared.clear();
@@ -410,13 +409,11 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// Ends the run on a field or a box that changes: nothing that the sampler knows of them holds any more.
+    /// Ends the run on a field or a box that is about to change: nothing that the sampler knows of them holds any more.
     fn end_run_unless(&mut self, is_same: bool) {
         if self.is_surveyed && !is_same {
             self.is_surveyed = false;
-            self.sampler.cancel();
-            let progress = self.sampler.progress();
-            self.remember(progress);
+            self.cancel();
         }
     }
 

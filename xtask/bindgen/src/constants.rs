@@ -113,7 +113,7 @@ impl Constants {
         for reader in relocations {
             for entry in reader.entries() {
                 let entry = entry?;
-                let Some(kind) = Address::of(&entry) else { continue };
+                let Some(kind) = Address::of(&entry)? else { continue };
                 let symbol = entry.index as usize;
                 let expected = i64::from(constants.symbols[symbol].start) + entry.addend;
                 let at =
@@ -201,13 +201,20 @@ enum Address {
 }
 
 impl Address {
-    fn of(entry: &RelocationEntry) -> Option<Self> {
-        match entry.ty {
+    /// None for what is no address of a constant.
+    fn of(entry: &RelocationEntry) -> Result<Option<Self>> {
+        Ok(match entry.ty {
             RelocationType::MemoryAddrLeb => Some(Self::Unsigned),
             RelocationType::MemoryAddrSleb => Some(Self::Signed),
             RelocationType::MemoryAddrI32 => Some(Self::Pointer),
-            _ => None,
-        }
+            RelocationType::FunctionIndexLeb
+            | RelocationType::TableIndexSleb
+            | RelocationType::TableIndexI32
+            | RelocationType::TypeIndexLeb
+            | RelocationType::GlobalIndexLeb
+            | RelocationType::TableNumberLeb => None,
+            other => bail!("a relocation of a kind that is not expected here: {other:?}"),
+        })
     }
 
     /// The address that stands at the beginning of `bytes`.

@@ -97,6 +97,9 @@ pub(crate) fn split(linked: &[u8], bound: &[u8], later: &[String]) -> Result<(Ve
     keep_only(&mut rest, &moved, &slots)?;
     move_constants(&mut first, &mut rest, &unused)?;
     walrus::passes::gc::run(&mut rest);
+    if rest.tables.iter().any(|table| table.import.is_none()) {
+        bail!("the rest uses a second table, which it would not share with the first part");
+    }
     export_imports(&mut first, &rest)?;
     walrus::passes::gc::run(&mut first);
     for module in [&mut first, &mut rest] {
