@@ -97,9 +97,6 @@ pub(crate) fn split(linked: &[u8], bound: &[u8], later: &[String]) -> Result<(Ve
     keep_only(&mut rest, &moved, &slots)?;
     move_constants(&mut first, &mut rest, &unused)?;
     walrus::passes::gc::run(&mut rest);
-    if rest.tables.iter().any(|table| table.import.is_none()) {
-        bail!("the rest uses a second table, which it would not share with the first part");
-    }
     export_imports(&mut first, &rest)?;
     walrus::passes::gc::run(&mut first);
     for module in [&mut first, &mut rest] {
@@ -315,12 +312,16 @@ fn keep_only(rest: &mut Module, moved: &BTreeSet<Index>, slots: &BTreeMap<Index,
         }
     }
     let table_id = function_table(rest)?;
-    let import = rest.imports.add(FIRST, "table", table_id);
-    let table = rest.tables.get_mut(table_id);
-    table.import = Some(import);
-    table.elem_segments = Default::default();
-    table.initial += slots.len() as u64;
-    table.maximum = table.maximum.map(|most| most + slots.len() as u64);
+    for id in ids(rest.tables.iter().map(walrus::Table::id)) {
+        let import = rest.imports.add(FIRST, &format!("t{}", id.index()), id);
+        let table = rest.tables.get_mut(id);
+        table.import = Some(import);
+        table.elem_segments = Default::default();
+        if id == table_id {
+            table.initial += slots.len() as u64;
+            table.maximum = table.maximum.map(|most| most + slots.len() as u64);
+        }
+    }
     for run in entries.chunk_by(|a, b| a.0 + 1 == b.0) {
         let offset = ConstExpr::Value(Value::I32(run[0].0 as i32));
         let functions = run.iter().map(|entry| entry.1).collect();
@@ -336,12 +337,13 @@ fn keep_only(rest: &mut Module, moved: &BTreeSet<Index>, slots: &BTreeMap<Index,
 fn export_imports(first: &mut Module, rest: &Module) -> Result<()> {
     let functions: BTreeMap<Index, FunctionId> =
         first.funcs.iter().map(|f| (f.id().index(), f.id())).collect();
+    let tables: BTreeMap<Index, TableId> = first.tables.iter().map(|t| (t.id().index(), t.id())).collect();
     let globals: BTreeMap<Index, GlobalId> = first.globals.iter().map(|g| (g.id().index(), g.id())).collect();
     for import in rest.imports.iter() {
         let item: ExportItem = match import.kind {
             ImportKind::Function(id) => functions[&id.index()].into(),
             ImportKind::Global(id) => globals[&id.index()].into(),
-            ImportKind::Table(_) => function_table(first)?.into(),
+            ImportKind::Table(id) => tables[&id.index()].into(),
             // Exported to JavaScript under the same name.
             ImportKind::Memory(_) => continue,
             ImportKind::Tag(_) => bail!("the rest would import a tag"),
