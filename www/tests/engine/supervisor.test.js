@@ -26,6 +26,8 @@ class FakeWorker {
 let workers = [];
 /** @type {any[]} */
 let events = [];
+/** @type {string[]} */
+let messages = [];
 /** @returns {Supervisor} */
 const supervised = () => new Supervisor({
   spawn: () => {
@@ -34,7 +36,10 @@ const supervised = () => new Supervisor({
     return worker;
   },
   onMessage: (message) => events.push(message.type),
-  onRestart: (crash) => events.push(`restart: ${crash.cause}`),
+  onRestart: (crash) => {
+    events.push(`restart: ${crash.cause}`);
+    messages.push(crash.message);
+  },
   onSafeMode: (crash) => events.push(`safe after ${crash.restarts}`),
   onLoadError: (message) => events.push(`load: ${message}`),
 });
@@ -45,6 +50,7 @@ beforeEach(() => {
   vi.useFakeTimers();
   workers = [];
   events = [];
+  messages = [];
 });
 afterEach(() => vi.useRealTimers());
 
@@ -85,6 +91,19 @@ describe('the supervisor', () => {
     workers[0].say({ type: 'beat' });
     vi.advanceTimersByTime(2_500);
     expect(workers).toHaveLength(2);
+  });
+
+  test('says how long the silence was that it suffered', () => {
+    const supervisor = supervised();
+    supervisor.start();
+    workers[0].say(ready);
+    supervisor.setBusy(true);
+    workers[0].say({ type: 'waiting' });
+    vi.advanceTimersByTime(30_500);
+    workers[1].say(ready);
+    supervisor.setBusy(true);
+    vi.advanceTimersByTime(2_500);
+    expect(messages).toEqual(['no word from the sampler for 30 s', 'no word from the sampler for 2 s']);
   });
 
   test('does not watch an idle worker', () => {
