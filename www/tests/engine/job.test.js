@@ -335,6 +335,18 @@ describe('a job that comes while another is under way', () => {
     }
   });
 
+  test('with a fault in its formula leaves the one before it stopped', async () => {
+    let added = false;
+    const { posted } = await work(fakeCore({ particles: 1_000_000 }), sampleJob(), (jobs, said) => {
+      if (added || of(said, 'columns').length < 2) return;
+      added = true;
+      jobs.stop();
+      jobs.add(faulty);
+    });
+    expect(of(posted, 'field').at(-1)).toMatchObject({ id: 8, answer: { ok: false } });
+    expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[7, 'stopped']]);
+  });
+
   test('runs, though the one before it was stopped', async () => {
     let added = false;
     const { posted } = await work(fakeCore({ particles: 20_000 }), sampleJob(), (jobs, said) => {

@@ -11,6 +11,7 @@
  * @typedef {import('./protocol.js').FromWorker} FromWorker
  * @typedef {import('./job.js').CoreLike} CoreLike
  */
+/** A job that has not begun. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
  * A model is set anew for every job: its few kilobytes cost less than to know which one the core of this worker has.
@@ -33,30 +34,33 @@ export class Jobs {
   /** @param {(message: FromWorker) => void} post */
   constructor(post) {
     this.post = post;
-    /** The core has not been asked about it. @type {Job | null} */
+    /** The core has not been asked about it. @type {Pending | null} */
     this.waiting = null;
-    /** Its field is the core's: it runs as soon as the one under way has given way. @type {Job | null} */
+    /** Its field is the core's: it runs as soon as the one under way has given way. @type {Pending | null} */
     this.accepted = null;
+    /** The one under way is to end. */
     this.stopped = false;
   }
 
   /** @param {Job} job */
   add(job) {
-    this.waiting = job;
-    this.stopped = false;
+    this.waiting = { job, stopped: false };
   }
 
   /** Ends what was added before. */
   stop() {
     this.stopped = true;
+    if (this.waiting) this.waiting.stopped = true;
+    if (this.accepted) this.accepted.stopped = true;
   }
 
   /** The job to run next, its field set. @param {CoreLike} core @returns {Job | null} */
   take(core) {
     this.ask(core);
-    const job = this.accepted;
+    const next = this.accepted;
     this.accepted = null;
-    return job;
+    this.stopped = next !== null && next.stopped;
+    return next && next.job;
   }
 
   /** What a job under way has to do: between two steps it asks. @param {CoreLike} core @returns {'stop' | 'replace' | null} */
@@ -68,14 +72,15 @@ export class Jobs {
 
   /** @param {CoreLike} core */
   ask(core) {
-    const job = this.waiting;
-    if (!job) return;
+    const next = this.waiting;
+    if (!next) return;
+    const { job } = next;
     this.waiting = null;
     if (job.kind === 'sample') {
       const answer = setField(core, job);
       this.post({ type: 'field', id: job.id, answer });
       if (!answer.ok) return;
     }
-    this.accepted = job;
+    this.accepted = next;
   }
 }

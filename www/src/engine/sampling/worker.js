@@ -108,7 +108,7 @@ async function pump() {
   while (core && !dead) {
     const ours = core;
     try {
-      if (jobs.waiting && needsRest(jobs.waiting)) {
+      if (jobs.waiting && needsRest(jobs.waiting.job)) {
         const awaited = restOrMessage();
         if (awaited) {
           await awaited;
