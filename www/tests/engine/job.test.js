@@ -359,6 +359,46 @@ describe('a job that comes while another is under way', () => {
   });
 });
 
+describe('a job that waits for the rest of the core', () => {
+  const adaptive = (/** @type {number} */ id) => sampleJob({ id, settings: { sampling: 'adaptive' } });
+
+  test('and is stopped ends without having been begun, once', () => {
+    const posted = /** @type {any[]} */ ([]);
+    const jobs = new Jobs((message) => posted.push(message));
+    const core = fakeCore();
+    jobs.add(adaptive(8));
+    expect(jobs.needsRest(core)).toBe(true);
+    expect(jobs.endStopped()).toBe(false);
+    jobs.stop();
+    expect(jobs.endStopped()).toBe(true);
+    expect(jobs.endStopped()).toBe(false);
+    expect(posted).toMatchObject([{ type: 'done', id: 8, outcome: 'stopped', progress: null, report_follows: false }]);
+    expect(jobs.needsRest(core)).toBe(false);
+    expect(jobs.take(core)).toBe(null);
+    // The next is not stopped by it.
+    jobs.add(adaptive(9));
+    expect(jobs.endStopped()).toBe(false);
+    expect(jobs.take(core)).toMatchObject({ id: 9 });
+    expect(jobs.interrupt(core)).toBe(null);
+  });
+
+  test('may have had its field accepted while another was under way', () => {
+    const posted = /** @type {any[]} */ ([]);
+    const jobs = new Jobs((message) => posted.push(message));
+    const core = fakeCore();
+    jobs.add(adaptive(8));
+    expect(jobs.interrupt(core)).toBe('replace');
+    expect(jobs.needsRest(core)).toBe(true);
+    // A formula with a fault is answered meanwhile, and one without goes first.
+    jobs.add(sampleJob({ id: 9, field: { formula: 'x^2+' } }));
+    expect(jobs.needsRest(core)).toBe(true);
+    expect(posted.map(({ id, answer }) => [id, answer.ok])).toEqual([[8, true], [9, false]]);
+    jobs.add(sampleJob({ id: 10 }));
+    expect(jobs.needsRest(core)).toBe(false);
+    expect(jobs.take(core)).toMatchObject({ id: 10 });
+  });
+});
+
 test('a formula with a fault starts nothing', async () => {
   const core = fakeCore();
   const { posted } = await work(core, sampleJob({ field: { formula: 'x^2+' } }));

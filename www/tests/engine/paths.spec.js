@@ -414,6 +414,25 @@ test.describe('the rest of the core', () => {
     expect(whole.stop_reason).toBe('complete');
   });
 
+  test('where it hangs does not keep what waits for it from being stopped', async ({ page }) => {
+    /** @type {() => void} */
+    let send = () => {};
+    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
+    await page.route(rest, async (route) => {
+      await sent;
+      await route.continue();
+    });
+    await page.goto(`/${link({ settings: { ...coarse.settings, sampling: 'adaptive' } })}`);
+    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().busy);
+    await on(page, '(p.engine.stop(), 0)');
+    await expect.poll(async () => (await status(page)).busy).toBe(false);
+    expect((await status(page)).notice).toBe(null);
+    await on(page, '(p.engine.run(), 0)');
+    expect((await status(page)).busy).toBe(true);
+    send();
+    await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
+  });
+
   test('is brought at once by a formula that is beyond the first part', async ({ page }) => {
     await page.route(rest, async (route) => {
       await new Promise((resolve) => setTimeout(resolve, 2500));

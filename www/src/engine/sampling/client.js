@@ -235,6 +235,9 @@ export class SamplingClient {
     if (message.type === 'failed') return this.loadFailed(message.message);
     if (message.type === 'beat' || message.type === 'waiting' || message.type === 'crashed') return;
     if (message.type === 'field') return this.fieldAnswered(message.id, message.answer);
+    // Stopped before the worker looked at its field.
+    const unbegun = message.type === 'done' && this.answered(message.id);
+    if (unbegun) this.begin(unbegun);
     const { current } = this;
     if (!current || message.id !== current.id) {
       this.stale += 1;
@@ -266,13 +269,20 @@ export class SamplingClient {
     if (current) this.store.progress.value = { ...progress, run: current.id, live: current.request.live };
   }
 
+  /** @param {number} id @returns {Run | undefined} the job, if the worker had not spoken of it */
+  answered(id) {
+    const { asked } = this;
+    const run = asked.get(id);
+    // Jobs are asked about in their order: the worker never looked at those before that are still here.
+    if (run) for (const other of asked.keys()) if (other <= id) asked.delete(other);
+    return run;
+  }
+
   /** @param {number} id @param {import('../types.js').FieldAnswer} answer */
   fieldAnswered(id, answer) {
-    const { store, asked, current } = this;
-    const run = asked.get(id);
+    const { store, current } = this;
+    const run = this.answered(id);
     if (!run || run.request.kind !== 'sample') return;
-    // Jobs are asked about in their order: the worker never looked at those before that are still here.
-    for (const other of asked.keys()) if (other <= id) asked.delete(other);
     const { request } = run;
     batch(() => {
       if (answer.ok) {
@@ -383,7 +393,8 @@ export class SamplingClient {
         if (request.fit && particles > 0) picture.fit();
       } else {
         // The surface before stays; a run of the same that was stopped at once leaves it what it was.
-        this.astray = outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(this.accepted?.field);
+        const wanted = request.kind === 'sample' ? request : this.accepted;
+        this.astray = outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(wanted?.field);
         store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
         this.dim();
         if (outcome === 'refused') {

@@ -28,7 +28,7 @@ function setField(core, { field, points }) {
  * Whether a job begins with what the first part of the core cannot do; the others come to need the rest.
  * @param {Job} job
  */
-export const needsRest = (job) => job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive';
+const needsRest = (job) => job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive';
 
 export class Jobs {
   /** @param {(message: FromWorker) => void} post */
@@ -52,6 +52,31 @@ export class Jobs {
     this.stopped = true;
     if (this.waiting) this.waiting.stopped = true;
     if (this.accepted) this.accepted.stopped = true;
+  }
+
+  /**
+   * Whether the job to run next begins with what the first part of the core cannot do. One that does not is asked about, so that
+   * it need not wait behind one that does.
+   * @param {CoreLike} core
+   */
+  needsRest(core) {
+    if (this.waiting && !needsRest(this.waiting.job)) this.ask(core);
+    const next = this.waiting ?? this.accepted;
+    return next !== null && needsRest(next.job);
+  }
+
+  /** Ends what was stopped before it began. @returns {boolean} whether there was any */
+  endStopped() {
+    let any = false;
+    for (const place of /** @type {const} */ (['accepted', 'waiting'])) {
+      const pending = this[place];
+      if (!pending?.stopped) continue;
+      any = true;
+      this[place] = null;
+      const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+      this.post({ type: 'done', id: pending.job.id, outcome: 'stopped', progress: null, seconds, predicted: 0, message: '', report_follows: false });
+    }
+    return any;
   }
 
   /** The job to run next, its field set. @param {CoreLike} core @returns {Job | null} */

@@ -53,7 +53,7 @@
 
 /**
  * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `ask_above` are expected;
- * `lost`: the particles to relax are no longer there. A job whose field was refused has ended with that answer, and one that
+ * `lost`: the particles to relax are no longer there; `stopped` may come of a job of whose field nothing was said. A job whose field was refused has ended with that answer, and one that
  * a newer one takes over from ends without a word.
  * @typedef {'complete' | 'stopped' | 'refused' | 'ask' | 'lost'} Outcome
  */

@@ -13,7 +13,7 @@ import wasmUrl from '../../wasm/core/core_bg.wasm?url';
 import restUrl from '../../wasm/core/core_rest.wasm?url';
 import description from '../../wasm/core/description.json';
 import { curvatureColumn, runJob } from './job.js';
-import { Jobs, needsRest } from './jobs.js';
+import { Jobs } from './jobs.js';
 import { loadModule, LoadError, moduleNow, words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
@@ -108,12 +108,9 @@ async function pump() {
   while (core && !dead) {
     const ours = core;
     try {
-      if (jobs.waiting && needsRest(jobs.waiting.job)) {
-        const awaited = restOrMessage();
-        if (awaited) {
-          await awaited;
-          continue;
-        }
+      if (rest && jobs.needsRest(ours)) {
+        if (!jobs.endStopped()) await restOrMessage();
+        continue;
       }
       running = jobs.take(ours);
       if (!running) break;
