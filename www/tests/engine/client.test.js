@@ -142,6 +142,15 @@ describe('a run', () => {
     expect(jobs()).toHaveLength(2);
   });
 
+  test('asked for again right after its stop is made anew', () => {
+    const { client, jobs } = page();
+    client.sample(request('x'));
+    client.stop();
+    client.sample(request('x'));
+    client.sample(request('x'));
+    expect(jobs()).toHaveLength(2);
+  });
+
   test('that was overtaken is not listened to any more', () => {
     const { client, store, columns, say, accept } = page();
     client.sample(request('x'));
@@ -393,6 +402,48 @@ describe('the surface that stays', () => {
       say(done(4, outcome, 0, { progress: null }));
       expect(jobs()).toHaveLength(4);
       expect(store.report.value?.count).toBe(9);
+    }
+  });
+
+  test('is the one asked for again where it is asked for while it is being restored', () => {
+    const { client, store, say, accept, jobs } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    client.sample(request('y'));
+    accept(2, 'y');
+    say(done(2, 'ask', 0, { progress: null }));
+    accept(3);
+    client.sample(request('x'));
+    expect(jobs()).toHaveLength(4);
+    accept(4);
+    say(columnsMessage(4, 7));
+    say(done(4, 'complete', 7));
+    expect(store.field.value?.formula).toBe('x');
+    expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
+  });
+
+  test('stays dimmed where its restoring is stopped at once, or the worker fails while it is idle', () => {
+    for (const end of ['stop', 'crash']) {
+      const { client, say, accept } = page();
+      client.sample(request('x'));
+      accept(1);
+      say(columnsMessage(1, 7));
+      if (end === 'crash') {
+        say(done(1, 'complete', 7, { report_follows: true }));
+        say(reportMessage(1, 7));
+      }
+      client.sample(request('y'));
+      accept(2, 'y');
+      say(done(2, 'refused', 0, { progress: null }));
+      if (end === 'stop') {
+        accept(3);
+        client.stop();
+        say(done(3, 'stopped', 0));
+      } else {
+        say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
+      }
+      expect(told.at(-1), end).toBe('dim');
     }
   });
 

@@ -35,7 +35,7 @@ import { Supervisor } from './supervisor.js';
  * @property {boolean} [coarse]
  */
 /** @typedef {import('../points/protocol.js').Solved} Solved */
-/** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false}} RelaxRequest */
+/** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
 /**
  * A job at the worker. `begun`: its particles are on the page; `ended`: all of them are; `over`: nothing more is to come.
@@ -103,6 +103,8 @@ export class SamplingClient {
     /** The sampling whose particles are on the page, and whether their report is too. @type {{request: SampleRequest, reported: boolean} | null} */
     this.shown = null;
     this.crashed_input = '';
+    /** The last job that a stop was sent after: none up to it goes on. */
+    this.stopping = 0;
     /** Messages of runs that are over. */
     this.stale = 0;
     /** @type {{requested: number, latencies: number[], coarse: boolean, particles: number, quiet_ms: number} | null} */
@@ -133,9 +135,10 @@ export class SamplingClient {
   /** @param {SampleRequest} request */
   sample(request) {
     const { running } = this.scheduler;
-    // A second Run with the same input while the first is under way would only begin again. After a fault it says that there is none any more.
-    if (running && !this.store.fieldError.value && !request.live && !running.request.live && inputOf(running.request) === inputOf(request)) return;
-    this.scheduler.submit(request);
+    // A second Run with the same input while the first is under way would only begin again. After a fault it says that there is none
+    // any more, and of a surface that was only restored that it is the one asked for.
+    const same = running && running.id > this.stopping && !running.request.live && !running.request.restoring && inputOf(running.request) === inputOf(request);
+    if (!same || request.live || this.store.fieldError.value) this.scheduler.submit(request);
   }
 
   /**
@@ -168,6 +171,7 @@ export class SamplingClient {
   stop() {
     if (!this.store.busy.value) return this.settle();
     this.scheduler.waiting = null;
+    this.stopping = this.scheduler.last_id;
     this.supervisor.post({ type: 'stop' });
   }
 
@@ -394,7 +398,7 @@ export class SamplingClient {
       } else {
         // The surface before stays; a run of the same that was stopped at once leaves it what it was.
         const wanted = request.kind === 'sample' ? request : this.accepted;
-        this.astray = outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(wanted?.field);
+        this.astray = request.restoring || outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(wanted?.field);
         store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
         this.dim();
         if (outcome === 'refused') {
@@ -506,7 +510,7 @@ export class SamplingClient {
       details: this.describeCrash(crash, lost),
     };
     if (!again) {
-      this.astray = lost !== null;
+      this.astray ||= lost !== null;
       this.dim();
       return this.settle();
     }
