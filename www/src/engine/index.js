@@ -242,7 +242,6 @@ export function createEngine({ canvasHost }) {
     if (bounds) viewer.setBounds(bounds);
     viewer.camera.set(state.view.camera);
     if (state.view.camera.fit && loader.ready()) {
-      columns.clear();
       viewer.fit(true);
     }
     showLook();

@@ -163,6 +163,22 @@ test.describe('links', () => {
     expect(/** @type {any} */ (await on(page, 'p.state')).surface).toBe('ellipsoid');
   });
 
+  test('to what cannot be had leave the surface before, whole, with its figures and files', async ({ page }) => {
+    await open(page);
+    const { count } = /** @type {any} */ (await on(page, 'p.report()'));
+    for (const [state, sign] of /** @type {[object, string][]} */ ([[{ ...coarse, formula: 'x^2 +' }, 'fieldError'], [{ settings: { radius_share: 0.0005 } }, 'notice']])) {
+      await page.evaluate((hash) => {
+        location.hash = hash;
+      }, link(state));
+      await expect.poll(async () => (await status(page))[sign]).toBeTruthy();
+      await expect.poll(async () => (await status(page)).busy).toBe(false);
+      expect((await status(page)).dimmed).toBe(true);
+      expect(await on(page, 'p.report().count')).toBe(count);
+      expect(await on(page, 'p.particles().count')).toBe(count);
+      expect(await on(page, 'p.engine.exportFile("csv").then((blob) => blob.text()).then((text) => text.trim().split("\\n").length)')).toBeGreaterThan(count);
+    }
+  });
+
   test('carry markup as text only', async ({ page }) => {
     const formula = '<img src=x onerror="window.hit=1">';
     await open(page, `/${link({ ...coarse, formula })}`);

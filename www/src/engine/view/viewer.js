@@ -233,7 +233,7 @@ export class Viewer {
   ball() {
     const { columns } = this;
     const bounds = columns.stale ? null : columns.bounds();
-    if (!bounds) return this.box ? this.scene : this.box_ball;
+    if (!bounds) return this.boxBall();
     const { centre } = ballOf(bounds);
     let far_sq = 0;
     for (let i = 0; i < columns.count; i += 1) {
@@ -242,6 +242,10 @@ export class Viewer {
       far_sq = Math.max(far_sq, reach * reach);
     }
     return { centre, radius: Math.max(Math.sqrt(far_sq), 1e-6) };
+  }
+
+  boxBall() {
+    return this.box ? this.scene : this.box_ball;
   }
 
   /** The clip box, for the near and far planes and for a fit before there are particles. @param {Bounds} bounds */
@@ -256,9 +260,9 @@ export class Viewer {
 
   box_ball = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 1 };
 
-  /** @param {boolean} [jump] */
+  /** @param {boolean} [jump]  at once, to the box of a surface that is still to come: the one on the page stays until then */
   fit(jump = false) {
-    this.camera.fit(this.ball(), jump);
+    this.camera.fit(jump ? this.boxBall() : this.ball(), jump);
     this.moved();
   }
 
