@@ -101,9 +101,9 @@ impl Bundle {
         }
     }
 
-    /// What the page need not wait for: words in the names of functions that come in a module of their own after the first
-    /// one, with all that only these call. The first part of the core reads a formula, surveys its field and lets uniform
-    /// fronts grow from the points of the survey.
+    /// What the page need not wait for: words in the names, without angle brackets, of functions that come in a module of
+    /// their own after the first one, with all that only these call. The first part of the core reads a formula, surveys its
+    /// field and lets uniform fronts grow from the points of the survey.
     fn later(self) -> &'static [&'static str] {
         match self {
             Self::Core => &[
@@ -122,9 +122,9 @@ impl Bundle {
                 "rbf::",
                 "interval::BoxProgram::",
                 "interval::range",
-                "Field>::enclose",
-                "Field>::interval",
-                "Field>::hessians",
+                "Field::enclose",
+                "Field::interval",
+                "Field::hessians",
                 "Sampler::look_for_pieces",
                 "Sampler::search_all",
                 "Sampler::end_generation",

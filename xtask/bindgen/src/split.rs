@@ -156,7 +156,8 @@ fn moved(module: &Module, later: &[String]) -> Result<BTreeSet<Index>> {
     let mut unmatched: BTreeSet<&str> = later.iter().map(String::as_str).collect();
     let mut cut = BTreeSet::new();
     for (id, _) in module.funcs.iter_local() {
-        let name = format!("{:#}", rustc_demangle::demangle(name_of(module, id)));
+        // The two ways of mangling differ in where they write angle brackets.
+        let name = format!("{:#}", rustc_demangle::demangle(name_of(module, id))).replace(['<', '>'], "");
         // What drops a value bears the name of its type, and is needed by whoever may hold one.
         if name.starts_with("core::ptr::drop_in_place") {
             continue;
