@@ -76,6 +76,33 @@ describe('a job', () => {
     expect(of(posted, 'report')).toHaveLength(1);
   });
 
+  test('the page hears what is awaited also where the last step of the front found no particle', async () => {
+    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
+    const step = core.step.bind(core);
+    let closed = false;
+    core.step = (budget) => {
+      if (core.count() === 5_000 && !closed) {
+        closed = true;
+        core.clock.ms += 1;
+        return JSON.stringify({ ...JSON.parse(step(0)), phase: 'search', relax_step: 0, moved: false });
+      }
+      const progress = JSON.parse(step(budget));
+      // The front does not know that it is complete before a step finds nothing more, by which time its columns are sent.
+      core.clock.ms += 20;
+      return JSON.stringify(closed ? progress : { ...progress, phase: 'generation' });
+    };
+    let waits = 0;
+    await run(core, sampleJob(), {
+      rest: (so_far) => {
+        if (waits === 2) return null;
+        waits += 1;
+        if (waits > 1) expect(of(so_far, 'progress').at(-1)?.progress.phase).toBe('search');
+        return Promise.resolve();
+      },
+    });
+    expect(waits).toBe(2);
+  });
+
   test('a stop while the rest of the core is awaited keeps the front; its report comes with the rest', async () => {
     const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
     let waits = 0;
