@@ -283,7 +283,7 @@ impl Sampler {
         &self.settings
     }
 
-    /// Starts a run: surveys the field (about 40,000 evaluations, 300,000 where a field has no bounds to prove by) and fixes
+    /// Starts a run: surveys the field (about 40,000 evaluations, 80,000 where a field has no bounds to prove by) and fixes
     /// the radius. Particles of an earlier run are dropped.
     ///
     /// # Errors
