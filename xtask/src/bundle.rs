@@ -174,6 +174,9 @@ impl Bundle {
     }
 }
 
+/// Describes the core; it runs where the core was bound.
+const DESCRIBE: &str = include_str!("describe.mjs");
+
 /// Builds the bundles that are not up to date.
 pub(crate) fn build(project: &Project, bundles: &[Bundle]) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
@@ -259,6 +262,7 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
         .file(&project.www.join("node_modules/binaryen/package.json"))?
         .text("wasm-opt", &bundle.wasm_opt().join(" "))
         .text("later", &bundle.later().join(" "))
+        .text("describe", DESCRIBE)
         .finish())
 }
 
@@ -364,17 +368,11 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Writes down what the core says of itself, so that the page has it before the core can be asked.
+/// Writes down what the core says of itself, so that the page has it before the core can be asked, and which surfaces of the
+/// gallery and which functions call for the rest of it, so that the page can wait.
 fn describe(stage: &Path) -> Result<()> {
-    const SCRIPT: &str = r"
-        import { readFileSync, writeFileSync } from 'node:fs';
-        const { initSync, join, Core } = await import('./core.js');
-        initSync({ module: readFileSync('core_bg.wasm') });
-        join(new WebAssembly.Module(readFileSync('core_rest.wasm')));
-        writeFileSync('description.json', new Core().describe());
-    ";
     let mut command = Command::new(node::node()?);
-    command.args(["--input-type=module", "--eval", SCRIPT]).current_dir(stage);
+    command.args(["--input-type=module", "--eval", DESCRIBE]).current_dir(stage);
     step::run("core: describe", &mut command, "")?;
     Ok(())
 }

@@ -23,5 +23,5 @@ export const description = {
     { name: 'relax_steps', label: 'Steps', group: 'relaxation', kind: 'integer', default: 10, min: 0, max: 1000, step: 1, scale: 'linear', unit: '', help: '' },
     { name: 'max_particles', label: 'Limit', group: 'size', kind: 'integer', default: 200_000, min: 1, max: 4_000_000, step: 1, scale: 'log', unit: '', help: '' },
   ],
-  report: [], fates: [], functions: [], colours: [],
+  report: [], fates: [], functions: [], colours: [], later: { functions: [], surfaces: [] },
 };

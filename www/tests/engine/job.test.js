@@ -394,13 +394,13 @@ describe('a job that waits for the rest of the core', () => {
     const jobs = new Jobs((message) => posted.push(message));
     const core = fakeCore();
     jobs.add(adaptive(8));
-    expect(jobs.needsRest(core)).toBe(true);
+    expect(jobs.awaitsRest(core)).toBe(true);
     expect(jobs.endStopped()).toBe(false);
     jobs.stop();
     expect(jobs.endStopped()).toBe(true);
     expect(jobs.endStopped()).toBe(false);
     expect(posted).toMatchObject([{ type: 'done', id: 8, outcome: 'stopped', progress: null, report_follows: false }]);
-    expect(jobs.needsRest(core)).toBe(false);
+    expect(jobs.awaitsRest(core)).toBe(false);
     expect(jobs.take(core)).toBe(null);
     // The next is not stopped by it.
     jobs.add(adaptive(9));
@@ -415,13 +415,44 @@ describe('a job that waits for the rest of the core', () => {
     const core = fakeCore();
     jobs.add(adaptive(8));
     expect(jobs.interrupt(core)).toBe('replace');
-    expect(jobs.needsRest(core)).toBe(true);
+    expect(jobs.awaitsRest(core)).toBe(true);
     // A formula with a fault is answered meanwhile, and one without goes first.
     jobs.add(sampleJob({ id: 9, field: { formula: 'x^2+' } }));
-    expect(jobs.needsRest(core)).toBe(true);
+    expect(jobs.awaitsRest(core)).toBe(true);
     expect(posted.map(({ id, answer }) => [id, answer.ok])).toEqual([[8, true], [9, false]]);
     jobs.add(sampleJob({ id: 10 }));
-    expect(jobs.needsRest(core)).toBe(false);
+    expect(jobs.awaitsRest(core)).toBe(false);
+    expect(jobs.take(core)).toMatchObject({ id: 10 });
+  });
+});
+
+describe('what the first part of the core cannot do', () => {
+  const later = { functions: ['sin', 'exp'], surfaces: ['gyroid'] };
+  /** @param {import('../../src/engine/types.js').FieldRequest} field */
+  const waits = (field) => {
+    const jobs = new Jobs(() => {}, later);
+    jobs.add(sampleJob({ field }));
+    return jobs.awaitsRest(fakeCore());
+  };
+
+  test('is told by the names of surfaces and of functions', () => {
+    for (const formula of ['sin(x)', '2sin(x) + y', 'x + exp (y)', 'z-sin x']) expect(waits({ formula }), formula).toBe(true);
+    for (const formula of ['x', 'sine + x', 'asin(x)', 'expo', 'sqrt(x)']) expect(waits({ formula }), formula).toBe(false);
+    expect(waits({ surface: 'gyroid' })).toBe(true);
+    expect(waits({ surface: 'torus' })).toBe(false);
+    expect(waits({ surface: 'gyroid', formula: 'x^2 + y^2 = 1' })).toBe(false);
+  });
+
+  test('is awaited while the job under way goes on, which a job that need not wait replaces', () => {
+    const core = fakeCore();
+    const jobs = new Jobs(() => {}, later);
+    jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
+    expect(jobs.interrupt(core, false)).toBe(null);
+    expect(core.calls).toEqual([]);
+    jobs.add(sampleJob({ id: 9, field: { formula: 'x' } }));
+    expect(jobs.interrupt(core, false)).toBe('replace');
+    jobs.add(sampleJob({ id: 10, field: { formula: 'sin(x)' } }));
+    expect(jobs.interrupt(core)).toBe('replace');
     expect(jobs.take(core)).toMatchObject({ id: 10 });
   });
 });

@@ -430,31 +430,36 @@ test.describe('the rest of the core', () => {
     expect(whole.stop_reason).toBe('complete');
   });
 
-  test('where it hangs does not keep what waits for it from being stopped', async ({ page }) => {
-    /** @type {() => void} */
-    let send = () => {};
-    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
-    await page.route(rest, async (route) => {
-      await sent;
-      await route.continue();
+  for (const [what, state] of /** @type {[string, any][]} */ ([
+    ['an adaptive run', { settings: { ...coarse.settings, sampling: 'adaptive' } }],
+    ['a surface with sines', { ...coarse, surface: 'gyroid' }],
+  ])) {
+    test(`where it hangs does not keep ${what}, which waits for it, from being stopped`, async ({ page }) => {
+      /** @type {() => void} */
+      let send = () => {};
+      const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
+      await page.route(rest, async (route) => {
+        await sent;
+        await route.continue();
+      });
+      await page.goto(`/${link(state)}`);
+      await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().busy);
+      await on(page, '(p.engine.stop(), 0)');
+      await expect.poll(async () => (await status(page)).busy).toBe(false);
+      expect((await status(page)).notice).toBe(null);
+      await on(page, '(p.engine.run(), 0)');
+      expect((await status(page)).busy).toBe(true);
+      send();
+      await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
     });
-    await page.goto(`/${link({ settings: { ...coarse.settings, sampling: 'adaptive' } })}`);
-    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().busy);
-    await on(page, '(p.engine.stop(), 0)');
-    await expect.poll(async () => (await status(page)).busy).toBe(false);
-    expect((await status(page)).notice).toBe(null);
-    await on(page, '(p.engine.run(), 0)');
-    expect((await status(page)).busy).toBe(true);
-    send();
-    await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
-  });
+  }
 
-  test('is brought at once by a formula that is beyond the first part', async ({ page }) => {
+  test('is brought at once by a formula that calls it unforeseen', async ({ page }) => {
     await page.route(rest, async (route) => {
       await new Promise((resolve) => setTimeout(resolve, 2500));
       await route.continue();
     });
-    const { errors } = await open(page, `/${link({ surface: 'gyroid', settings: { radius_share: 0.02 } })}`);
+    const { errors } = await open(page, `/${link({ ...coarse, formula: 'abs(x)^2.5 + y^2 + z^2 = 0.5' })}`);
     await expectSurface(page);
     expect(errors).toEqual([]);
   });

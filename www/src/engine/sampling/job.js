@@ -181,7 +181,7 @@ export async function runJob(core, job, env, memory) {
     const rest = phase === 'seeding' || phase === 'generation' ? null : env.rest();
     if (rest) {
       if (last && !job.live && core.count() > sent.count) sendColumns();
-      else if (last) env.post({ type: 'progress', id, progress });
+      else if (last) env.post({ type: 'progress', id, progress: last });
       await rest;
       continue;
     }

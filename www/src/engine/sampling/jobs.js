@@ -24,16 +24,14 @@ function setField(core, { field, points }) {
   return JSON.parse(core.set_points(points.field, JSON.stringify({ info, bounds: field.bounds ?? bounds })));
 }
 
-/**
- * Whether a job begins with what the first part of the core cannot do; the others come to need the rest.
- * @param {Job} job
- */
-const needsRest = (job) => job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive';
-
 export class Jobs {
-  /** @param {(message: FromWorker) => void} post */
-  constructor(post) {
+  /**
+   * @param {(message: FromWorker) => void} post
+   * @param {import('../types.js').Description['later']} [later]  what the first part of the core cannot do by itself
+   */
+  constructor(post, { functions, surfaces } = { functions: [], surfaces: [] }) {
     this.post = post;
+    this.later = { surfaces: new Set(surfaces), call: new RegExp(`(?<![a-z])(?:${functions.join('|') || '(?!)'})(?![a-z0-9])`) };
     /** The core has not been asked about it. @type {Pending | null} */
     this.waiting = null;
     /** Its field is the core's: it runs as soon as the one under way has given way. @type {Pending | null} */
@@ -55,14 +53,24 @@ export class Jobs {
   }
 
   /**
-   * Whether the job to run next begins with what the first part of the core cannot do. One that does not is asked about, so that
-   * it need not wait behind one that does.
+   * Whether a job begins with what the first part of the core cannot do; the others come to need the rest.
+   * @param {Job} job
+   */
+  isLater(job) {
+    if (job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive') return true;
+    const { formula, surface } = job.field;
+    return formula === undefined ? this.later.surfaces.has(surface ?? '') : this.later.call.test(formula);
+  }
+
+  /**
+   * Whether the job to run next waits for the rest of the core. One that need not wait is asked about, so that it does not stand
+   * behind one that does.
    * @param {CoreLike} core
    */
-  needsRest(core) {
-    if (this.waiting && !needsRest(this.waiting.job)) this.ask(core);
+  awaitsRest(core) {
+    if (this.waiting && !this.isLater(this.waiting.job)) this.ask(core);
     const next = this.waiting ?? this.accepted;
-    return next !== null && needsRest(next.job);
+    return next !== null && this.isLater(next.job);
   }
 
   /** Ends what was stopped before it began. @returns {boolean} whether there was any */
@@ -88,9 +96,12 @@ export class Jobs {
     return next && next.job;
   }
 
-  /** What a job under way has to do: between two steps it asks. @param {CoreLike} core @returns {'stop' | 'replace' | null} */
-  interrupt(core) {
-    this.ask(core);
+  /**
+   * What a job under way has to do: between two steps it asks. While the core is not `whole`, a job that needs all of it waits.
+   * @param {CoreLike} core @param {boolean} [whole] @returns {'stop' | 'replace' | null}
+   */
+  interrupt(core, whole = true) {
+    if (whole || (this.waiting && !this.isLater(this.waiting.job))) this.ask(core);
     if (this.accepted) return 'replace';
     return this.stopped ? 'stop' : null;
   }

@@ -4,7 +4,7 @@
  *
  * The core comes in two parts. With the first, which takes half as long to come, uniform fronts grow on the surface of a
  * formula; the rest joins it when it is there, and what needs it waits for it. What calls it earlier all the same (a mistake in
- * the formula, a sine, a surface that is hard to find) brings it within the call.
+ * the formula, a surface that is hard to find) brings it within the call.
  *
  * @module
  */
@@ -32,7 +32,7 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) => (userAgentDa
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-const jobs = new Jobs(post);
+const jobs = new Jobs(post, description.later);
 /** @type {Job | null} */
 let running = null;
 /** Pictures under way to the page. */
@@ -108,7 +108,7 @@ async function pump() {
   while (core && !dead) {
     const ours = core;
     try {
-      if (rest && jobs.needsRest(ours)) {
+      if (rest && jobs.awaitsRest(ours)) {
         if (!jobs.endStopped()) await restOrMessage();
         continue;
       }
@@ -124,7 +124,7 @@ async function pump() {
         },
         interrupt: () => {
           if (provoked) provoke();
-          return jobs.interrupt(ours);
+          return jobs.interrupt(ours, rest === null);
         },
         curvature: () => curvature,
         room: () => undrawn < 2,
