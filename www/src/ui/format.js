@@ -5,8 +5,22 @@ const MINUS = '\u2212';
 const THIN_NO_BREAK = '\u202f';
 export const MISSING = '\u2013';
 
+/**
+ * Those that are language tags. A browser under the POSIX locale may give its name, `C` or `en-US@posix`, which Intl refuses.
+ * @param {readonly string[]} tags
+ */
+export function validLocales(tags) {
+  return tags.filter((tag) => {
+    try {
+      return Intl.getCanonicalLocales(tag).length === 1;
+    } catch {
+      return false;
+    }
+  });
+}
+
 /** @type {string | string[] | undefined} */
-let locale = typeof navigator === 'undefined' ? undefined : [...navigator.languages];
+let locale = typeof navigator === 'undefined' ? undefined : validLocales(navigator.languages);
 /** @type {Map<string, Intl.NumberFormat>} */
 const formats = new Map();
 

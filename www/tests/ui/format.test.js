@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { decimalsOf, formatCount, formatFixed, formatSeconds, formatShare, formatSignificant, formatStep, MISSING, plural, setLocale } from '../../src/ui/format.js';
+import { decimalsOf, formatCount, formatFixed, formatSeconds, formatShare, formatSignificant, formatStep, MISSING, plural, setLocale, validLocales } from '../../src/ui/format.js';
 
 describe('numbers', () => {
   beforeEach(() => setLocale('en'));
@@ -12,6 +12,12 @@ describe('numbers', () => {
     expect(formatCount(1234567)).toBe('1\u202f234\u202f567');
     setLocale('de');
     expect(formatFixed(1234.5, 1)).toBe('1.234,5');
+  });
+
+  it('are written though the browser names a language that is none', () => {
+    expect(validLocales(['C', 'en-US@posix', '', 'de-DE', 'en'])).toEqual(['de-DE', 'en']);
+    setLocale(validLocales(['C']));
+    expect(formatCount(7)).toBe('7');
   });
 
   it('writes a true minus sign and no negative zero', () => {
