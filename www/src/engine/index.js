@@ -27,6 +27,8 @@ import { Viewer } from './view/viewer.js';
 const REST_MS = 250;
 /** After so long without a key the formula counts as written: the camera comes to its surface. */
 const TYPING_MS = 900;
+/** After so long without a key a name that may be the beginning of another counts as written. */
+const NAME_MS = 1000;
 /** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
 const ADDRESS_MS = 500;
 /** Writing files is not part of the first picture: fetched once the sampler is there, so that it is there when it is wanted. */
@@ -245,6 +247,8 @@ export function createEngine({ canvasHost }) {
       viewer.fit(true);
     }
     showLook();
+    // Where the link's surface cannot be had, the camera comes back to the one that stays.
+    written_ms = performance.now();
     choose({ grow: true, fit: state.view.camera.fit });
   }
 
@@ -287,8 +291,8 @@ export function createEngine({ canvasHost }) {
   }
   dark.addEventListener('change', showLook);
 
-  /** When the formula was changed, until the camera comes to its surface. */
-  let typed_ms = NaN;
+  /** When the formula was changed or a link read, until the camera comes to the surface. */
+  let written_ms = NaN;
   /** The camera shows the whole box, for want of a surface. */
   let box_shown = false;
   const effects = [
@@ -307,14 +311,14 @@ export function createEngine({ canvasHost }) {
     effect(() => {
       // Also where the last word was a mistake, or has no surface: what stays may be a surface typed on the way to it.
       const rests = () => !store.busy.value && (store.report.value !== null || store.empty.value);
-      if (!rests() || Number.isNaN(typed_ms)) return;
+      if (!rests() || Number.isNaN(written_ms)) return;
       clearTimeout(fit_timer);
       // Once the typing rests: the picture stands still meanwhile.
       fit_timer = setTimeout(() => {
         if (!rests()) return;
-        typed_ms = NaN;
+        written_ms = NaN;
         if (viewer.camera.state.fit) viewer.fit();
-      }, typed_ms + TYPING_MS - performance.now());
+      }, written_ms + TYPING_MS - performance.now());
     }),
     effect(() => {
       // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
@@ -348,15 +352,17 @@ export function createEngine({ canvasHost }) {
     },
     openFile: (file) => loader.openFile(file),
     cancelLoading: () => loader.cancel(),
-    setFormula(text) {
+    setFormula(text, { unfinished = false } = {}) {
       const { surface, formula } = store.state.value;
       if (text === formula) return;
       // A model has no formula to change: the one typed starts from the default surface.
       if (fromPoints(store.description.value, surface)) change(shapeOf(description().default_surface, text));
       else change({ formula: text });
-      typed_ms = performance.now();
+      written_ms = performance.now();
       clearTimeout(fit_timer);
-      choose();
+      clearTimeout(rest_timer);
+      if (unfinished) rest_timer = setTimeout(choose, NAME_MS);
+      else choose();
     },
     setParameter(name, value, { live = false } = {}) {
       if (!Number.isFinite(value)) return;

@@ -369,7 +369,7 @@
  * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last
  * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled, refused or given up
  * @property {() => void} cancelLoading  gives up the model or file on its way
- * @property {(text: string) => void} setFormula
+ * @property {(text: string, options?: {unfinished?: boolean}) => void} setFormula  `unfinished`: the text is sampled only after a pause, or with what comes next
  * @property {(name: string, value: number, options?: {live?: boolean}) => void} setParameter  `live` while it is dragged; call once more without it at rest
  * @property {(name: string) => void} resetParameter  back to the value of the gallery or of the declaration
  * @property {(name: string) => void} declareParameter  makes an unknown name of the formula a slider

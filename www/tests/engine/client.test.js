@@ -405,6 +405,21 @@ describe('the surface that stays', () => {
     }
   });
 
+  test('is made with the relaxation that another cut off', () => {
+    const { client, say, accept, jobs } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7, { report_follows: true }));
+    say(reportMessage(1, 7));
+    client.relax(1);
+    say(columnsMessage(2, 7));
+    client.sample(request('y'));
+    accept(3, 'y');
+    say(done(3, 'refused', 0, { progress: null }));
+    expect(jobs().at(-1)).toMatchObject({ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 11 } });
+  });
+
   test('is the one asked for again where it is asked for while it is being restored', () => {
     const { client, store, say, accept, jobs } = page();
     client.sample(request('x'));
@@ -633,12 +648,13 @@ describe('a worker that fails', () => {
     say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
     client.relax(5);
     expect(jobs()[1]).toMatchObject({ kind: 'relax', of: 1, steps: 5 });
+    say(columnsMessage(2, 7));
     say({ ...done(2, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 15, relax_steps: 15 }) });
     client.relax(1);
     expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
     say(crash);
-    // The relaxation that was lost cannot be made again on its own.
-    expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' } }]);
+    // The relaxation that was lost cannot be made again on its own: the run that ends with it is.
+    expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
     accept(4);
     say(columnsMessage(4, 7));
     say(done(4, 'complete', 7, { report_follows: true }));

@@ -38,13 +38,13 @@ import { Supervisor } from './supervisor.js';
 /** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
 /**
- * A job at the worker. `begun`: its particles are on the page; `ended`: all of them are; `over`: nothing more is to come.
- * @typedef {{id: number, request: RunRequest, begun: boolean, ended: boolean, over: boolean, predicted: number, since_ms: number}} Run
+ * A job at the worker. `bounds`: the clip box of its field; `begun`: its particles are on the page; `ended`: all of them are; `over`: nothing more is to come.
+ * @typedef {{id: number, request: RunRequest, bounds: import('../types.js').Bounds | null, begun: boolean, ended: boolean, over: boolean, predicted: number, since_ms: number}} Run
  */
 /**
  * What the picture does about it all.
  * @typedef {object} Picture
- * @property {(options: {grow: boolean}) => void} begin  a new surface takes the place of the old one
+ * @property {(options: {grow: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a new surface takes the place of the old one
  * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns first … last are new
  * @property {(from: number, last: number) => void} recolour  colours first … last may be new
  * @property {() => void} fit
@@ -183,7 +183,7 @@ export class SamplingClient {
       return;
     }
     /** @type {Run} */
-    const run = { id, request, begun: false, ended: false, over: false, predicted: 0, since_ms: this.now_ms() };
+    const run = { id, request, bounds: null, begun: false, ended: false, over: false, predicted: 0, since_ms: this.now_ms() };
     /** @type {Job} */
     const job = request.kind === 'relax'
       ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
@@ -290,6 +290,7 @@ export class SamplingClient {
     const { request } = run;
     batch(() => {
       if (answer.ok) {
+        run.bounds = answer.bounds;
         this.begin(run);
         this.accepted = request;
         if (request.restoring) return;
@@ -310,11 +311,17 @@ export class SamplingClient {
     });
   }
 
+  /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */
+  relaxed(steps) {
+    const { request } = /** @type {NonNullable<SamplingClient['shown']>} */ (this.shown);
+    return { ...request, live: false, grow: false, settings: { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps } };
+  }
+
   /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
   settle() {
     const { shown, current } = this;
     if (!shown || shown.reported || this.scheduler.running || (current && !current.over)) return;
-    const request = { ...shown.request, live: false, grow: false, restoring: true };
+    const request = { ...this.relaxed(0), restoring: true };
     if (inputOf(request) !== this.crashed_input) this.scheduler.submit(request);
   }
 
@@ -340,14 +347,14 @@ export class SamplingClient {
       if (request.kind === 'sample') {
         this.shown = { request, reported: false };
         columns.clear(request.settings.sampling === 'adaptive');
-        picture.begin({ grow: request.grow });
+        picture.begin({ grow: request.grow, bounds: current.bounds });
         batch(() => {
           this.store.hover.value = null;
           this.store.empty.value = false;
         });
         this.dim();
       } else if (this.shown) {
-        this.shown.reported = false;
+        this.shown = { request: this.relaxed(request.steps), reported: false };
       }
     }
     const n = message.radii.length;
@@ -482,10 +489,15 @@ export class SamplingClient {
     ].filter(Boolean).join('\n');
   }
 
-  /** Nothing is under way any more. @returns {RunRequest | null} what was, with a report that is still owed */
+  /**
+   * Nothing is under way any more.
+   * @returns {SampleRequest | null} what was, with a report that is still owed; a relaxation, whose particles are gone, as the run that ends with it
+   */
   forget() {
-    const { shown } = this;
-    const lost = this.scheduler.drop() ?? (shown && !shown.reported ? { ...shown.request, live: false, grow: false } : null);
+    const { shown, current } = this;
+    const dropped = this.scheduler.drop();
+    let lost = dropped?.kind === 'sample' ? dropped : null;
+    if (!lost && shown && (dropped || !shown.reported)) lost = this.relaxed(dropped?.kind === 'relax' && !current?.begun ? dropped.steps : 0);
     this.current = null;
     this.asked.clear();
     this.held = 0;
@@ -514,9 +526,7 @@ export class SamplingClient {
       this.dim();
       return this.settle();
     }
-    // Relaxed particles died with their worker: the run that made them is made again.
-    if (lost.kind === 'sample') this.scheduler.submit(lost);
-    else if (this.accepted) this.scheduler.submit({ ...this.accepted, live: false, grow: false });
+    this.scheduler.submit(lost);
   }
 
   /** @param {Crash} crash */

@@ -43,6 +43,11 @@ const RANGE_SLACK = 1 / 128;
 /** Discs smaller than this are picked by their neighbourhood, in page pixels. */
 const PICK_PX = 6;
 
+/** @param {Vec3} a @param {Vec3} b @returns {Vec3} */
+const least = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.min(a[2], b[2])];
+/** @param {Vec3} a @param {Vec3} b @returns {Vec3} */
+const most = (a, b) => [Math.max(a[0], b[0]), Math.max(a[1], b[1]), Math.max(a[2], b[2])];
+
 export class Viewer {
   /**
    * @param {object} options
@@ -83,8 +88,9 @@ export class Viewer {
     /** @type {Insets} */
     this.insets = { left: 0, right: 0, top: 0, bottom: 0 };
     this.dimmed = { from: 0, to: 0, at_s: 0 };
-    /** What the near and far planes enclose. @type {{centre: Vec3, radius: number}} */
-    this.scene = { centre: [0, 0, 0], radius: 2 };
+    /** The clip box of the field asked for, and that of the particles on the page. @type {Bounds} */
+    this.bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+    this.shown_bounds = this.bounds;
     /** Columns not yet told to the device. */
     this.dirty = { first: Infinity, last: 0 };
     this.recoloured = { first: Infinity, last: 0 };
@@ -143,8 +149,9 @@ export class Viewer {
 
   // ---- what is to be drawn ------------------------------------------------------------------------------------------------
 
-  /** A new surface takes the place of the old one. @param {{grow: boolean}} options */
-  begin({ grow }) {
+  /** A new surface takes the place of the old one. @param {{grow: boolean, bounds: Bounds | null}} options */
+  begin({ grow, bounds }) {
+    this.shown_bounds = bounds ?? this.bounds;
     if (grow && this.level === null && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
     else this.reveal.end();
     this.onReveal(this.reveal.active ? { level: 0, levels: 0, particles: 0 } : null);
@@ -245,20 +252,23 @@ export class Viewer {
   }
 
   boxBall() {
-    return this.box ? this.scene : this.box_ball;
+    const { centre, radius } = ballOf(this.bounds);
+    // A surface seldom reaches the corners: the ball through the middles of the edges is the better guess.
+    return { centre, radius: this.box ? radius : radius * 0.72 };
   }
 
   /** The clip box, for the near and far planes and for a fit before there are particles. @param {Bounds} bounds */
   setBounds(bounds) {
-    const ball = ballOf(bounds);
-    this.scene = ball;
-    // A surface seldom reaches the corners: the ball through the middles of the edges is the better guess.
-    this.box_ball = { centre: ball.centre, radius: ball.radius * 0.72 };
-    this.camera.limits(ball.radius);
+    this.bounds = bounds;
+    this.camera.limits(ballOf(bounds).radius);
     this.invalidate();
   }
 
-  box_ball = { centre: /** @type {Vec3} */ ([0, 0, 0]), radius: 1 };
+  /** What the near and far planes enclose: the surface on the page may be that of another box than the one asked for. */
+  scene() {
+    const [a, b] = [this.bounds, this.shown_bounds];
+    return ballOf({ min: least(a.min, b.min), max: most(a.max, b.max) });
+  }
 
   /** @param {boolean} [jump]  at once, to the box of a surface that is still to come: the one on the page stays until then */
   fit(jump = false) {
@@ -395,7 +405,7 @@ export class Viewer {
     }
     this.dirty = { first: Infinity, last: 0 };
     this.recoloured = { first: Infinity, last: 0 };
-    this.view = viewOf(this.camera.state, this.css_width, this.css_height, this.scene, this.insets);
+    this.view = viewOf(this.camera.state, this.css_width, this.css_height, this.scene(), this.insets);
     renderer.set_view(this.view.packed);
     renderer.set_count(count + this.tellPoints(renderer, this.view, count));
     if (this.style_due) {
@@ -506,7 +516,7 @@ export class Viewer {
 
   /** @returns {View} */
   currentView() {
-    return viewOf(this.camera.state, this.css_width, this.css_height, this.scene, this.insets);
+    return viewOf(this.camera.state, this.css_width, this.css_height, this.scene(), this.insets);
   }
 
   /** Index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
@@ -534,7 +544,7 @@ export class Viewer {
     }
     this.tell(device, now);
     const [width, height] = renderer.picture_size(width_px, height_px);
-    const view = viewOf(this.camera.state, this.css_width || width, this.css_height || height, this.scene);
+    const view = viewOf(this.camera.state, this.css_width || width, this.css_height || height, this.scene());
     renderer.set_view(view.packed);
     const count = Math.min(this.columns.count, renderer.max_particles());
     renderer.set_count(count + this.tellPoints(renderer, view, count));
