@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { describeFault, excerptOf, piecesOf } from '../../src/ui/field/fault.js';
+import { beginsFunction, describeFault, excerptOf, piecesOf } from '../../src/ui/field/fault.js';
 
 const fault = { kind: 'unknown_name', message: 'Unknown name foo.', start: 4, end: 7, suggestion: null, names: ['foo'] };
 
@@ -47,5 +47,20 @@ describe('a fault in a formula', () => {
     expect(before.startsWith('…') && after.endsWith('…')).toBe(true);
     expect(before.length + after.length).toBeLessThan(60);
     expect(excerptOf('y'.repeat(5000), 0, 5000).marked.length).toBeLessThan(60);
+  });
+});
+
+describe('a name at the caret', () => {
+  const functions = ['sqrt', 'sin', 'sinh'].map((name) => ({ name, signature: `${name}(a)`, help: '' }));
+  const begins = (/** @type {string} */ text, /** @type {string[]} */ parameters = []) => beginsFunction(text, functions, parameters);
+
+  it('may be the beginning of a function until it is one, or is another', () => {
+    expect(['x^2 + s', 'x^2 + sq', '2sq', 'x s'].map((text) => begins(text))).toEqual([true, true, true, true]);
+    expect(['', 'x^2 + ', 'x', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text))).toEqual([]);
+  });
+
+  it('is none where the formula has such a parameter', () => {
+    expect(begins('x^2 + s', ['s'])).toBe(false);
+    expect(begins('x^2 + sq', ['s'])).toBe(true);
   });
 });

@@ -90,6 +90,39 @@ test('where a formula on its way has no surface, the camera comes to the whole b
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.count)).toBeGreaterThan(0);
 });
 
+test('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async ({ page }) => {
+  await open(page);
+  await typeFormula(page, 'x^2 + y^2 + z^2 = ');
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
+  // Within one task's microtasks, so that no clock decides how fast the keys come.
+  const seen = await page.evaluate(async () => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const names = /** @type {string[]} */ ([]);
+    const off = engine.field.subscribe((/** @type {any} */ field) => names.push(...field.parameters.map((/** @type {any} */ p) => p.name)));
+    names.length = 0;
+    for (const letter of 'sqr') {
+      document.execCommand('insertText', false, letter);
+      await Promise.resolve();
+    }
+    const { formula } = engine.state.value;
+    const busy = engine.busy.value;
+    document.execCommand('insertText', false, 't(1)');
+    await new Promise((resolve) => {
+      const stop = engine.fieldError.subscribe((/** @type {any} */ error) => { if (!error) setTimeout(() => resolve(stop())); });
+    });
+    off();
+    return { names, formula, busy };
+  });
+  expect(seen).toEqual({ names: [], formula: 'x^2 + y^2 + z^2 = sqr', busy: false });
+  await expect.poll(async () => (await state(page)).formula).toContain('sqrt(1)');
+});
+
+test('a parameter named like the beginning of a function gets its slider after a pause', async ({ page }) => {
+  await open(page);
+  await typeFormula(page, 'x^2 + y^2 + z^2 = s');
+  await expect(page.getByRole('slider', { name: /s$/ })).toBeVisible();
+});
+
 test('beyond four unknown names a slider is added on request', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');

@@ -1,4 +1,4 @@
-/** What is wrong with a formula, in words and as repairs. Pure: the elements are built elsewhere. */
+/** What is wrong with a formula, in words and as repairs, or not yet to be judged. Pure: the elements are built elsewhere. */
 
 /** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
 /**
@@ -67,4 +67,16 @@ export function piecesOf(message) {
   // An unpaired backtick is one of the formula's own characters.
   if (parts.length % 2 === 0) return [{ text: message, code: false }];
   return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
+}
+
+/**
+ * Whether a text ends in a name that is new and may become a function's with the next keys, as `sq` does on the way to `sqrt`.
+ * @param {string} text  up to the caret
+ * @param {import('../../engine/types.js').Description['functions']} functions
+ * @param {string[]} parameters  that the formula has
+ */
+export function beginsFunction(text, functions, parameters) {
+  const [name] = /[\p{L}_][\p{L}\p{N}_]*$/u.exec(text) ?? [''];
+  const known = functions.some((entry) => entry.name === name) || parameters.includes(name);
+  return name !== '' && !known && functions.some((entry) => entry.name.startsWith(name));
 }

@@ -2,7 +2,7 @@
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { mathElement, mathPieces } from '../mathml.js';
-import { describeFault, piecesOf } from './fault.js';
+import { beginsFunction, describeFault, piecesOf } from './fault.js';
 import { createTextarea } from './textarea.js';
 import { openFunctions } from './functions.js';
 
@@ -34,8 +34,16 @@ export function createFormula(engine, description) {
   const fault = computed(() => engine.fieldError.value);
   const mathSource = computed(() => engine.fieldPreview.value ?? engine.field.value?.mathml ?? '');
 
+  const names = () => engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
+  /** The caret is behind the beginning of a name: what was wrong before it may be mended with that. */
+  let unfinished = false;
+  const change = (/** @type {string} */ text) => {
+    const { anchor, head } = editor.selection();
+    unfinished = anchor === head && beginsFunction(text.slice(0, head), description.functions, names());
+    engine.setFormula(text, { unfinished });
+  };
   /** @type {Editor} */
-  let editor = createTextarea({ text: shown.peek(), change: (text) => engine.setFormula(text), focused: upgrade });
+  let editor = createTextarea({ text: shown.peek(), change, focused: upgrade });
   holder.append(editor.element);
   let upgrading = false;
 
@@ -49,8 +57,7 @@ export function createFormula(engine, description) {
       if (plain.element.matches('[data-composing]')) await new Promise((done) => plain.element.addEventListener('compositionend', done, { once: true }));
       const focused = plain.element === document.activeElement;
       const next = createCodeEditor({
-        text: plain.text(), functions: description.functions, change: (text) => engine.setFormula(text), names: () => engine.field.peek()?.parameters.map(({ name }) => name) ?? [],
-        selection: plain.selection(),
+        text: plain.text(), functions: description.functions, change, names, selection: plain.selection(),
       });
       editor = next;
       plain.element.replaceWith(next.element);
@@ -63,7 +70,7 @@ export function createFormula(engine, description) {
 
   function render() {
     const text = editor.text();
-    const view = describeFault(text, fault.value);
+    const view = describeFault(text, unfinished ? null : fault.peek());
     holder.classList.toggle('has-fault', view?.tone === 'fault');
     editor.setFault(view?.tone === 'fault' ? fault.peek() : null, view?.message ?? '');
     if (!view) return fill(error);
@@ -94,6 +101,10 @@ export function createFormula(engine, description) {
   });
   effect(() => {
     void fault.value;
+    unfinished = false;
+    render();
+  });
+  effect(() => {
     void shown.value;
     render();
   });
