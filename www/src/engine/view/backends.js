@@ -3,9 +3,8 @@
  *
  * @module
  */
-import { Painter } from './painter.js';
-
 /** @typedef {import('../../wasm/render-webgpu/render.js').Renderer} Renderer */
+/** @typedef {import('./painter.js').Painter} Painter */
 /** @typedef {'webgpu' | 'webgl2' | 'canvas2d'} BackendKind */
 /**
  * @typedef {object} Device
@@ -71,6 +70,7 @@ export async function openDevice(kind, host, events) {
     /** @type {Renderer | Painter} */
     let renderer;
     if (kind === 'canvas2d') {
+      const { Painter } = await import('./painter.js');
       renderer = await Painter.create(canvas);
     } else {
       const { default: init, Renderer: Made } = await bundle(kind);
