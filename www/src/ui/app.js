@@ -94,8 +94,9 @@ export function mountInterface(engine) {
     mountField(byId('field-body'), engine, description);
     mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
     mountReport(byId('report-body'), engine, description);
-    view.prepend(createLegend(engine, description), createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
-    layout.measure();
+    const legend = createLegend(engine, description);
+    view.prepend(legend, createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
+    layout.follow(legend);
     shell.dataset.ready = '';
     import('./levels/timeline.js').then(
       ({ createTimeline }) => { timeline = createTimeline(byId('levels-body'), engine, told); },

@@ -51,16 +51,18 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   const compact = matchMedia(COMPACT);
   const measure = () => {
     const { left, top, right, bottom } = view.getBoundingClientRect();
-    // On a phone the tools would lie over the surface: they stand beside it.
-    const tools = compact.matches ? view.querySelector('.toolbar')?.clientWidth ?? 0 : 0;
-    inset({ left, top, right: innerWidth - right + tools, bottom: innerHeight - bottom });
+    // On a phone tools and legend would lie over the surface: they stand beside it and above it.
+    const side = (/** @type {string} */ part) => (compact.matches && view.querySelector(part)) || { clientWidth: 0, clientHeight: 0 };
+    inset({ left, top: top + side('.legend').clientHeight, right: innerWidth - right + side('.toolbar').clientWidth, bottom: innerHeight - bottom });
   };
-  new ResizeObserver(measure).observe(view);
+  const sizes = new ResizeObserver(measure);
+  sizes.observe(view);
   addEventListener('resize', measure);
   measure();
 
   return {
-    measure,
+    /** Makes room for a part of the view, however large it is. @param {HTMLElement} part */
+    follow: (part) => sizes.observe(part),
     toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
   };
 }

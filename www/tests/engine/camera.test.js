@@ -66,7 +66,7 @@ describe('the view', () => {
       expect(c.y).toBeGreaterThan(0);
       expect(c.y).toBeLessThan(600);
       const edge = project(view, state.target.map((t, k) => t + 0.5 * view.right[k]));
-      expect(edge.x - c.x).toBeGreaterThan(30);
+      expect(edge.x - c.x).toBeGreaterThan(15);
     }
   });
 

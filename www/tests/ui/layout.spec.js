@@ -56,23 +56,32 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
   }
 }
 
-test('on a phone the surface stands beside the tools, not under them', async ({ page }) => {
-  await open(page, { width: 390, height: 844 });
-  await page.locator('.tile[data-surface="sphere"]').click();
-  await settled(page);
-  await atRest(page);
-  const { under, beside } = await page.evaluate(() => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    const { left, right, top, bottom } = /** @type {Element} */ (document.querySelector('.toolbar')).getBoundingClientRect();
-    const [xs, ys] = [[], []].map(() => /** @type {number[]} */ ([]));
-    for (let x = left; x <= right; x += 4) xs.push(x);
-    for (let y = top; y <= bottom; y += 4) ys.push(y);
-    const hit = (/** @type {number} */ x) => ys.some((y) => engine.pick(x, y) !== null);
-    return { under: xs.filter(hit), beside: hit(left - 40) };
+for (const [width, height] of /** @type {const} */ ([[390, 844], [320, 640], [320, 568]])) {
+  test(`on a phone of ${width} by ${height} the surface stands clear of tools, legend and caption`, async ({ page }) => {
+    await open(page, { width, height });
+    await page.locator('.tile[data-surface="sphere"]').click();
+    await page.getByRole('combobox', { name: 'Colour by' }).selectOption('curvature');
+    await settled(page);
+    await expect(page.locator('.scale .unit')).toBeVisible();
+    await atRest(page);
+    const { under, between } = await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const box = (/** @type {string} */ part) => /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect();
+      // Small discs are picked from up to six pixels beside them.
+      const hit = (/** @type {DOMRect} */ { left, right, top, bottom }) => {
+        for (let x = left + 6; x <= right - 6; x += 4) for (let y = top + 6; y <= bottom - 6; y += 4) if (engine.pick(x, y) !== null) return true;
+        return false;
+      };
+      const [tools, legend, caption] = ['.toolbar', '.legend', '.caption'].map(box);
+      return {
+        under: [tools, legend, caption].map(hit),
+        between: engine.pick(tools.left / 2, (legend.bottom + caption.top) / 2) !== null,
+      };
+    });
+    expect(under).toEqual([false, false, false]);
+    expect(between).toBe(true);
   });
-  expect(under).toEqual([]);
-  expect(beside).toBe(true);
-});
+}
 
 test('targets are at least 24 pixels', async ({ page }) => {
   await open(page, { width: 1440, height: 900 });

@@ -96,7 +96,7 @@ export function viewOf(camera, width_px, height_px, scene, insets = { left: 0, r
 }
 
 /** However much panels cover, this share of a side counts as free. */
-const LEAST_FREE = 0.4;
+const LEAST_FREE = 0.2;
 
 /** Two insets of one side, shrunk together until they leave enough free. @param {number} a @param {number} b @param {number} side */
 function fair(a, b, side) {
