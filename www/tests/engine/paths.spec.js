@@ -179,6 +179,17 @@ test.describe('links', () => {
     }
   });
 
+  test('to what cannot be had leave the surface before in view, also where their box is smaller', async ({ page }) => {
+    await open(page);
+    const before = await picture(page);
+    await page.evaluate((hash) => {
+      location.hash = hash;
+    }, link({ ...coarse, formula: 'x^2 +', bounds: { min: [0.4, -0.1, -0.1], max: [0.6, 0.1, 0.1] } }));
+    await expect.poll(async () => (await status(page)).fieldError).toBeTruthy();
+    // Nothing of it is cut off, and the camera shows it as it did.
+    await expect.poll(async () => (await picture(page)).drawn).toBeCloseTo(before.drawn, 2);
+  });
+
   test('carry markup as text only', async ({ page }) => {
     const formula = '<img src=x onerror="window.hit=1">';
     await open(page, `/${link({ ...coarse, formula })}`);
@@ -407,7 +418,8 @@ test.describe('files', () => {
 test.describe('the rest of the core', () => {
   const rest = '**/core_rest*.wasm';
 
-  test('is not awaited to show the first surface, nor to stop', async ({ page }) => {
+  /** Keeps the rest back until the function that it resolves with is called. @param {import('@playwright/test').Page} page */
+  async function hold(page) {
     /** @type {() => void} */
     let send = () => {};
     const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
@@ -415,6 +427,11 @@ test.describe('the rest of the core', () => {
       await sent;
       await route.continue();
     });
+    return send;
+  }
+
+  test('is not awaited to show the first surface, nor to stop', async ({ page }) => {
+    const send = await hold(page);
     await page.goto('/');
     await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search');
     await expect.poll(() => on(page, 'p.particles().count')).toBeGreaterThan(4000);
@@ -435,13 +452,7 @@ test.describe('the rest of the core', () => {
     ['a surface with sines', { ...coarse, surface: 'gyroid' }],
   ])) {
     test(`where it hangs does not keep ${what}, which waits for it, from being stopped`, async ({ page }) => {
-      /** @type {() => void} */
-      let send = () => {};
-      const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
-      await page.route(rest, async (route) => {
-        await sent;
-        await route.continue();
-      });
+      const send = await hold(page);
       await page.goto(`/${link(state)}`);
       await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().busy);
       await on(page, '(p.engine.stop(), 0)');
