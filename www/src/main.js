@@ -4,4 +4,13 @@ import { createEngine } from './engine/index.js';
 import { byId } from './ui/dom.js';
 import { mountInterface } from './ui/app.js';
 
-mountInterface(createEngine({ canvasHost: byId('canvas-host') }));
+const engine = createEngine({ canvasHost: byId('canvas-host') });
+// The interface is measured; WebKit does not hold scripts back until the style sheet has come.
+const link = /** @type {HTMLLinkElement | null} */ (document.querySelector('link[rel="stylesheet"]'));
+if (link && !link.sheet) {
+  await new Promise((resolve) => {
+    link.onload = resolve;
+    link.onerror = resolve;
+  });
+}
+mountInterface(engine);

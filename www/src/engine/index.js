@@ -37,7 +37,7 @@ const files = () => import('./share/exports.js');
 const MOST_PARTICLES = 4_000_000;
 
 /**
- * @param {{canvasHost: HTMLElement}} options  `canvasHost` is filled with a canvas of its own size
+ * @param {{canvasHost: HTMLElement}} options  `canvasHost`, which is positioned, is filled with a canvas of its own size
  * @returns {Engine}
  */
 export function createEngine({ canvasHost }) {
@@ -59,7 +59,6 @@ export function createEngine({ canvasHost }) {
   // ---- picture --------------------------------------------------------------------------------------------------------------
 
   canvasHost.tabIndex = canvasHost.tabIndex < 0 ? 0 : canvasHost.tabIndex;
-  if (getComputedStyle(canvasHost).position === 'static') canvasHost.style.position = 'relative';
 
   const viewer = new Viewer({
     host: canvasHost,

@@ -93,6 +93,35 @@ test('targets are at least 24 pixels', async ({ page }) => {
   expect(small).toEqual([]);
 });
 
+test('a style sheet that comes after the script finds everything in its place', async ({ page }) => {
+  await page.setViewportSize({ width: 1440, height: 900 });
+  /** @type {(nothing: void) => void} */
+  let send = () => {};
+  const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = resolve; });
+  await page.route('**/*.css', async (route) => {
+    await sent;
+    await route.continue();
+  });
+  // Chromium holds module scripts back until the style sheet is there, unless they are asynchronous; WebKit does not.
+  await page.route(/\/$/, async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, body: (await response.text()).replace('<script type="module"', '<script async type="module"') });
+  });
+  await page.goto('/', { waitUntil: 'commit' });
+  await page.waitForFunction(() => 'marchingParticles' in window);
+  expect(await page.locator('#field-body').textContent()).toBe('');
+  send();
+  await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts().frames)).toBeGreaterThan(0);
+  await settled(page);
+  const { width, height } = await page.evaluate(() => {
+    const { width, height } = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
+    return { width, height };
+  });
+  expect([width, height]).toEqual([1440, 900]);
+  const ground = await page.locator('meta[name="theme-color"]').first().getAttribute('content');
+  expect(ground).toBe(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
+});
+
 for (const [width, height] of /** @type {const} */ ([[1440, 900], [1280, 720], [390, 844]])) {
   test(`the page settles without a jump and asks nobody else for anything at ${width} by ${height}`, async ({ page, baseURL }) => {
     /** @type {string[]} */
