@@ -149,17 +149,26 @@ test.describe('links', () => {
     await expect.poll(async () => /** @type {any} */ (await on(page, 'p.state')).surface).toBe('torus');
   });
 
+  /** What the page says of a link. On a slow machine it is gone before the surface is there, for which this waits. @param {import('@playwright/test').Page} page @param {string} address */
+  async function noticeOf(page, address) {
+    await page.goto(address);
+    const notice = await page.waitForFunction(() => {
+      const said = /** @type {any} */ (window).marchingParticles?.status().notice;
+      return said?.id === 'link' && said.text;
+    });
+    const text = await notice.jsonValue();
+    await on(page, 'p.ready.then(() => 0)');
+    return text;
+  }
+
   test('with a mistake in them say what was reset, and the page works', async ({ page }) => {
-    await open(page, `/${link({ surface: 'nowhere', settings: { radius_share: 9 } })}`);
-    const { notice } = await status(page);
-    expect(notice.id).toBe('link');
-    expect(notice.text).toContain('surface');
-    expect(notice.text).toContain('radius_share');
+    const text = await noticeOf(page, `/${link({ surface: 'nowhere', settings: { radius_share: 9 } })}`);
+    expect(text).toContain('surface');
+    expect(text).toContain('radius_share');
   });
 
   test('that are broken lead to the standard surface', async ({ page }) => {
-    await open(page, '/#v99.j.AAAA');
-    expect((await status(page)).notice.text).toContain('another version');
+    expect(await noticeOf(page, '/#v99.j.AAAA')).toContain('another version');
     expect(/** @type {any} */ (await on(page, 'p.state')).surface).toBe('ellipsoid');
   });
 
