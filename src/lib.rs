@@ -56,7 +56,8 @@
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `pieces`: long work that can be left and gone on with, as measuring is.
 //! * [`trace`]: the log with which the adaptive front can be replayed.
-//! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget.
+//! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget; and, natively, the particle systems that the
+//!   paper compares them with.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`points`]: from a file of points to a field (feature `points`, on by default).
 //! * [`export`]: PLY, CSV, XYZ and NPY.

@@ -7,6 +7,8 @@
 mod adaptive;
 mod adaptive_grid;
 mod arcs;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod baseline;
 mod front;
 mod gaps;
 mod laws;

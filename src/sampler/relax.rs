@@ -34,7 +34,7 @@ const MAX_FAILURES: u32 = 6;
 /// No particle moves farther than this in one step, in radii.
 pub(super) const MAX_MOVE: f32 = 0.35;
 /// A Newton correction shorter than this, in radii, leaves a residual of the order of its square.
-const TRUSTED_CORRECTION: f32 = 0.02;
+pub(super) const TRUSTED_CORRECTION: f32 = 0.02;
 
 /// Units that a new list counts for: it takes ten times as long as a particle's forces.
 const REFRESH_UNITS: u32 = 10;

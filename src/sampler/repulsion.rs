@@ -150,7 +150,7 @@ const END_ENERGY: f32 = 0.011_108_997;
 ///
 /// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
 #[inline(always)]
-fn gaussian(x: Vec4) -> Vec4 {
+pub(super) fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
     let e2 = e * e;
