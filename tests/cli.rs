@@ -270,6 +270,80 @@ fn models_from_points_are_sampled_by_name() {
     }
 }
 
+/// Runs `compare --json` with `arguments`; the one line it prints.
+#[track_caller]
+fn compare(arguments: &[&str]) -> Value {
+    let output = run(&[&["compare", "--json"], arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    assert_eq!(stderr(&output), "", "no bar and no chatter without a terminal");
+    serde_json::from_str(&stdout(&output)).expect("a line of JSON")
+}
+
+#[test]
+fn comparison_holds_the_figures_of_both_methods_at_one_radius() {
+    let uniform = compare(&["--surface", "torus", "--count", "1500"]);
+    let adaptive = compare(&["--surface", "ellipsoid", "--count", "1500", "--adaptive"]);
+    for (both, method) in [(&uniform, "witkin_heckbert"), (&adaptive, "forces")] {
+        let (ours, other) = (&both["ours"], &both["other"]);
+        assert_eq!(
+            (ours["method"].as_str(), other["method"].as_str()),
+            (Some("marching_particles"), Some(method))
+        );
+        assert_eq!(
+            (ours["stop_reason"].as_str(), other["stop_reason"].as_str()),
+            (Some("complete"), Some("settled"))
+        );
+        assert_eq!(ours["steps"], 10);
+        assert!(other["steps"].as_u64() > Some(20), "{other}");
+        for side in [ours, other] {
+            assert!(side["count"].as_f64() > Some(1_000.0) && side["evaluations"].as_u64() > Some(1_000));
+            assert!(side["quality"]["six"].as_f64() > Some(0.5), "{side}");
+        }
+        assert!(ours["quality_before"]["six"].is_f64() && other["quality_before"].is_null());
+        assert!(
+            ours["seconds"]["relaxation"].as_f64() > Some(0.0)
+                && other["seconds"]["total"].as_f64() > Some(0.0)
+        );
+        let [fissions, deaths, dropped] =
+            ["fissions", "deaths", "dropped"].map(|key| both[key].as_u64().expect(key));
+        assert_eq!(other["count"].as_u64(), Some(1 + fissions - deaths - dropped));
+        let radius = |side: &Value| side["radius"].as_f64().expect("a radius");
+        assert!((radius(ours) / radius(other) - 1.0).abs() < 0.03, "{} and {}", radius(ours), radius(other));
+    }
+    assert!(adaptive["other"]["quality"]["size_cv"].is_f64());
+}
+
+#[test]
+fn comparison_in_words_stands_in_columns_and_says_why_each_run_ended() {
+    let output = run(&["compare", "--surface", "sphere", "--radius", "3%", "--iterations", "30"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = stdout(&output);
+    for label in
+        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Connected pieces "]
+    {
+        assert!(text.lines().any(|line| line.starts_with(label)), "no `{label}` in:\n{text}");
+    }
+    let ended = text.lines().find(|line| line.starts_with("Ended")).expect("why it ended");
+    assert!(ended.ends_with("complete        iterations"), "{text}");
+    let head = text.lines().find(|line| line.contains("Witkin–Heckbert")).expect("a head");
+    let end = |line: &str, word: &str| line[..line.find(word).expect("a word") + word.len()].chars().count();
+    assert_eq!(end(head, "Witkin–Heckbert"), end(ended, "iterations"), "{text}");
+    assert_eq!(end(head, "relaxed"), end(ended, "complete"), "{text}");
+    assert!(text.contains("\nWitkin–Heckbert took ") && text.contains(" fissions, "), "{text}");
+}
+
+#[test]
+fn mistakes_in_a_comparison_are_told_by_the_name_of_the_option() {
+    let range = "is 2, but must lie between 0 and 1";
+    assert!(fails(2, &["compare", "--radius", "3%", "--rest", "2"]).contains(&format!("--rest {range}")));
+    let range = "is 0, but must lie between 1 and 1000000";
+    let message = fails(2, &["compare", "--radius", "3%", "--iterations", "0"]);
+    assert!(message.contains(&format!("--iterations {range}")), "{message}");
+    assert!(fails(2, &["compare", "--surface", "teapot"]).contains("ellipsoid"));
+    assert!(fails(3, &["compare", "--formula", "x^2 + 1"]).starts_with("error: "));
+    assert!(fails(2, &["compare", "--out", "a.ply"]).contains("--out"));
+}
+
 #[test]
 fn surfaces_lists_the_gallery() {
     let text = stdout(&run(&["surfaces"]));
@@ -288,6 +362,17 @@ fn surfaces_lists_the_gallery() {
 fn help_teaches() {
     let help = stdout(&run(&["sample", "--help"]));
     for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
+        assert!(help.contains(part), "no `{part}` in the help");
+    }
+    let help = stdout(&run(&["compare", "--help"]));
+    for part in [
+        "Witkin and Heckbert (1994)",
+        "What the lines say:",
+        "Examples:",
+        "--iterations",
+        "--adaptive",
+        "0.005",
+    ] {
         assert!(help.contains(part), "no `{part}` in the help");
     }
     // The default limit in the words is the default limit.

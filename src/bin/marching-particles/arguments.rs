@@ -26,7 +26,8 @@ Examples:
   marching-particles sample --surface torus --out torus.ply
   marching-particles sample --surface ellipsoid --count 55748 --json
   marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
-  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%
+  marching-particles compare --surface ellipsoid --count 13923";
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Gaps {
@@ -52,6 +53,9 @@ pub(crate) enum Command {
     /// Sample a surface, write it to files and say how good it is
     #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
     Sample(Box<Sample>),
+    /// Sample a surface with this method and with the one that its paper compares it with
+    #[command(long_about = COMPARE_LONG, after_long_help = COMPARE_AFTER)]
+    Compare(Box<Compare>),
     /// List the named surfaces
     Surfaces(Surfaces),
 }
@@ -82,9 +86,82 @@ Exit codes:
   3  there is nothing to sample: no surface in the box, a constant or undefined formula
   4  more particles than the limit; what was placed before it was reached is written";
 
+const COMPARE_LONG: &str = "\
+Sample a surface with this method and with the one that its paper compares it with, and print both side by side.
+
+That is the particle system of Witkin and Heckbert (1994) for particles of one size, and with --adaptive a scheme of forces. Both \
+begin with one particle, which divides until the surface is covered, at the same radius as this method, on the same \
+machine, with one thread each, one after the other.";
+
+const COMPARE_AFTER: &str = "\
+What the lines say:
+  Steps            relaxation steps, or iterations of the other method: forces, motion, fission and death
+  Evaluations      places at which the field was asked for its value and gradient, the survey's included
+  Figures          as of `sample`; lengths are in units of a perfect lattice of as many particles, so that counts may differ
+  Ended            settled: nothing divides, dies or moves; iterations: it still does, and --iterations are over
+
+Times are of one run each on a machine that may have other work: compare them by their ratio, and repeat the command.
+
+Examples:
+  marching-particles compare --surface ellipsoid --count 13923
+  marching-particles compare --surface ellipsoid --count 15296 --adaptive --json
+  marching-particles compare --surface ellipsoid --count 13923 --rest 0 --iterations 1000
+
+Exit codes: as of `sample`.";
+
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct Sample {
+    #[command(flatten)]
+    pub(crate) surface: Surface,
+
+    #[command(flatten)]
+    pub(crate) sampling: Sampling,
+
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, and
+    /// whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) out: Vec<PathBuf>,
+
+    /// Print one line of JSON instead of text
+    #[arg(long, help_heading = "Output")]
+    pub(crate) json: bool,
+
+    /// Show no progress bar (there is none without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    #[command(flatten)]
+    pub(crate) surface: Surface,
+
+    #[command(flatten)]
+    pub(crate) sampling: Sampling,
+
+    /// Most iterations of the other method
+    #[arg(long, value_name = "N", default_value_t = baseline().max_iterations, help_heading = "Other method")]
+    pub(crate) iterations: u32,
+
+    /// Mean way of its particles in an iteration, in radii, below which they count as at rest; once no particle has divided or
+    /// died either for 20 iterations, it has settled
+    #[arg(long, value_name = "RADII", default_value_t = baseline().rest, help_heading = "Other method")]
+    pub(crate) rest: f64,
+
+    /// Print one line of JSON instead of text
+    #[arg(long, help_heading = "Output")]
+    pub(crate) json: bool,
+
+    /// Show no progress bar (there is none without a terminal)
+    #[arg(long, short, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// What is sampled.
+#[derive(Debug, Args)]
+pub(crate) struct Surface {
     /// Named surface (see `surfaces`); the first one of them by default
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,
@@ -113,7 +190,11 @@ pub(crate) struct Sample {
     /// Default: the surface's own box, 2 for a formula
     #[arg(long = "box", value_name = "NUMBERS", value_parser = bounds, allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) bounds: Option<Bounds>,
+}
 
+/// How it is sampled.
+#[derive(Debug, Args)]
+pub(crate) struct Sampling {
     /// Radius of the particles: a share of the box diagonal (0.6%, the default) or a length (0.01)
     #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, conflicts_with = "count", help_heading = "Sampling")]
     pub(crate) radius: Option<Length>,
@@ -174,19 +255,6 @@ pub(crate) struct Sample {
     /// Most particles; default: 200,000, or a tenth more than --count
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
     pub(crate) max_particles: Option<u32>,
-
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, and
-    /// whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
-    pub(crate) out: Vec<PathBuf>,
-
-    /// Print one line of JSON instead of text
-    #[arg(long, help_heading = "Output")]
-    pub(crate) json: bool,
-
-    /// Show no progress bar (there is none without a terminal)
-    #[arg(long, short, help_heading = "Output")]
-    pub(crate) quiet: bool,
 }
 
 /// Arguments of `surfaces`.
@@ -214,6 +282,10 @@ impl Length {
             Self::Units(length) => length / diagonal,
         }
     }
+}
+
+fn baseline() -> marching_particles::sampler::baseline::Settings {
+    marching_particles::sampler::baseline::Settings::default()
 }
 
 fn defaults() -> marching_particles::sampler::Settings {

@@ -1,6 +1,6 @@
 //! `sample`: one run, its files and its figures.
 
-use crate::arguments::{Gaps, Law, Length, Placement as Placed, Sample};
+use crate::arguments::{self, Gaps, Law, Length, Placement as Placed, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -64,22 +64,35 @@ pub(crate) struct Outcome {
     pub(crate) files: Vec<String>,
 }
 
-pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
-    let formats = formats(&arguments.out)?;
+/// A session with the surface that is asked for, and the run begun.
+pub(crate) struct Begun {
+    pub(crate) session: Session,
+    pub(crate) answer: FieldAnswer,
+    pub(crate) settings: Settings,
+    pub(crate) predicted_count: u64,
+    pub(crate) seconds: Seconds,
+}
+
+/// Sets the field and begins the run.
+pub(crate) fn begin(
+    surface: &Surface,
+    sampling: &arguments::Sampling,
+    quiet: bool,
+) -> Result<Begun, Failure> {
     let mut session = Session::new();
     let mut seconds = Seconds::default();
     let clock = Clock::start();
-    let answer = match fit(arguments)? {
+    let answer = match fit(surface, quiet)? {
         Some(fit) => {
             seconds.points = clock.seconds();
-            let bounds = arguments.bounds.unwrap_or(fit.bounds);
+            let bounds = surface.bounds.unwrap_or(fit.bounds);
             session
                 .set_points(fit.data, fit.info, bounds)
                 .map_err(|error| Failure::Usage(error.to_string()))?
         }
-        None => set_field(&mut session, arguments)?,
+        None => set_field(&mut session, surface)?,
     };
-    let settings = settings(arguments, &answer.bounds);
+    let settings = settings(sampling, &answer.bounds);
 
     let clock = Clock::start();
     let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
@@ -93,6 +106,18 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
             (start.predicted_count as f64 * ROOM).ceil()
         )));
     }
+    Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
+}
+
+/// The name of the surface that is sampled, if it has one.
+pub(crate) fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
+    surface.surface.clone().filter(|_| answer.model.is_some()).or(answer.surface.map(str::to_owned))
+}
+
+pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
+    let formats = formats(&arguments.out)?;
+    let begun = begin(&arguments.surface, &arguments.sampling, arguments.quiet)?;
+    let Begun { mut session, answer, settings, predicted_count, mut seconds } = begun;
     let bar = bar(arguments.quiet);
     let last = sample(&mut session, &mut seconds, &bar);
     bar.finish_and_clear();
@@ -115,17 +140,13 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let capped = report.stop_reason == Some(StopReason::Cap);
     let outcome = Outcome {
         version: env!("CARGO_PKG_VERSION"),
-        surface: arguments
-            .surface
-            .clone()
-            .filter(|_| answer.model.is_some())
-            .or(answer.surface.map(str::to_owned)),
+        surface: name(&arguments.surface, &answer),
         model: answer.model,
         formula: answer.formula,
         parameters: answer.parameters.into_iter().map(|p| (p.name, p.value)).collect(),
         bounds: answer.bounds,
         settings,
-        predicted_count: start.predicted_count,
+        predicted_count,
         report,
         seconds,
         peak_mb: peak_mb(),
@@ -167,9 +188,9 @@ fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
 }
 
 /// The surface through the points of a file or of a built-in model, if that is what is asked for.
-fn fit(arguments: &Sample) -> Result<Option<Fit>, Failure> {
+fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
     let model = arguments.surface.as_deref().and_then(model::find);
-    let bar = bar(arguments.quiet || arguments.points.is_none() && model.is_none());
+    let bar = bar(quiet || arguments.points.is_none() && model.is_none());
     let fit = match (&arguments.points, model) {
         (Some(path), _) => Some(points::of_file(path, arguments.centres, &bar)?),
         (None, Some(model)) if arguments.formula.is_some() || !arguments.parameters.is_empty() => {
@@ -185,7 +206,7 @@ fn fit(arguments: &Sample) -> Result<Option<Fit>, Failure> {
     Ok(fit)
 }
 
-fn set_field(session: &mut Session, arguments: &Sample) -> Result<FieldAnswer, Failure> {
+fn set_field(session: &mut Session, arguments: &Surface) -> Result<FieldAnswer, Failure> {
     let of_surface = arguments.surface.as_deref().and_then(gallery::find);
     // A formula of one's own is not the default surface's: neither are its parameters and its box.
     let declare = match of_surface {
@@ -225,7 +246,7 @@ fn unknown_surface(id: &str) -> String {
     format!("there is no surface `{id}`; known are {}", known.join(", "))
 }
 
-fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
+fn settings(arguments: &arguments::Sampling, bounds: &Bounds) -> Settings {
     let default = Settings::default();
     let share = |length: Option<Length>, default| length.map_or(default, |l| l.share(bounds.diagonal()));
     Settings {
@@ -263,10 +284,11 @@ fn settings(arguments: &Sample, bounds: &Bounds) -> Settings {
 }
 
 /// Why the settings are refused, by the name of the option and with shares as they are typed.
-fn refusal(error: &SettingsError) -> String {
+pub(crate) fn refusal(error: &SettingsError) -> String {
     let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
     let option = match *name {
         "relax_steps" => "relax".to_owned(),
+        "max_iterations" => "iterations".to_owned(),
         name => name.trim_end_matches("_share").replace('_', "-"),
     };
     if name.ends_with("_share") || *name == "chord_error" {
@@ -282,7 +304,7 @@ fn refusal(error: &SettingsError) -> String {
 }
 
 /// Steps the session to its end.
-fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
+pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
     /// Steps between two updates of the bar.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
@@ -313,7 +335,7 @@ fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Pr
     }
 }
 
-fn bar(quiet: bool) -> ProgressBar {
+pub(crate) fn bar(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -331,15 +353,15 @@ fn write_file(path: &Path, format: Format, session: &Session) -> std::io::Result
     out.flush()
 }
 
-struct Clock(Instant);
+pub(crate) struct Clock(Instant);
 
 impl Clock {
     #[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
-    fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self(Instant::now())
     }
 
-    fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }
 }

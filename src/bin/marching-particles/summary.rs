@@ -7,9 +7,9 @@ use serde_json::Value;
 use std::io::{self, Write};
 
 /// Width of the labels.
-const LABEL: usize = 26;
+pub(crate) const LABEL: usize = 26;
 /// Width of a column of figures.
-const COLUMN: usize = 13;
+pub(crate) const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
@@ -107,7 +107,7 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
 }
 
 /// A figure with the digits and the unit that the description gives it.
-fn figure(row: &ReportRow, value: Option<&Value>) -> String {
+pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     if let Some(word) = value.and_then(Value::as_str) {
         return if word == "searched" { "dense search".to_owned() } else { word.to_owned() };
     }
@@ -123,7 +123,7 @@ fn figure(row: &ReportRow, value: Option<&Value>) -> String {
 }
 
 /// A count with its thousands set apart.
-fn grouped(count: usize) -> String {
+pub(crate) fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {
@@ -135,6 +135,6 @@ fn grouped(count: usize) -> String {
     text
 }
 
-fn time(seconds: f64) -> String {
+pub(crate) fn time(seconds: f64) -> String {
     if seconds < 1.0 { format!("{:.1} ms", seconds * 1e3) } else { format!("{seconds:.2} s") }
 }
