@@ -46,46 +46,99 @@ impl Particle {
     }
 }
 
-/// The grid over the particles, as they were when it was filled.
+/// What a list reaches farther than its particle, in its reach: chosen by counting instructions of a whole run.
+const SKIN: f32 = 0.12;
+
+/// Where a particle was when its list was made, and how far that reaches.
+#[derive(Clone, Copy, Debug)]
+struct Listed {
+    position: Vec3,
+    reach: f32,
+    /// End of its list; it begins where that of the particle before ends.
+    end: u32,
+}
+
+/// The neighbours of all particles: from a grid, and from lists as long as these serve.
 #[derive(Clone)]
 pub(super) struct Neighbourhood {
     grid: CellGrid,
     side: f32,
+    skin: f32,
     found: Vec<Neighbour>,
+    listed: Vec<Listed>,
+    lists: Vec<u32>,
 }
 
 impl Neighbourhood {
     pub(super) fn new() -> Self {
-        Self { grid: CellGrid::new(1.0), side: 1.0, found: Vec::new() }
+        Self {
+            grid: CellGrid::new(1.0),
+            side: 1.0,
+            skin: 0.0,
+            found: Vec::new(),
+            listed: Vec::new(),
+            lists: Vec::new(),
+        }
     }
 
-    /// Empties the grid and fits its cells to the mean `reach` of the particles.
-    pub(super) fn reset(&mut self, particles: &[Particle], reach: impl Fn(f32) -> f32) {
+    /// Whether there are lists of these particles, and they hold all neighbours within the `reach` of each. Nobody may have divided or
+    /// died since they were made.
+    pub(super) fn serves(&self, particles: &[Particle], reach: impl Fn(f32) -> f32) -> bool {
+        let way = |(listed, particle): (&Listed, &Particle)| (particle.position - listed.position).length();
+        let farthest = self.listed.iter().zip(particles).map(way).fold(0.0, f32::max);
+        self.listed.len() == particles.len()
+            && self.listed.iter().zip(particles).all(|(listed, particle)| {
+                reach(particle.radius) + way((listed, particle)) + farthest <= listed.reach
+            })
+    }
+
+    /// Empties the grid and fits its cells to the mean `reach` of the particles. Lists are made for longer than this iteration if
+    /// they are `to_last`.
+    pub(super) fn reset(&mut self, particles: &[Particle], reach: impl Fn(f32) -> f32, to_last: bool) {
         let sum: f64 = particles.iter().map(|p| f64::from(reach(p.radius))).sum();
         let mean = (sum / particles.len() as f64) as f32;
         self.side = mean * CELL;
         self.grid.reset(self.side);
+        self.listed.clear();
+        self.lists.clear();
+        self.skin = if to_last { SKIN } else { 0.0 };
     }
 
     pub(super) fn insert(&mut self, particles: &[Particle], i: usize) {
         self.grid.insert(particles[i].position, i as u32);
     }
 
-    /// The particles within `reach` of particle `i`, itself among them.
+    /// The particles within `reach` of particle `i`, itself among them: from its list, else from the grid. Lists are made on the way,
+    /// which asks for the particles in their order.
     pub(super) fn around(&mut self, particles: &[Particle], i: usize, reach: f32) -> &[Neighbour] {
         let centre = particles[i].position;
-        if reach <= FARTHEST * self.side {
-            self.grid.gather(centre, reach, &mut self.found);
-        } else {
+        if let Some(listed) = self.listed.get(i) {
+            let first = if i == 0 { 0 } else { self.listed[i - 1].end };
+            let list = &self.lists[first as usize..listed.end as usize];
             self.found.clear();
-            let all = particles.iter().enumerate().map(|(j, other)| {
-                let offset = other.position - centre;
-                Neighbour { index: j as u32, distance_sq: offset.length_squared(), offset }
-            });
-            self.found.extend(all.filter(|near| near.distance_sq <= reach * reach));
+            self.found.extend(list.iter().map(|&j| neighbour(particles, centre, j)));
+        } else {
+            let wide = reach * (1.0 + self.skin);
+            if wide <= FARTHEST * self.side {
+                self.grid.gather(centre, wide, &mut self.found);
+            } else {
+                self.found.clear();
+                let all = (0..particles.len() as u32).map(|j| neighbour(particles, centre, j));
+                self.found.extend(all.filter(|near| near.distance_sq <= wide * wide));
+            }
+            if self.skin > 0.0 {
+                self.lists.extend(self.found.iter().map(|near| near.index));
+                self.listed.push(Listed { position: centre, reach: wide, end: self.lists.len() as u32 });
+            }
         }
+        self.found.retain(|near| near.distance_sq <= reach * reach);
         &self.found
     }
+}
+
+fn neighbour(particles: &[Particle], centre: Vec3, index: u32) -> Neighbour {
+    let offset = particles[index as usize].position - centre;
+    Neighbour { index, distance_sq: offset.length_squared(), offset }
 }
 
 /// A number from 0 up to 1, without 1.

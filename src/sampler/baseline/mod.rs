@@ -5,8 +5,8 @@
 //! curvature a scheme of forces (`forces`). Both do, over and over (paper §3): compute forces and energies, move the particles,
 //! split or kill them; until nothing more happens, or the iterations are at their end.
 //!
-//! They are built to be hard to beat: neighbours come from the grid of the front, so that an iteration is linear in the particles; a
-//! particle takes one evaluation of the field in an iteration, in batches; the survey, the radius law, the forces between
+//! They are built to be hard to beat: neighbours come from the grid of the front, so that an iteration is linear in the particles, and
+//! from lists that serve for several iterations once no particle divides or dies; a particle takes one evaluation of the field in an iteration, in batches; the survey, the radius law, the forces between
 //! discs and the way back onto the surface are those of the sampler. Only the page is without them.
 //!
 //! # Differs from the paper
@@ -133,6 +133,8 @@ pub struct Baseline {
     way: f64,
     /// Fissions and deaths when the iteration began.
     events: u64,
+    /// Whether no particle has divided or died in the last iteration.
+    is_calm: bool,
     quiet: u32,
     progress: Progress,
 }
@@ -212,6 +214,7 @@ impl Baseline {
             living: 0,
             way: 0.0,
             events: 0,
+            is_calm: false,
             quiet: 0,
             progress: Progress {
                 iterations: 0,
@@ -314,9 +317,14 @@ impl Baseline {
         self.living = self.particles.len();
         match self.stage {
             Stage::Grid => {
-                self.neighbourhood.reset(&self.particles, |radius| self.scheme.reach(radius));
                 for particle in &mut self.particles {
                     (particle.force, particle.load, particle.moment) = (Vec3::ZERO, 0.0, 0.0);
+                }
+                let reach = |radius| self.scheme.reach(radius);
+                if self.is_calm && self.neighbourhood.serves(&self.particles, reach) {
+                    self.enter(Stage::Repel);
+                } else {
+                    self.neighbourhood.reset(&self.particles, reach, self.is_calm);
                 }
             }
             Stage::Fate => {
@@ -348,8 +356,8 @@ impl Baseline {
         self.particles.retain(|particle| !particle.dies);
         self.progress.iterations += 1;
         self.progress.motion = self.way / self.living as f64;
-        let is_quiet = self.events == self.progress.fissions + self.progress.deaths
-            && self.progress.motion <= self.settings.rest;
+        self.is_calm = self.events == self.progress.fissions + self.progress.deaths;
+        let is_quiet = self.is_calm && self.progress.motion <= self.settings.rest;
         self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
         if self.is_full() {
             self.end(StopReason::Cap);
@@ -398,7 +406,8 @@ impl Baseline {
                 Scheme::WitkinHeckbert(scheme) => (scheme.dies(&particle, random), scheme.divides(&particle)),
                 Scheme::Forces(scheme) => (scheme.dies(&particle, random), scheme.divides(&particle)),
             };
-            if dies {
+            // The first stays, so that there is always one.
+            if dies && i > 0 {
                 self.particles[i].dies = true;
                 self.progress.deaths += 1;
             } else if divides && !self.is_full() {

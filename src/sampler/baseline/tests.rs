@@ -40,7 +40,7 @@ fn repel(
     repel: impl Fn(&mut [Particle], usize, &[crate::spatial::Neighbour]),
 ) {
     let mut neighbourhood = Neighbourhood::new();
-    neighbourhood.reset(particles, reach);
+    neighbourhood.reset(particles, reach, false);
     for i in 0..particles.len() {
         neighbourhood.insert(particles, i);
     }
@@ -60,7 +60,7 @@ fn energy(offset: DVec3, sigma: f64) -> f64 {
 fn neighbours_are_those_that_a_naive_search_finds_however_far_it_reaches() {
     let particles = crowd(200);
     let mut neighbourhood = Neighbourhood::new();
-    neighbourhood.reset(&particles, WitkinHeckbert::reach);
+    neighbourhood.reset(&particles, WitkinHeckbert::reach, false);
     for i in 0..particles.len() {
         neighbourhood.insert(&particles, i);
     }
@@ -76,6 +76,37 @@ fn neighbours_are_those_that_a_naive_search_finds_however_far_it_reaches() {
             assert_eq!(found, naive, "particle {i}, reach {reach}");
         }
     }
+}
+
+#[test]
+fn lists_serve_while_they_hold_every_neighbour_and_no_longer() {
+    let mut particles = crowd(200);
+    let mut neighbourhood = Neighbourhood::new();
+    let mut made = 0;
+    for step in 0..60 {
+        if !neighbourhood.serves(&particles, WitkinHeckbert::reach) {
+            neighbourhood.reset(&particles, WitkinHeckbert::reach, true);
+            for i in 0..particles.len() {
+                neighbourhood.insert(&particles, i);
+            }
+            made += 1;
+        }
+        for i in 0..particles.len() {
+            let reach = WitkinHeckbert::reach(particles[i].radius);
+            let mut found: Vec<u32> =
+                neighbourhood.around(&particles, i, reach).iter().map(|near| near.index).collect();
+            found.sort_unstable();
+            let distance =
+                |j: &u32| (particles[*j as usize].position - particles[i].position).length_squared();
+            let naive: Vec<u32> = (0..200).filter(|j| distance(j) <= reach * reach).collect();
+            assert_eq!(found, naive, "particle {i}, step {step}");
+        }
+        for (i, particle) in particles.iter_mut().enumerate() {
+            particle.position += Vec3::new(1.0, -1.0, 0.0) * if i % 2 == 0 { 6e-4 } else { -6e-4 };
+            particle.radius *= 1.0 + 1e-3 * (i % 3) as f32;
+        }
+    }
+    assert!((3..30).contains(&made), "made {made} times in 60 steps");
 }
 
 #[test]
