@@ -140,17 +140,23 @@ impl Forces {
     ) -> Option<[Particle; 2]> {
         let step = direction * (0.5 * parent.radius);
         let places = [parent.position + step, parent.position - step];
-        let landed = self.land(ground, places.map(|place| Particle { position: place, ..*parent }));
+        let landed = self.land(
+            ground,
+            places.map(|place| Particle { position: place, ..*parent }),
+            TRUSTED_CORRECTION,
+        );
         let is_good =
             |child: &Particle| self.bounds.contains(child.position) && child.normal.dot(parent.normal) > 0.0;
         landed.filter(|children| children.iter().all(is_good))
     }
 
-    /// Particles brought onto the surface with their radii there; none if one does not come to it.
+    /// Particles brought onto the surface with their radii there; none if one does not come to it. A correction shorter than `trust`
+    /// radii is not checked.
     pub(super) fn land<const N: usize>(
         &self,
         ground: &mut Ground,
         particles: [Particle; N],
+        trust: f32,
     ) -> Option<[Particle; N]> {
         const { assert!(N <= BATCH) };
         let mut points = Points::new();
@@ -158,11 +164,20 @@ impl Forces {
         for (k, particle) in particles.iter().enumerate() {
             points.position[k] = particle.position;
             points.radius[k] = particle.radius;
+            // Its curvature is asked for.
+            points.since[k] = f32::INFINITY;
         }
-        // Without trust: every curvature is asked for.
-        self.law().land(ground.field, ground.projector, &mut points, 0.0);
+        self.law().land(ground.field, ground.projector, &mut points, trust);
         points.ok[..N].iter().all(|&ok| ok).then(|| {
             core::array::from_fn(|k| Particle::new(points.position[k], points.normal[k], points.radius[k]))
         })
+    }
+
+    /// The particle on the surface to the last; as it is where rounding in single precision hides the surface: it has always been on it.
+    pub(super) fn landed(&self, ground: &mut Ground, particle: &Particle) -> Particle {
+        match self.land(ground, [*particle], 0.0) {
+            Some([landed]) if self.bounds.contains(landed.position) => landed,
+            _ => *particle,
+        }
     }
 }

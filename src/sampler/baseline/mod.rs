@@ -13,8 +13,7 @@
 //!
 //! * The paper detects convergence by the number of particles and their residual motion, without numbers (§3). Here a run has settled
 //!   after [`Settings::quiet_iterations`] in a row without fission and death and with the mean motion below [`Settings::rest`].
-//! * At the end all particles are brought onto the surface to the tolerance of the sampler; those that do not come there are
-//!   dropped.
+//! * At the end all particles are brought onto the surface to the tolerance of the sampler; those that are not beside it are dropped.
 
 mod crowd;
 mod forces;
@@ -24,6 +23,7 @@ mod witkin_heckbert;
 pub use settings::Settings;
 
 use super::project::{BATCH, Projector, tolerance};
+use super::relax::TRUSTED_CORRECTION;
 use super::sizing::Sizing;
 use super::survey::survey;
 use super::{Sampling, SettingsError, SizeMode};
@@ -196,7 +196,7 @@ impl Baseline {
         let ground = &mut Ground { field, projector: &mut projector };
         let seed = zero.and_then(|seed| match &scheme {
             Scheme::WitkinHeckbert(_) => Some(seed),
-            Scheme::Forces(forces) => forces.land(ground, [seed]).map(|[seed]| seed),
+            Scheme::Forces(forces) => forces.land(ground, [seed], TRUSTED_CORRECTION).map(|[seed]| seed),
         });
         let stop_reason = seed.is_none().then_some(StopReason::NoSurface);
         Ok(Self {
@@ -432,11 +432,11 @@ impl Baseline {
         for particle in &mut self.particles[range] {
             let landed = match &self.scheme {
                 Scheme::WitkinHeckbert(scheme) => scheme.landed(ground, particle),
-                Scheme::Forces(scheme) => scheme.land(ground, [*particle]).map(|[landed]| landed),
+                Scheme::Forces(scheme) => Some(scheme.landed(ground, particle)),
             };
             match landed {
-                Some(landed) if self.bounds.contains(landed.position) => *particle = landed,
-                _ => particle.dies = true,
+                Some(landed) => *particle = landed,
+                None => particle.dies = true,
             }
         }
     }

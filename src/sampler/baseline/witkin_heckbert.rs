@@ -27,7 +27,7 @@ use super::crowd::Particle;
 use super::{Ground, Settings};
 use crate::math::Bounds;
 use crate::sampler::project::{BATCH, Descent, Tolerance};
-use crate::sampler::relax::{CUT_OFF, MAX_MOVE};
+use crate::sampler::relax::{CUT_OFF, MAX_MOVE, TRUSTED_CORRECTION};
 use crate::sampler::repulsion::gaussian;
 use crate::spatial::Neighbour;
 use core::ops::Range;
@@ -37,6 +37,8 @@ use glam::{Vec3, Vec4};
 const MAX_GROWTH: f32 = 2.0;
 /// No radius falls below this share of the wanted one; such a particle dies with a probability of 13 in 14.
 const LEAST: f32 = 0.05;
+/// A particle that does not come onto the surface at the end is beside it within this share of its radius.
+const BESIDE: f32 = 0.02;
 /// Evaluations to bring a particle onto the surface.
 const MAX_NEWTON: u32 = 8;
 
@@ -200,30 +202,35 @@ impl WitkinHeckbert {
         let step = direction * (0.5 * parent.radius);
         let mut place = [parent.position + step, parent.position - step];
         let (mut normal, mut ok) = ([Vec3::ZERO; 2], [false; 2]);
-        self.land(ground, &mut place, &mut normal, &mut ok, parent.radius);
+        self.land(ground, &mut place, &mut normal, &mut ok, (parent.radius, TRUSTED_CORRECTION));
         let is_good =
             (0..2).all(|k| ok[k] && self.bounds.contains(place[k]) && normal[k].dot(parent.normal) > 0.0);
         let radius = parent.radius * core::f32::consts::FRAC_1_SQRT_2;
         is_good.then(|| [0, 1].map(|k| Particle::new(place[k], normal[k], radius)))
     }
 
-    /// The particle on the surface, if that is not farther than its radius.
+    /// The particle on the surface; none if it is not beside it. Where rounding in single precision hides the surface it stays as it is.
     pub(super) fn landed(&self, ground: &mut Ground, particle: &Particle) -> Option<Particle> {
         let (mut place, mut normal, mut ok) = ([particle.position], [Vec3::ZERO], [false]);
-        self.land(ground, &mut place, &mut normal, &mut ok, particle.radius);
-        ok[0].then(|| Particle::new(place[0], normal[0], particle.radius))
+        self.land(ground, &mut place, &mut normal, &mut ok, (particle.radius, 0.0));
+        if ok[0] && self.bounds.contains(place[0]) {
+            Some(Particle::new(place[0], normal[0], particle.radius))
+        } else {
+            (particle.height.abs() < BESIDE * particle.radius).then_some(*particle)
+        }
     }
 
-    /// Brings places onto the surface, if it is not farther than `reach`.
+    /// Brings places onto the surface, if it is not farther than `radius`. A correction shorter than `trust` radii is not checked.
     fn land(
         &self,
         ground: &mut Ground,
         place: &mut [Vec3],
         normal: &mut [Vec3],
         ok: &mut [bool],
-        reach: f32,
+        (radius, trust): (f32, f32),
     ) {
-        let mut descent = Descent { residual: self.tolerance.residual, reach, trust: 0.0 };
+        let residual = self.tolerance.residual;
+        let mut descent = Descent { residual, reach: radius, trust: trust * radius };
         let least = self.tolerance.min_gradient;
         ground.projector.land_along_gradient(
             ground.field,
