@@ -38,7 +38,7 @@ function page() {
     store,
     columns,
     picture: {
-      begin: ({ grow }) => told.push(grow ? 'grow' : 'swap'),
+      begin: ({ grow, fit }) => told.push(`${grow ? 'grow' : 'swap'}${fit ? ' in view' : ''}`),
       changed: (first, last, drawn) => {
         told.push(`changed ${first}..${last}`);
         drawn();
@@ -130,7 +130,7 @@ describe('a run', () => {
     expect(store.report.value?.count).toBe(5);
     expect(store.progress.value.phase).toBe('done');
     expect(columns.valence).toHaveLength(5);
-    expect(told).toEqual(['ready', 'grow', 'clear', 'changed 0..5', 'fit']);
+    expect(told).toEqual(['ready', 'grow in view', 'clear', 'changed 0..5', 'fit']);
   });
 
   test('asked for twice is made once', () => {

@@ -44,7 +44,7 @@ import { Supervisor } from './supervisor.js';
 /**
  * What the picture does about it all.
  * @typedef {object} Picture
- * @property {(options: {grow: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a new surface takes the place of the old one
+ * @property {(options: {grow: boolean, fit: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a new surface takes the place of the old one
  * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns first … last are new
  * @property {(from: number, last: number) => void} recolour  colours first … last may be new
  * @property {() => void} fit
@@ -314,7 +314,7 @@ export class SamplingClient {
   /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */
   relaxed(steps) {
     const { request } = /** @type {NonNullable<SamplingClient['shown']>} */ (this.shown);
-    return { ...request, live: false, grow: false, settings: { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps } };
+    return { ...request, live: false, grow: false, fit: false, settings: { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps } };
   }
 
   /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
@@ -347,7 +347,7 @@ export class SamplingClient {
       if (request.kind === 'sample') {
         this.shown = { request, reported: false };
         columns.clear(request.settings.sampling === 'adaptive');
-        picture.begin({ grow: request.grow, bounds: current.bounds });
+        picture.begin({ grow: request.grow, fit: request.fit, bounds: current.bounds });
         batch(() => {
           this.store.hover.value = null;
           this.store.empty.value = false;

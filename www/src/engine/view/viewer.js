@@ -149,9 +149,11 @@ export class Viewer {
 
   // ---- what is to be drawn ------------------------------------------------------------------------------------------------
 
-  /** A new surface takes the place of the old one. @param {{grow: boolean, bounds: Bounds | null}} options */
-  begin({ grow, bounds }) {
+  /** A new surface takes the place of the old one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
+  begin({ grow, fit, bounds }) {
     this.shown_bounds = bounds ?? this.bounds;
+    // One of another size would grow around the camera, or far from it.
+    if (fit) this.fit(true);
     if (grow && this.level === null && !this.calm.matches && !document.hidden) this.reveal.begin(this.now_s());
     else this.reveal.end();
     this.onReveal(this.reveal.active ? { level: 0, levels: 0, particles: 0 } : null);
