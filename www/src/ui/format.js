@@ -52,6 +52,9 @@ export function formatCount(value) {
   return isNumber(value) ? write(value, { maximumFractionDigits: 0 }) : MISSING;
 }
 
+/** A sentence with its counts written so. @param {string} text */
+export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
+
 /**
  * A number with exactly `digits` decimals; a value that rounds to nothing is written as a power of ten instead.
  * @param {unknown} value

@@ -1,5 +1,5 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { decimalsOf, formatCount, formatFixed, formatSeconds, formatShare, formatSignificant, formatStep, MISSING, plural, setLocale, validLocales } from '../../src/ui/format.js';
+import { decimalsOf, formatCount, formatFixed, formatSeconds, formatShare, formatSignificant, formatStep, MISSING, plural, setLocale, validLocales, withCounts } from '../../src/ui/format.js';
 
 describe('numbers', () => {
   beforeEach(() => setLocale('en'));
@@ -12,6 +12,10 @@ describe('numbers', () => {
     expect(formatCount(1234567)).toBe('1\u202f234\u202f567');
     setLocale('de');
     expect(formatFixed(1234.5, 1)).toBe('1.234,5');
+  });
+
+  it('groups the counts in a sentence, and nothing else', () => {
+    expect(withCounts('1382 children, near 0.12345 and 1000000. In 12 of 99999: 3.14159e-12, 2024.')).toBe('1,382 children, near 0.12345 and 1,000,000. In 12 of 99,999: 3.14159e-12, 2,024.');
   });
 
   it('are written though the browser names a language that is none', () => {

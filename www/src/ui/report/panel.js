@@ -2,6 +2,7 @@
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
+import { withCounts } from '../format.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
 import { createHistogram } from './histogram.js';
@@ -28,7 +29,7 @@ export function mountReport(body, engine, description) {
   effect(() => {
     const list = report.value?.warnings ?? [];
     warnings.hidden = list.length === 0;
-    fill(warnings, list.map((text) => h('li', null, text)));
+    fill(warnings, list.map((text) => h('li', null, withCounts(text))));
   });
   const waiting = h('p', { class: 'quiet waiting' });
   bindText(waiting, () => (engine.empty.value ? 'Nothing to measure: there is no surface inside the box.' : 'The figures appear when the first run is done.'));

@@ -77,7 +77,8 @@ function emptyState(engine) {
   const [title, remedy] = EMPTY[stop_reason ?? ''] ?? ['No surface inside the box', 'Change the formula, or widen the box.'];
   return [
     h('h2', null, title),
-    message ? h('p', { class: 'quiet reason' }, message) : null,
+    // The title says the first half of it.
+    message ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, '')) : null,
     h('p', { class: 'quiet' }, `${remedy}${engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : ''}`),
     h(
       'div',
