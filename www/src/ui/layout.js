@@ -4,9 +4,9 @@ import { explain } from './explain.js';
 import { icon } from './icons.js';
 
 /** Below this width the report starts folded, so that the picture has room. */
-const NARROW = '(max-width: 1079px)';
+const NARROW = '(max-width: 67.45em)';
 /** A phone held upright: panels and tabs below the picture. */
-const COMPACT = '(max-width: 719px)';
+const COMPACT = '(max-width: 44.95em)';
 
 /** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
 
