@@ -494,6 +494,8 @@ export function createEngine({ canvasHost }) {
       return reset;
     },
   });
+  // A dark page is dark from the start.
+  showLook();
   sampling.start();
   void viewer.start();
   return engine;

@@ -123,6 +123,15 @@ test('a parameter named like the beginning of a function gets its slider after a
   await expect(page.getByRole('slider', { name: /s$/ })).toBeVisible();
 });
 
+test('on a phone a mistake is read and mended without scrolling for it', async ({ page }) => {
+  await open(page, { width: 390, height: 844 });
+  await typeFormula(page, 'x^2 + y^2 + sqr(z) = 1');
+  const repair = page.getByRole('button', { name: 'Change to sqrt' });
+  await expect(repair).toBeInViewport({ ratio: 1 });
+  await repair.click();
+  await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'false');
+});
+
 test('beyond four unknown names a slider is added on request', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'p x^2 + q y^2 + s z^2 + u x + v = 1');

@@ -167,6 +167,16 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await clean();
 });
 
+test('a dark page is dark before the sampler has come', async ({ page }) => {
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.route('**/core_bg*.wasm', () => {});
+  await page.goto('./?backend=canvas2d');
+  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.debug.counts().frames > 0);
+  const brightest = await page.evaluate(async () => Math.max(...(await /** @type {any} */ (window).marchingParticles.pixels(4, 4)).pixels.filter((/** @type {number} */ _, /** @type {number} */ i) => i % 4 < 3)));
+  expect(brightest).toBeLessThan(64);
+});
+
 test('the theme follows the system and can be switched', async ({ page }) => {
   await page.emulateMedia({ colorScheme: 'dark' });
   await open(page);

@@ -491,17 +491,10 @@ export class Viewer {
     this.onLegend(legendOf(this.colour, this.theme, this.columns, this.range));
   }
 
-  /** The colour behind the particles: the page's own ground where it names one, so that the two agree. */
-  ground() {
-    const named = getComputedStyle(this.host).getPropertyValue('--scene-ground').trim();
-    const hex = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})$/i.exec(named);
-    return hex ? [1, 2, 3].map((k) => parseInt(hex[k], 16) / 255) : rgbFromPacked(PALETTES[this.theme].ground);
-  }
-
   /** @param {number} now_s */
   style(now_s) {
     return {
-      background: [...this.ground(), 1],
+      background: [...rgbFromPacked(PALETTES[this.theme].ground), 1],
       disc_scale: this.size,
       dim: this.dimAt(now_s),
       fade_s: this.calm.matches ? 0 : FADE_S,

@@ -86,6 +86,8 @@ export function createFormula(engine, description) {
         ? h('div', { class: 'repairs' }, view.repairs.map((repair) => h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label)))
         : null,
     );
+    // On a phone there is room for little below the editor.
+    if (holder.contains(document.activeElement)) error.scrollIntoView({ block: 'nearest' });
   }
 
   /** @param {import('./fault.js').Repair} repair */

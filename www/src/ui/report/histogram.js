@@ -2,25 +2,26 @@
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
-import { coarsen, trim } from './bins.js';
+import { coarsen, overDiameters, trim } from './bins.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 
 const TABLE_ROWS = 12;
-/** Distances are given over the spacing of a perfect hexagonal lattice of as many particles. */
+/** Distances are given over the spacing of a perfect hexagonal lattice of as many particles, or of particles that touch. */
 const IDEAL = 1;
 
 /**
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
- * @param {import('@preact/signals-core').ReadonlySignal<'light' | 'dark'>} theme
+ * @param {import('../../engine/types.js').Engine} engine
  */
-export function createHistogram(report, theme) {
+export function createHistogram(report, { theme, columns }) {
   const plot = h('div', { class: 'plot', 'aria-hidden': 'true' });
   const table = h('tbody');
+  const unit = h('span', { class: 'quiet' });
   const section = h(
     'div',
     { class: 'section histogram' },
-    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), h('span', { class: 'quiet' }, 'perfect lattice 1')),
+    h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), unit),
     plot,
     h(
       'details',
@@ -31,7 +32,9 @@ export function createHistogram(report, theme) {
   );
   effect(() => {
     const current = report.value;
-    const bins = current?.nearest_histogram;
+    // Where every particle has a size of its own, so has its distance.
+    const bins = columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
+    unit.textContent = columns.adaptive ? 'touching 1' : 'perfect lattice 1';
     const usable = Boolean(bins && bins.bins.length && bins.max > bins.min);
     section.hidden = !usable;
     if (!bins || !usable) return;

@@ -38,5 +38,5 @@ export function mountReport(body, engine, description) {
   bindText(drawn, () => DRAWN[engine.backend.value]);
   explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), { tap: true, side: 'left' });
   const backend = h('p', { class: 'section quiet backend' }, drawn, h('span', null, `Version ${description.version}`));
-  fill(body, waiting, warnings, createTable(report, description.report), createTiming(engine, report), createHistogram(report, engine.theme), backend);
+  fill(body, waiting, warnings, createTable(report, description.report), createTiming(engine, report), createHistogram(report, engine), backend);
 }
