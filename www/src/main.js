@@ -5,12 +5,9 @@ import { byId } from './ui/dom.js';
 import { mountInterface } from './ui/app.js';
 
 const engine = createEngine({ canvasHost: byId('canvas-host') });
-// The interface is measured; WebKit does not hold scripts back until the style sheet has come.
+const mount = () => mountInterface(engine);
+// The interface is measured; WebKit does not hold scripts back until the style sheet has come. (Not awaited: an entry that waits is
+// cut into many small files.)
 const link = /** @type {HTMLLinkElement | null} */ (document.querySelector('link[rel="stylesheet"]'));
-if (link && !link.sheet) {
-  await new Promise((resolve) => {
-    link.onload = resolve;
-    link.onerror = resolve;
-  });
-}
-mountInterface(engine);
+if (link && !link.sheet) Object.assign(link, { onload: mount, onerror: mount });
+else mount();
