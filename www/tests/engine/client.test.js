@@ -524,6 +524,26 @@ describe('the surface that stays', () => {
     expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
   });
 
+  test('and was stopped with the next, which the worker never looked at, keeps what it has', () => {
+    const { client, store, columns, say, accept, jobs } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    client.sample(request('y'));
+    client.stop();
+    say(done(2, 'stopped', 0, { progress: null }));
+    expect(store.busy.value).toBe(true);
+    expect(told.at(-1)).toBe('dim');
+    say(done(1, 'stopped', 7, { report_follows: true }));
+    expect(store.busy.value).toBe(false);
+    expect(store.partial.value).toBe(true);
+    say(reportMessage(1, 7));
+    expect(client.supervisor.busy).toBe(false);
+    expect(store.report.value?.count).toBe(7);
+    expect(columns.count).toBe(7);
+    expect(jobs()).toHaveLength(2);
+  });
+
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
     const { client, columns, say, accept } = page();
     client.sample(request('x'));

@@ -409,24 +409,59 @@ describe('a job that waits for the rest of the core', () => {
     expect(jobs.interrupt(core)).toBe(null);
   });
 
-  test('may have had its field accepted while another was under way', () => {
+  test('gives way to a newer one, which is answered meanwhile if it need not wait', () => {
     const posted = /** @type {any[]} */ ([]);
     const jobs = new Jobs((message) => posted.push(message));
     const core = fakeCore();
     jobs.add(adaptive(8));
-    expect(jobs.interrupt(core)).toBe('replace');
+    expect(jobs.interrupt(core, false)).toBe(null);
     expect(jobs.awaitsRest(core)).toBe(true);
-    // A formula with a fault is answered meanwhile, and one without goes first.
     jobs.add(sampleJob({ id: 9, field: { formula: 'x^2+' } }));
-    expect(jobs.awaitsRest(core)).toBe(true);
-    expect(posted.map(({ id, answer }) => [id, answer.ok])).toEqual([[8, true], [9, false]]);
-    jobs.add(sampleJob({ id: 10 }));
+    expect(jobs.interrupt(core, false)).toBe(null);
     expect(jobs.awaitsRest(core)).toBe(false);
-    expect(jobs.take(core)).toMatchObject({ id: 10 });
+    jobs.add(sampleJob({ id: 10 }));
+    expect(jobs.interrupt(core, false)).toBe('replace');
+    jobs.add(adaptive(11));
+    expect(jobs.awaitsRest(core)).toBe(true);
+    jobs.stop();
+    expect(jobs.endStopped()).toBe(true);
+    expect(posted.map(({ type, id, answer }) => [type, id, answer?.ok])).toEqual([
+      ['field', 9, false], ['field', 10, true], ['done', 10, undefined], ['done', 11, undefined],
+    ]);
+    expect(jobs.take(core)).toBe(null);
   });
 });
 
 describe('what the first part of the core cannot do', () => {
+  test('is stopped while another job is under way, which keeps what it has', async () => {
+    const core = fakeCore({ particles: 5_000 });
+    const posted = /** @type {FromWorker[]} */ ([]);
+    const jobs = new Jobs((message) => posted.push(message), { functions: ['sin'], surfaces: [] });
+    jobs.add(sampleJob({ id: 7 }));
+    const job = jobs.take(core);
+    if (!job) throw new Error('the first job was not taken');
+    let waits = 0;
+    await runJob(core, job, {
+      now_ms: () => core.clock.ms,
+      pause: async () => { core.clock.ms += 1; },
+      post: (message) => posted.push(message),
+      interrupt: () => jobs.interrupt(core, waits === 4),
+      curvature: () => false,
+      room: () => true,
+      rest: () => {
+        if (waits === 4) return null;
+        waits += 1;
+        if (waits === 1) jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
+        if (waits === 2) jobs.stop();
+        if (waits > 3) expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[8, 'stopped'], [7, 'stopped']]);
+        return Promise.resolve();
+      },
+    }, { held: 0 });
+    expect(waits).toBe(4);
+    expect(of(posted, 'report').map(({ id }) => id)).toEqual([7]);
+    expect(jobs.take(core)).toBe(null);
+  });
+
   const later = { functions: ['sin', 'exp'], surfaces: ['gyroid'] };
   /** @param {import('../../src/engine/types.js').FieldRequest} field */
   const waits = (field) => {

@@ -474,6 +474,21 @@ test.describe('the rest of the core', () => {
     });
   }
 
+  test('where it hangs does not keep what is asked for after the first surface from being stopped', async ({ page }) => {
+    const send = await hold(page);
+    await page.goto('/');
+    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search');
+    await on(page, '(p.engine.setSurface("gyroid"), 0)');
+    await expect.poll(async () => (await status(page)).busy).toBe(true);
+    await on(page, '(p.engine.stop(), 0)');
+    await expect.poll(async () => (await status(page)).busy).toBe(false);
+    expect(await on(page, 'p.particles().count')).toBeGreaterThan(4000);
+    await on(page, '(p.engine.run(), 0)');
+    send();
+    await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
+    expect(/** @type {any} */ (await on(page, 'p.engine.field.value')).surface).toBe('gyroid');
+  });
+
   test('is brought at once by a formula that calls it unforeseen', async ({ page }) => {
     await page.route(rest, async (route) => {
       await new Promise((resolve) => setTimeout(resolve, 2500));

@@ -93,6 +93,14 @@ test('targets are at least 24 pixels', async ({ page }) => {
   expect(small).toEqual([]);
 });
 
+test('without its style sheet the page still has all its controls', async ({ page }) => {
+  await page.route('**/*.css', (route) => route.abort());
+  await page.goto('/');
+  await settled(page);
+  await expect(page.locator('#formula')).toBeAttached();
+  await expect(page.getByRole('button', { name: 'Generate only' })).toBeAttached();
+});
+
 test('a style sheet that comes after the script finds everything in its place', async ({ page }) => {
   await page.setViewportSize({ width: 1440, height: 900 });
   /** @type {(nothing: void) => void} */
@@ -108,7 +116,8 @@ test('a style sheet that comes after the script finds everything in its place', 
     await route.fulfill({ response, body: (await response.text()).replace('<script type="module"', '<script async type="module"') });
   });
   await page.goto('/', { waitUntil: 'commit' });
-  await page.waitForFunction(() => 'marchingParticles' in window);
+  // No frame is drawn before the style sheet is there.
+  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.description.value, undefined, { polling: 100 });
   expect(await page.locator('#field-body').textContent()).toBe('');
   send();
   await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts().frames)).toBeGreaterThan(0);

@@ -241,6 +241,7 @@ export class SamplingClient {
     if (message.type === 'field') return this.fieldAnswered(message.id, message.answer);
     // Stopped before the worker looked at its field.
     const unbegun = message.type === 'done' && this.answered(message.id);
+    if (unbegun && this.current && !this.current.ended) return this.passedOver(unbegun, this.current);
     if (unbegun) this.begin(unbegun);
     const { current } = this;
     if (!current || message.id !== current.id) {
@@ -309,6 +310,16 @@ export class SamplingClient {
         this.settle();
       }
     });
+  }
+
+  /** A job that was stopped with the one before it, which keeps what it has and ends by itself. @param {Run} run @param {Run} before */
+  passedOver({ id, request }, before) {
+    this.astray = request.kind === 'sample' && JSON.stringify(request.field) !== JSON.stringify(this.accepted?.field);
+    batch(() => {
+      this.dim();
+      this.attend();
+    });
+    this.scheduler.ended(id, before);
   }
 
   /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */

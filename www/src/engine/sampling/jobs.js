@@ -75,16 +75,18 @@ export class Jobs {
 
   /** Ends what was stopped before it began. @returns {boolean} whether there was any */
   endStopped() {
-    let any = false;
-    for (const place of /** @type {const} */ (['accepted', 'waiting'])) {
-      const pending = this[place];
-      if (!pending?.stopped) continue;
-      any = true;
-      this[place] = null;
-      const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
-      this.post({ type: 'done', id: pending.job.id, outcome: 'stopped', progress: null, seconds, predicted: 0, message: '', report_follows: false });
-    }
-    return any;
+    const accepted = this.end('accepted');
+    return this.end('waiting') || accepted;
+  }
+
+  /** @param {'accepted' | 'waiting'} place @returns {boolean} whether what is there was stopped */
+  end(place) {
+    const pending = this[place];
+    if (!pending?.stopped) return false;
+    this[place] = null;
+    const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+    this.post({ type: 'done', id: pending.job.id, outcome: 'stopped', progress: null, seconds, predicted: 0, message: '', report_follows: false });
+    return true;
   }
 
   /** The job to run next, its field set. @param {CoreLike} core @returns {Job | null} */
@@ -97,11 +99,13 @@ export class Jobs {
   }
 
   /**
-   * What a job under way has to do: between two steps it asks. While the core is not `whole`, a job that needs all of it waits.
+   * What a job under way has to do: between two steps it asks. While the core is not `whole`, a job that needs all of it waits,
+   * unless it is stopped.
    * @param {CoreLike} core @param {boolean} [whole] @returns {'stop' | 'replace' | null}
    */
   interrupt(core, whole = true) {
     if (whole || (this.waiting && !this.isLater(this.waiting.job))) this.ask(core);
+    else this.end('waiting');
     if (this.accepted) return 'replace';
     return this.stopped ? 'stop' : null;
   }
