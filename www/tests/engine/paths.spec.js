@@ -243,7 +243,8 @@ test('a stop keeps the partial surface, and says so', async ({ page }) => {
   await open(page);
   const outcome = /** @type {any} */ (await page.evaluate(async () => {
     const p = /** @type {any} */ (window).marchingParticles;
-    void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.0005 } });
+    // So many steps that it does not end before the stop, and few enough particles for a slow machine to draw.
+    void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 1000 } });
     await new Promise((resolve) => {
       const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
         if (v.phase !== 'generation' || v.particles === 0) return;

@@ -325,7 +325,9 @@ export class SamplingClient {
   /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */
   relaxed(steps) {
     const { request } = /** @type {NonNullable<SamplingClient['shown']>} */ (this.shown);
-    return { ...request, live: false, grow: false, fit: false, settings: { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps } };
+    const settings = { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps };
+    const { value: description } = this.store.description;
+    return { ...request, live: false, grow: false, fit: false, settings: description ? clampSettings(description, settings) : settings };
   }
 
   /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
