@@ -33,43 +33,86 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
     (before, sampler)
 }
 
-/// Energy per particle over all pairs of a sheet, by looking at all of them.
+/// Share in which particles repel each other whose normals have this cosine: all up to 60°, nothing from 120°.
+fn likeness(cosine: f32) -> f64 {
+    (0.5 + f64::from(cosine)).clamp(0.0, 1.0)
+}
+
+/// Energy per particle by its definition, over all pairs: along one axis, so that most are known to be too far apart.
 fn energy(particles: &Particles, radius: f64) -> f64 {
+    let Particles { position, normal, .. } = particles;
+    let mut order: Vec<usize> = (0..particles.len()).collect();
+    order.sort_by(|&i, &j| position[i].x.total_cmp(&position[j].x));
     let mut sum = 0.0;
-    for i in 0..particles.len() {
-        for j in 0..i {
-            let d = particles.position[i].distance(particles.position[j]);
-            let q = f64::from(d) / radius;
-            if q < 3.0 && particles.normal[i].dot(particles.normal[j]) > 0.0 {
-                sum += libm::exp(-0.5 * q * q) - libm::exp(-4.5);
+    for (k, &i) in order.iter().enumerate() {
+        let reach = f64::from(position[i].x) + 3.0 * radius;
+        for &j in order[k + 1..].iter().take_while(|&&j| f64::from(position[j].x) < reach) {
+            let q = f64::from(position[i].distance(position[j])) / radius;
+            if q < 3.0 {
+                let share = likeness(normal[i].dot(normal[j]));
+                sum += share * (libm::exp(-0.5 * q * q) - libm::exp(-4.5));
             }
         }
     }
     sum / particles.len() as f64
 }
 
+/// The energy by its definition before the first relaxation step and after each, and what the sampler reports.
+fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
+    while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
+    let mut defined = Vec::new();
+    // A unit at a time: the particles of a step that has been accepted, before the next one moves any.
+    while sampler.step(&mut field, 1).stop_reason.is_none() {
+        if sampler.energy().len() > defined.len() {
+            defined.push(energy(sampler.particles(), sampler.radius()));
+        }
+    }
+    (defined, sampler.energy().to_vec())
+}
+
 #[test]
-fn the_energy_falls_at_every_step_on_every_smooth_surface() {
+fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
+    // Where nearly every particle has a neighbour across a bend that the radius does not resolve, the forces of the
+    // distances lower the energy no further, and the relaxation ends before its tenth step.
+    let end_early = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES.iter().filter(|surface| surface.smooth) {
-        let settings = Settings { radius_share: 0.006, ..Settings::default() };
-        let (_, sampler) = before_and_after(surface, &settings);
-        let energy = sampler.energy();
-        assert_eq!(energy.len(), 11, "{}", surface.id);
-        assert!(energy.is_sorted_by(|a, b| a > b), "{}: {energy:?}", surface.id);
+        for radius_share in [0.006, 0.01, 0.015, 0.02, 0.03, 0.05] {
+            let settings = Settings { radius_share, ..Settings::default() };
+            let (defined, reported) = energies(surface, &settings);
+            let context = format!("{} at {radius_share}: {defined:?}, reported {reported:?}", surface.id);
+            let is_coarse = radius_share == 0.05 && end_early.contains(&surface.id);
+            assert_eq!(defined.len(), reported.len(), "{context}");
+            assert!(defined.len() == 11 || is_coarse && defined.len() > 1, "{context}");
+            assert!(defined.is_sorted_by(|a, b| a > b), "{context}");
+            assert!(reported.is_sorted_by(|a, b| a > b), "{context}");
+            let are_equal = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() < 1e-5;
+            assert!(defined.iter().zip(&reported).all(are_equal), "{context}");
+        }
     }
 }
 
 #[test]
-fn the_reported_energy_is_that_of_all_pairs() {
-    for id in ["ellipsoid", "tanglecube"] {
-        let surface = gallery::find(id).expect("a gallery surface");
-        let settings = Settings { size_mode: SizeMode::Count, count: 2_500, ..Settings::default() };
-        let (before, sampler) = before_and_after(surface, &settings);
-        let reported = [sampler.energy()[0], *sampler.energy().last().expect("eleven values")];
-        for (particles, reported) in [(&before, reported[0]), (sampler.particles(), reported[1])] {
-            let exact = energy(particles, sampler.radius());
-            assert!((reported / exact - 1.0).abs() < 1e-4, "{id}: {reported} reported, {exact} summed");
-        }
+fn how_a_relaxation_is_cut_into_steps_does_not_change_it_where_steps_are_taken_back() {
+    let surface = gallery::find("double-torus").expect("a gallery surface");
+    let settings = Settings { radius_share: 0.03, seed: 1, ..Settings::default() };
+    let run = |budget: u32| {
+        let mut field = surface.field();
+        let mut sampler = Sampler::new();
+        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        while sampler.step(&mut field, budget).stop_reason.is_none() {}
+        sampler
+    };
+    let whole = run(u32::MAX);
+    // Two evaluations per particle and step, and two at the end; the rest are those of steps taken back.
+    let evaluations = whole.counts().relaxation_evaluations;
+    assert!(evaluations > 22 * whole.particles().len() as u64, "no step was taken back: {evaluations}");
+    for budget in [1, 7, 100] {
+        let parts = run(budget);
+        assert_eq!(parts.particles().digest(), whole.particles().digest(), "budget {budget}");
+        assert_eq!(parts.energy(), whole.energy(), "budget {budget}");
     }
 }
 

@@ -19,7 +19,7 @@ use super::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use super::pairs::Pairs;
 use super::placement::{Landed, Placement, Proposal, Spot};
 use super::project::{BATCH, Circle, Landing, Projector, tolerance};
-use super::repulsion::{Overlap, Repulsion};
+use super::repulsion::{FULL_COSINE, LISTED_COSINE, Overlap, Repulsion};
 use super::settings::{Placement as Method, Settings};
 use super::sheets::is_near_own;
 use super::sizing::Sizing;
@@ -641,6 +641,7 @@ impl AdaptiveFront {
         self.ring.clear();
         self.touching.clear();
         let mut alone = true;
+        let mut is_bent = false;
         let list = found.iter().map(|near| {
             let j = near.index as usize;
             if j == parent {
@@ -656,10 +657,16 @@ impl AdaptiveFront {
                 alone = false;
             }
             let reach = LISTED * both;
-            (near.index, (j < parent) & (other.dot(normal) > 0.0) & (near.distance_sq <= reach * reach))
+            let along = other.dot(normal);
+            let is_listed = (j < parent) & (near.distance_sq <= reach * reach);
+            is_bent |= is_listed & (along < FULL_COSINE);
+            (near.index, is_listed & (along > LISTED_COSINE))
         });
         if pairs.len() == parent {
             pairs.push(list);
+            if is_bent {
+                found.iter().for_each(|near| pairs.note_bend(near.index as usize));
+            }
         } else {
             list.for_each(drop);
         }

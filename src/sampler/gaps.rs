@@ -8,6 +8,7 @@
 use super::pairs::Pairs;
 use super::project::{Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
+use super::repulsion::{FULL_COSINE, LISTED_COSINE};
 use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
@@ -124,7 +125,16 @@ impl Gaps {
         if self.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
             return;
         }
-        ground.pairs.push(self.found.iter().map(|near| (near.index, same_sheet(&near))));
+        let mut is_bent = false;
+        ground.pairs.push(self.found.iter().map(|near| {
+            let along = ground.particles.normal[near.index as usize].dot(normal);
+            is_bent |= along < FULL_COSINE;
+            (near.index, along > LISTED_COSINE)
+        }));
+        if is_bent {
+            self.found.iter().for_each(|near| ground.pairs.note_bend(near.index as usize));
+            ground.pairs.note_bend(ground.particles.len());
+        }
         let level = ground.particles.level[i] + 1;
         ground.grid.insert(position, ground.particles.len() as u32);
         // It has neighbours all around, so it places no children.

@@ -237,7 +237,9 @@ impl Sampler {
         Counts { fates: self.front.fates(), gaps_filled: self.front.filled(), ..self.counts.clone() }
     }
 
-    /// Energy per particle before the first relaxation step and after each: Σ exp(−d²/2σ²) over pairs, cut off at 3σ.
+    /// Energy per particle before the first relaxation step and after each. Of uniform sampling it is Σ s (exp(−d²/2σ²) −
+    /// exp(−9/2)) over the pairs nearer than 3σ, where s goes from 1 for pairs whose normals are within 60° to 0 for those
+    /// beyond 120°: ½ + cosine in between.
     #[must_use]
     pub fn energy(&self) -> &[f64] {
         &self.relaxation.energy

@@ -1,10 +1,15 @@
 //! Neighbour lists for the relaxation: every pair once, under the larger index.
 
+use super::project::BATCH;
 use crate::math::push_gently;
+use core::ops::Range;
 
 /// Neighbours that a list has room for. Within the reach of the relaxation a lattice has 6 to 12, half of them of a
 /// smaller index; one particle in a hundred has more than eight.
 pub(super) const ROOM: usize = 8;
+
+/// Particles of which it is known together whether all their pairs repel in full: a batch, which is landed together.
+const BLOCK: usize = BATCH;
 
 /// Lists by particle. A neighbour stands as its distance back in the order of the particles, which is that of the front:
 /// those around a particle are of its own level or the few before, so that 16 bits are enough.
@@ -15,17 +20,35 @@ pub(super) struct Pairs {
     /// Larger and smaller index of the pairs that find no room there: in crowds, and where fronts meet that are far apart
     /// in the order.
     far: Vec<[u32; 2]>,
+    /// By blocks of particles, whether one may have a pair that does not repel in full.
+    is_bent: Vec<bool>,
 }
 
 impl Pairs {
     pub(super) fn clear(&mut self) {
         self.near.clear();
         self.far.clear();
+        self.is_bent.clear();
     }
 
     /// Makes room for exactly `particles` lists.
     pub(super) fn reserve(&mut self, particles: usize) {
         self.near.reserve_exact(particles.saturating_sub(self.near.len()));
+    }
+
+    /// Notes that particle `i` may have a pair that does not repel in full.
+    #[cold]
+    pub(super) fn note_bend(&mut self, i: usize) {
+        let block = i / BLOCK;
+        if block >= self.is_bent.len() {
+            self.is_bent.resize(block + 1, false);
+        }
+        self.is_bent[block] = true;
+    }
+
+    /// Whether one of these particles may have a pair that does not repel in full.
+    pub(super) fn are_bent(&self, range: &Range<usize>) -> bool {
+        (range.start / BLOCK..range.end.div_ceil(BLOCK)).any(|block| self.is_bent.get(block) == Some(&true))
     }
 
     /// Gives back the room beyond the lists there are.

@@ -7,15 +7,17 @@
 //! # Differs from the paper
 //!
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
-//!   so the energy falls at every step. It may rise only where the radius does not resolve a bend, and pairs come and go as
-//!   their normals turn past 90° from each other.
+//!   so the energy falls at every step. That holds because the energy is one function of places and normals: no pair within
+//!   range is missing from the lists, and each takes part as its normals say now ([`likeness`]). Where nearly every particle
+//!   has a neighbour across a bend that the radius does not resolve, no step along these forces may lower it further; the
+//!   relaxation then ends before its last step.
 
 mod lists;
 
 use self::lists::{Lists, is_old};
 use super::pairs::{Pairs, ROOM};
 use super::project::{BATCH, Projector, Tolerance};
-use super::repulsion::{Gaussian, Overlap, Points, Repulsion};
+use super::repulsion::{Gaussian, MAX_TURN, Overlap, Points, Repulsion, likeness};
 use super::sizing::Sizing;
 use crate::field::Field;
 use crate::math::Bounds;
@@ -35,6 +37,9 @@ const MAX_FAILURES: u32 = 6;
 pub(super) const MAX_MOVE: f32 = 0.35;
 /// A Newton correction shorter than this, in radii, leaves a residual of the order of its square.
 pub(super) const TRUSTED_CORRECTION: f32 = 0.02;
+
+/// So short is no correction: where the energy depends on the normals, they have to be those of the very places.
+const CHECKED: f32 = f32::MIN_POSITIVE;
 
 /// Units that a new list counts for: it takes ten times as long as a particle's forces.
 const REFRESH_UNITS: u32 = 10;
@@ -199,7 +204,6 @@ impl Relaxation {
         }
         // A first step that was cancelled has moved particles, and the lists of the front no longer hold.
         let is_first = self.energy.is_empty();
-        self.energy.truncate(self.done as usize);
         fill(&mut self.force, particles, Vec4::ZERO);
         fill(&mut self.previous, particles, Vec3::ZERO);
         self.farthest = 0.0;
@@ -327,10 +331,10 @@ impl Relaxation {
                 }
                 Stage::Move => {
                     let mut points = Points::new();
-                    for first in (range.start..last).step_by(BATCH) {
-                        let range = first..last.min(first + BATCH);
+                    for range in parts(range.clone()) {
                         self.advance(law, particles, range.clone(), &mut points);
-                        self.land(law, surface, particles, range, &mut points, TRUSTED_CORRECTION);
+                        let trust = if pairs.are_bent(&range) { CHECKED } else { TRUSTED_CORRECTION };
+                        self.land(law, surface, particles, range, &mut points, trust);
                     }
                     moved |= !range.is_empty();
                     if last == n {
@@ -338,15 +342,22 @@ impl Relaxation {
                     }
                 }
                 Stage::Restore => {
-                    for i in range {
-                        let back = (particles.position[i] - self.previous[i]).length();
-                        let shrunk = particles.radius[i];
-                        self.restore(particles, i);
-                        self.take_force(i);
-                        if L::RESIZES {
-                            self.since[i] = (self.since[i] - back).max(0.0);
+                    let mut points = Points::new();
+                    for range in parts(range.clone()) {
+                        for (point, i) in points.position.iter_mut().zip(range.clone()) {
+                            let back = (particles.position[i] - self.previous[i]).length();
+                            let shrunk = particles.radius[i];
+                            self.restore(particles, i);
+                            self.take_force(i);
+                            if L::RESIZES {
+                                self.since[i] = (self.since[i] - back).max(0.0);
+                            }
+                            self.went(law, particles, i, back, particles.radius[i] - shrunk);
+                            *point = particles.position[i];
                         }
-                        self.went(law, particles, i, back, particles.radius[i] - shrunk);
+                        // The normal is that of the place left.
+                        let trust = if pairs.are_bent(&range) { CHECKED } else { TRUSTED_CORRECTION };
+                        self.land(law, surface, particles, range, &mut points, trust);
                     }
                     moved = true;
                     if last == n {
@@ -356,8 +367,7 @@ impl Relaxation {
                 }
                 Stage::Polish => {
                     let mut points = Points::new();
-                    for first in (range.start..last).step_by(BATCH) {
-                        let range = first..last.min(first + BATCH);
+                    for range in parts(range.clone()) {
                         points.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
                         self.land(law, surface, particles, range, &mut points, 0.0);
                     }
@@ -453,10 +463,10 @@ impl Relaxation {
     }
 
     /// Notes that particle `i` has gone some way and grown: two particles of which each has used up half of its skin may
-    /// have come within range without being listed.
+    /// have come within range without being listed. A turn of the normal counts as some way.
     #[inline]
     fn went<L: Repulsion>(&mut self, law: &L, particles: &Particles, i: usize, distance: f32, grown: f32) {
-        self.farthest = self.farthest.max(distance);
+        self.farthest = larger(self.farthest, distance);
         let mut way = self.force[i].w + distance;
         if L::RESIZES {
             way += 0.5 * L::RANGE * grown.max(0.0);
@@ -497,6 +507,18 @@ impl Relaxation {
             of_weight.write_to_slice(&mut weight[first..first + 4]);
             of_energy.write_to_slice(&mut energy[first..first + 4]);
         }
+        if pairs.are_bent(&range) {
+            let mut first = 0;
+            for (&end, i) in end.iter().zip(range.clone()) {
+                for k in first..end {
+                    let other = particles.normal[other[k] as usize];
+                    let share = likeness(particles.normal[i].dot(other));
+                    weight[k] *= share;
+                    energy[k] *= share;
+                }
+                first = end;
+            }
+        }
         let mut count = 0;
         for (&end, i) in end.iter().zip(range) {
             let mut force = Vec4::ZERO;
@@ -521,19 +543,22 @@ impl Relaxation {
             let offset = particles.position[i] - particles.position[j];
             let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
             let (weight, energy) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
-            let push = offset.extend(0.0) * weight.x;
+            let share = likeness(particles.normal[i].dot(particles.normal[j]));
+            let push = offset.extend(0.0) * (weight.x * share);
             self.force[i] += push;
             self.force[j] -= push;
-            self.sum += f64::from(energy.x);
+            self.sum += f64::from(energy.x * share);
         }
     }
 
-    /// Accepts the last step or has it taken back.
+    /// Accepts the last step or has it taken back. What stands as the energy is never replaced: places taken back are those
+    /// it was of.
     fn judge<L: Repulsion>(&mut self, particles: usize) {
         let energy = core::mem::take(&mut self.sum) / particles as f64;
-        if self.has_previous {
-            let before = self.energy.last().copied().unwrap_or(f64::INFINITY);
-            if energy >= before {
+        if !self.has_begun() {
+            self.energy.push(energy);
+        } else if self.has_previous {
+            if self.energy.last().is_some_and(|&before| energy >= before) {
                 self.step_size *= 0.5;
                 self.failures += 1;
                 return self.enter(Stage::Restore);
@@ -541,11 +566,8 @@ impl Relaxation {
             self.step_size = (self.step_size * GROWTH).min(L::STEP);
             self.failures = 0;
             self.done += 1;
+            self.energy.push(energy);
         }
-        // After a step taken back this is the energy of the same positions again; it differs only where a normal has
-        // turned past 90° from a neighbour's, on creases that the radius does not resolve.
-        self.energy.truncate(self.done as usize);
-        self.energy.push(energy);
         if self.done >= self.target || self.failures > MAX_FAILURES {
             self.has_previous = false;
             return self.enter(Stage::Polish);
@@ -597,8 +619,13 @@ impl Relaxation {
         for (k, i) in range.enumerate() {
             // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
             let (position, normal) = (points.position[k], points.normal[k]);
-            if points.ok[k] && self.bounds.contains(position) && normal.dot(particles.normal[i]) > 0.0 {
-                let distance = (position - particles.position[i]).length();
+            let cosine = normal.dot(particles.normal[i]);
+            if points.ok[k] && self.bounds.contains(position) && cosine > 0.0 {
+                // The turn that has a list made anew counts as the way that does.
+                let turn_sq = 2.0 - 2.0 * cosine;
+                let per_turn = 0.5 * L::SKIN / MAX_TURN * law.radius(particles, i);
+                let distance_sq = (position - particles.position[i]).length_squared();
+                let distance = larger(distance_sq, turn_sq * (per_turn * per_turn)).sqrt();
                 let mut grown = 0.0;
                 if L::RESIZES {
                     grown = points.radius[k] - particles.radius[i];
@@ -616,7 +643,7 @@ impl Relaxation {
     #[inline(always)]
     fn take_force(&mut self, i: usize) -> Vec3 {
         let force = self.force[i];
-        self.force[i] = Vec4::new(0.0, 0.0, 0.0, force.w.max(0.0));
+        self.force[i] = Vec4::new(0.0, 0.0, 0.0, larger(force.w, 0.0));
         force.truncate()
     }
 
@@ -629,6 +656,18 @@ impl Relaxation {
     }
 }
 
+/// The larger of two numbers, of which neither is a NaN: a maximum that knows NaN takes five instructions.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The batches that a range of particles belongs to, as far as it does.
+fn parts(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    (range.start / BATCH..range.end.div_ceil(BATCH))
+        .map(move |batch| range.start.max(batch * BATCH)..range.end.min((batch + 1) * BATCH))
+}
+
 /// Makes a column of `len` times `value`, in no more memory than it takes.
 fn fill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.clear();
@@ -636,14 +675,16 @@ fn fill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
     column.resize(len, value);
 }
 
-/// Lowers the larger of two radii to what the smaller allows it at this slope. Says whether it was lowered.
+/// Lowers the larger of two radii to what the smaller allows it at this slope, on one sheet. Says whether it was lowered.
+#[inline(always)]
 fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
     let rise = slope * (particles.position[i] - particles.position[j]).length();
     let (a, b) = (particles.radius[i], particles.radius[j]);
-    if a > b + rise {
+    let is_steep = (a > b + rise || b > a + rise) && particles.normal[i].dot(particles.normal[j]) > 0.0;
+    if is_steep && a > b {
         particles.radius[i] = b + rise;
-    } else if b > a + rise {
+    } else if is_steep {
         particles.radius[j] = a + rise;
     }
-    a > b + rise || b > a + rise
+    is_steep
 }

@@ -12,6 +12,24 @@ use glam::{Vec3, Vec4};
 /// Evaluations to bring one particle back onto the surface.
 const MAX_NEWTON: u32 = 6;
 
+/// Share in which two particles repel each other whose normals have this cosine: all up to 60°, as neighbours on one sheet;
+/// nothing from 120°, as neighbours on two.
+///
+/// In between it is linear in the cosine: no pair comes or goes at once, and the energy is one continuous function of the
+/// places. The force is that of the distances alone and does not count how the share changes with the place, so the ramp
+/// must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
+/// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
+#[inline(always)]
+pub(super) fn likeness(cosine: f32) -> f32 {
+    (0.5 + cosine).clamp(0.0, 1.0)
+}
+
+/// The farthest that a normal may turn until the particle's lists are made anew: the length of its change. Pairs at a cosine
+/// above the larger of these bounds repel in full until then, and those below the smaller one not at all.
+pub(super) const MAX_TURN: f32 = 0.1;
+pub(super) const FULL_COSINE: f32 = 0.5 + 2.0 * MAX_TURN;
+pub(super) const LISTED_COSINE: f32 = -0.5 - 2.0 * MAX_TURN;
+
 /// Some particles on their way back to the surface.
 pub(super) struct Points {
     pub(super) count: usize,

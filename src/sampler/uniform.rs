@@ -15,6 +15,7 @@ use super::gaps::SEAM;
 use super::pairs::Pairs;
 use super::project::{BATCH, Circle, Landing, Projector, Tolerance};
 use super::relax::{CUT_OFF, SKIN};
+use super::repulsion::{FULL_COSINE, LISTED_COSINE};
 use super::sheets::{MAX_LIFT, is_doubtful, is_near_own, is_one_sheet, lift};
 use super::surroundings::{MAX_RISE_SQ, Shape, Surroundings};
 use crate::field::Field;
@@ -437,13 +438,19 @@ impl UniformFront {
         let repulsion = (CUT_OFF + SKIN) * self.radius;
         let normal = particles.normal[parent];
         self.around.clear();
+        let mut is_bent = false;
         pairs.push(found.iter().map(|near| {
             let j = near.index as usize;
             let other = particles.normal[j];
             self.around.push(near.offset, other, j < self.settled);
-            let repels = near.distance_sq <= repulsion * repulsion;
-            (near.index, (j < parent) & repels & (other.dot(normal) > 0.0))
+            let along = other.dot(normal);
+            let is_listed = (j < parent) & (near.distance_sq <= repulsion * repulsion);
+            is_bent |= is_listed & (along < FULL_COSINE);
+            (near.index, is_listed & (along > LISTED_COSINE))
         }));
+        if is_bent {
+            found.iter().for_each(|near| pairs.note_bend(near.index as usize));
+        }
         let spacing = 2.0 * self.radius;
         // The normals of children under way are only predicted, but they belong to this front.
         self.around.are_doubtful(normal, spacing)

@@ -2,8 +2,9 @@
 
 use super::super::adaptive_grid::RadiusChains;
 use super::super::pairs::Pairs;
+use super::super::repulsion::{FULL_COSINE, LISTED_COSINE};
 use crate::particles::Particles;
-use glam::Vec4;
+use glam::{BVec4A, Vec4};
 
 /// Most particles whose lists are made together.
 const GROUP: usize = 32;
@@ -26,6 +27,8 @@ pub(super) struct Lists {
     chunks: Vec<[[f32; CHUNK]; 7]>,
     /// Neighbours of one of the group.
     near: Vec<u32>,
+    /// Whether a particle within its reach may repel it less than in full.
+    is_bent: bool,
 }
 
 impl Lists {
@@ -38,6 +41,7 @@ impl Lists {
             found: Vec::new(),
             chunks: Vec::new(),
             near: Vec::new(),
+            is_bent: false,
         }
     }
 
@@ -76,6 +80,10 @@ impl Lists {
             let i = self.group[k];
             self.find(particles, i as usize);
             pairs.fill(i as usize, self.near.iter().map(|&j| (j, j < i)));
+            if self.is_bent {
+                // In the lists of the others it may stand from when it repelled them in full.
+                self.found.iter().for_each(|&j| pairs.note_bend(j as usize));
+            }
             for &j in self.near.iter().filter(|&&j| j > i) {
                 // Those whose own lists are made anew find it themselves.
                 if force[j as usize].w.is_finite() {
@@ -144,13 +152,15 @@ impl Lists {
         let (p, n, radius) = (particles.position[i], particles.normal[i], particles.radius[i]);
         self.near.resize(self.found.len(), 0);
         let mut len = 0;
+        let mut bent = BVec4A::FALSE;
         for (chunk, others) in self.chunks.iter().zip(self.found.chunks_exact(CHUNK)) {
             let [x, y, z, mx, my, mz, other] = chunk.map(Vec4::from_array);
             let (dx, dy, dz) = (x - p.x, y - p.y, z - p.z);
             let along = mx * n.x + my * n.y + mz * n.z;
             let reach = (other + radius) * self.share;
-            let is_near = (dx * dx + dy * dy + dz * dz).cmple(reach * reach) & along.cmpgt(Vec4::ZERO);
-            let mask = is_near.bitmask();
+            let is_near = (dx * dx + dy * dy + dz * dz).cmple(reach * reach);
+            bent |= is_near & along.cmplt(Vec4::splat(FULL_COSINE));
+            let mask = (is_near & along.cmpgt(Vec4::splat(LISTED_COSINE))).bitmask();
             // All are written down: a branch would be mispredicted for every other one.
             for (lane, &j) in others.iter().enumerate() {
                 self.near[len] = j;
@@ -158,6 +168,7 @@ impl Lists {
             }
         }
         self.near.truncate(len);
+        self.is_bent = bent.any();
     }
 }
 
