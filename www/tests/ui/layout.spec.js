@@ -1,7 +1,7 @@
 import { expect, test } from '@playwright/test';
 import { atRest, open, scan, settled, state } from './helpers.js';
 
-const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390]]);
+const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390], [600, 340]]);
 
 for (const [width, height] of SIZES) {
   test(`nothing overflows at ${width} by ${height}`, async ({ page }) => {
@@ -9,7 +9,7 @@ for (const [width, height] of SIZES) {
     const compact = width < 720 || height < 480;
     for (const tab of compact ? ['Sampling', 'Report', 'Field'] : ['']) {
       if (tab) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
-      const { scroll, outside } = await page.evaluate(() => {
+      const { scroll, outside, rows } = await page.evaluate(() => {
         const visible = (/** @type {Element} */ element) => element.checkVisibility();
         const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')].filter(visible).filter((element) => {
           const { left, right, top, bottom } = element.getBoundingClientRect();
@@ -18,8 +18,11 @@ for (const [width, height] of SIZES) {
         for (const body of document.querySelectorAll('.panel-body')) {
           if (visible(body) && body.scrollWidth > body.clientWidth + 1) outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
         }
-        return { scroll: document.documentElement.scrollWidth, outside };
+        const middle = (/** @type {Element} */ element) => Math.round(element.getBoundingClientRect().top + element.clientHeight / 2);
+        const rows = new Set([...document.querySelectorAll('.tabs > *')].filter(visible).map(middle)).size;
+        return { scroll: document.documentElement.scrollWidth, outside, rows };
       });
+      expect(rows).toBe(Number(compact));
       expect(scroll).toBeLessThanOrEqual(width);
       expect(outside).toEqual([]);
     }
