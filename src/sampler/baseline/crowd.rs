@@ -6,8 +6,9 @@ use glam::Vec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Grid cells per mean reach of a particle: [`CellGrid::gather`] is fast for radii near 0.8 of a cell.
-const CELL: f32 = 1.0 / 0.8;
+/// Side of a grid cell over the mean reach of a particle: an iteration takes 5 % fewer instructions than with 1.25 with Witkin and
+/// Heckbert, 13 % fewer with forces. Up to 3.2 makes no difference to the first.
+const CELL: f32 = 1.6;
 
 /// A reach of more cells than this is searched through all particles instead: it belongs to a particle with few
 /// neighbours, of which there are a few at a time.
