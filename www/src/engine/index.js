@@ -349,7 +349,11 @@ export function createEngine({ canvasHost }) {
       change(shapeOf(id, surface?.formula));
       choose({ grow: true, fit: true });
     },
-    openFile: (file) => loader.openFile(file),
+    openFile(file) {
+      // A formula that waits for its end would take the file's place.
+      clearTimeout(rest_timer);
+      return loader.openFile(file);
+    },
     cancelLoading: () => loader.cancel(),
     setFormula(text, { unfinished = false } = {}) {
       const { surface, formula } = store.state.value;

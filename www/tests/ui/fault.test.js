@@ -51,12 +51,12 @@ describe('a fault in a formula', () => {
 });
 
 describe('a name at the caret', () => {
-  const functions = ['sqrt', 'sin', 'sinh'].map((name) => ({ name, signature: `${name}(a)`, help: '' }));
+  const functions = ['sqrt', 'sin', 'sinh', 'exp'].map((name) => ({ name, signature: `${name}(a)`, help: '' }));
   const begins = (/** @type {string} */ text, /** @type {string[]} */ parameters = []) => beginsFunction(text, functions, parameters);
 
   it('may be the beginning of a function until it is one, or is another', () => {
     expect(['x^2 + s', 'x^2 + sq', '2sq', 'x s'].map((text) => begins(text))).toEqual([true, true, true, true]);
-    expect(['', 'x^2 + ', 'x', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text))).toEqual([]);
+    expect(['', 'x^2 + ', 'x', 'x + e', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text))).toEqual([]);
   });
 
   it('is none where the formula has such a parameter', () => {

@@ -70,13 +70,14 @@ export function piecesOf(message) {
 }
 
 /**
- * Whether a text ends in a name that is new and may become a function's with the next keys, as `sq` does on the way to `sqrt`.
+ * Whether a text ends in a name that is new and may become a function's with the next keys, as `sq` does on the way to `sqrt`. The
+ * constant e is not new.
  * @param {string} text  up to the caret
  * @param {import('../../engine/types.js').Description['functions']} functions
  * @param {string[]} parameters  that the formula has
  */
 export function beginsFunction(text, functions, parameters) {
   const [name] = /[\p{L}_][\p{L}\p{N}_]*$/u.exec(text) ?? [''];
-  const known = functions.some((entry) => entry.name === name) || parameters.includes(name);
+  const known = name === 'e' || functions.some((entry) => entry.name === name) || parameters.includes(name);
   return name !== '' && !known && functions.some((entry) => entry.name.startsWith(name));
 }

@@ -34,7 +34,7 @@ export function createHistogram(report, { theme, columns }) {
     const current = report.value;
     // Where every particle has a size of its own, so has its distance.
     const bins = columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
-    unit.textContent = columns.adaptive ? 'touching 1' : 'perfect lattice 1';
+    unit.textContent = columns.adaptive ? 'own diameter 1' : 'perfect lattice 1';
     const usable = Boolean(bins && bins.bins.length && bins.max > bins.min);
     section.hidden = !usable;
     if (!bins || !usable) return;
