@@ -280,6 +280,19 @@ fn compare(arguments: &[&str]) -> Value {
 }
 
 #[test]
+fn comparison_says_what_to_change_where_the_other_method_takes_no_such_radius() {
+    // The radius follows from the count: the box is 70 times as wide as the sphere.
+    let output =
+        run(&["compare", "--formula", "x^2+y^2+z^2=1e-4", "--count", "4000", "--box", "1.5", "--quiet"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("--box") && !stderr(&output).contains("--radius"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
 fn comparison_holds_the_figures_of_both_methods_at_one_radius() {
     let uniform = compare(&["--surface", "torus", "--count", "1500"]);
     let adaptive = compare(&["--surface", "ellipsoid", "--count", "1500", "--adaptive"]);

@@ -117,6 +117,40 @@ fn how_a_relaxation_is_cut_into_steps_does_not_change_it_where_steps_are_taken_b
 }
 
 #[test]
+fn a_relaxation_that_goes_on_after_a_stop_in_mid_step_measures_where_the_particles_are() {
+    let surface = gallery::find("ellipsoid").expect("a gallery surface");
+    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let mut is_amid = 0;
+    for units in (1..4_000).step_by(331) {
+        let mut field = surface.field();
+        let mut sampler = Sampler::new();
+        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+        while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
+        for _ in 0..units {
+            sampler.step(&mut field, 1);
+        }
+        let was = sampler.energy().last().copied();
+        sampler.cancel();
+        let is = energy(sampler.particles(), sampler.radius());
+        is_amid += u32::from(was.is_some_and(|was| (is / was - 1.0).abs() > 1e-5));
+        sampler.relax(3);
+        let first = sampler.energy().len();
+        let mut defined = Vec::new();
+        while sampler.step(&mut field, 1).stop_reason.is_none() {
+            if sampler.energy().len() > first + defined.len() {
+                defined.push(energy(sampler.particles(), sampler.radius()));
+            }
+        }
+        let reported = &sampler.energy()[first..];
+        let context = format!("after {units} units: {defined:?}, reported {reported:?}");
+        assert_eq!((defined.len(), reported.len()), (4, 4), "{context}");
+        assert!(reported.is_sorted_by(|a, b| a > b), "{context}");
+        assert!(defined.iter().zip(reported).all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{context}");
+    }
+    assert!(is_amid > 0, "no stop came between a step and its judgement");
+}
+
+#[test]
 fn holes_and_crowded_pairs_shrink() {
     for (id, euler) in [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)] {
         let surface = gallery::find(id).expect("a gallery surface");

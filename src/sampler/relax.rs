@@ -204,6 +204,8 @@ impl Relaxation {
         }
         // A first step that was cancelled has moved particles, and the lists of the front no longer hold.
         let is_first = self.energy.is_empty();
+        // After a stop the particles may stand where nothing has judged them, and after a run they have been polished.
+        self.energy.truncate(self.done as usize);
         fill(&mut self.force, particles, Vec4::ZERO);
         fill(&mut self.previous, particles, Vec3::ZERO);
         self.farthest = 0.0;
@@ -551,8 +553,7 @@ impl Relaxation {
         }
     }
 
-    /// Accepts the last step or has it taken back. What stands as the energy is never replaced: places taken back are those
-    /// it was of.
+    /// Accepts the last step or has it taken back. After that the energy stands as it was: the places are those it was of.
     fn judge<L: Repulsion>(&mut self, particles: usize) {
         let energy = core::mem::take(&mut self.sum) / particles as f64;
         if !self.has_begun() {

@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let report = session.report();
     seconds.quality = clock.seconds();
 
-    let other_settings = baseline::Settings { sizes: same_size(&session, &settings), ..other_settings };
+    let other_settings = baseline::Settings { sizes: same_size(&session, &settings)?, ..other_settings };
     let progress = bar(arguments.quiet);
     let other = sample_other(&mut session, &other_settings, &progress)?;
     progress.finish_and_clear();
@@ -132,7 +132,8 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     } else {
         write(&mut out, &comparison, method.1)?;
     }
-    let capped = report.stop_reason == Some(StopReason::Cap);
+    let capped =
+        report.stop_reason == Some(StopReason::Cap) || state.stop_reason == Some(baseline::StopReason::Cap);
     Ok(if capped { ExitCode::from(LIMIT) } else { ExitCode::SUCCESS })
 }
 
@@ -145,17 +146,25 @@ fn method(settings: &Settings) -> (&'static str, &'static str) {
 }
 
 /// The same size for the other method: of our radius, or by the same law of the curvature.
-fn same_size(session: &Session, settings: &Settings) -> Settings {
-    let room = (ROOM * session.count()).min(Settings::RANGES[9].2 as usize) as u32;
+fn same_size(session: &Session, settings: &Settings) -> Result<Settings, Failure> {
+    let range =
+        |name| Settings::RANGES.iter().find(|row| row.0 == name).map_or((0.0, 0.0), |row| (row.1, row.2));
+    let room = (ROOM * session.count()).min(range("max_particles").1 as usize) as u32;
     let sizes = Settings { max_particles: settings.max_particles.max(room), ..*settings };
-    match settings.sampling {
-        Sampling::Uniform => Settings {
-            size_mode: SizeMode::Radius,
-            radius_share: session.sampler().radius() / session.bounds().diagonal(),
-            ..sizes
-        },
-        Sampling::Adaptive => sizes,
+    if settings.sampling == Sampling::Adaptive {
+        return Ok(sizes);
     }
+    let radius_share = session.sampler().radius() / session.bounds().diagonal();
+    let (least, largest) = range("radius_share");
+    if !(least..=largest).contains(&radius_share) {
+        return Err(Failure::Usage(format!(
+            "{} particles have a radius of {:.2e} of the box's diagonal, and the other method takes {least} to {largest}; \
+             give another --count, or a --box that fits the surface",
+            session.count(),
+            radius_share
+        )));
+    }
+    Ok(Settings { size_mode: SizeMode::Radius, radius_share, ..sizes })
 }
 
 struct Other {

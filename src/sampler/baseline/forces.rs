@@ -1,7 +1,7 @@
 //! The scheme of forces to which the paper compares its adaptive sampling (§6, Table 1): discs whose radii follow the curvature
 //! push each other apart where they overlap, and "we split a particle when no force is applied on it".
 //!
-//! Forces, radii and the way back onto the surface are those of our own relaxation, [`Overlap`]: "we used the same code for the
+//! Forces by distance, radii and the way back onto the surface are those of our own relaxation, [`Overlap`]: "we used the same code for the
 //! relaxations of our methods and for the comparative techniques (with the exception of the split criterion)".
 //!
 //! # Differs from the paper
@@ -9,6 +9,8 @@
 //! * The paper names no death, and does not say how its counts settle. Here a particle that is pressed as if in a lattice with δ = 0.7
 //!   of the wanted spacing, or more, dies with the same chance as with Witkin and Heckbert: what is pressed in the last gap
 //!   from all sides leaves again.
+//! * Two particles push each other in full up to normals 90° apart, and beyond that not at all; with our own relaxation that fades
+//!   between 60° and 120°.
 //! * "No force" has a tolerance, [`Settings::free_load`]: two discs that push each other apart never quite come apart.
 //! * Only particles that have come to rest divide or die, as with Witkin and Heckbert.
 //! * The children sit half a radius to either side of their parent in a random direction, on the surface, with the radii there.
@@ -24,7 +26,8 @@ use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec3, Vec4};
 
-/// A particle that has gone less than this share of its radius in an iteration counts as at rest.
+/// A particle that has gone less than this share of its radius in an iteration counts as at rest: γΔt of Witkin and Heckbert, whose
+/// γ is 4 and whose Δt is 0.03.
 const REST: f32 = 0.12;
 
 /// The scheme with the constants of a run.

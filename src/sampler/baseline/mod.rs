@@ -51,7 +51,7 @@ pub enum StopReason {
     Cap,
     /// Stopped by the caller; what was there stays.
     Cancelled,
-    /// No particle: the survey has met no surface in the box.
+    /// No particle: the survey has met no surface in the box, or no radius where the first particle would be.
     NoSurface,
 }
 

@@ -18,7 +18,8 @@
 //!
 //! * Energies are cut off at 3σ, where they are 1.1 % of α, so that a grid finds all neighbours.
 //! * Particles whose normals are 90° or more apart do not repel each other: they are on opposite sides of a thin part.
-//! * β has the unit of an inverse length. The unit here is half the diameter d of the surface, and σ_max = d/2.
+//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box around the
+//!   surface, √3 times the diameter of a sphere, and no less than 2σ̂.
 //! * No particle goes farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a finite Δt,
 //!   a pair that has just divided would leave the surface, or its radii become negative.
 //! * The children sit σ/2 to either side of their parent in a random direction, on the surface.
