@@ -3,7 +3,6 @@
  * The level is part of the state; what is drawn of it is the picture's affair.
  */
 import { computed, effect, signal } from '@preact/signals-core';
-import '../../styles/levels.css';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, plural } from '../format.js';
