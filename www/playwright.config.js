@@ -7,12 +7,21 @@ const system = process.env.CHROMIUM_PATH ?? '/usr/bin/chromium';
 const executablePath = existsSync(system) ? system : undefined;
 
 const quiet = [
-  '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
 ];
 // Software WebGPU and WebGL2; with fewer flags the graphics process fails on presenting while the API reports success.
 const webgpu = [
-  '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--use-vulkan=swiftshader', '--enable-features=Vulkan',
-  '--use-angle=swiftshader', '--ignore-gpu-blocklist',
+  '--enable-unsafe-webgpu',
+  '--use-webgpu-adapter=swiftshader',
+  '--use-vulkan=swiftshader',
+  '--enable-features=Vulkan',
+  '--use-angle=swiftshader',
+  '--ignore-gpu-blocklist',
 ];
 const port = Number(process.env.MARCHING_PARTICLES_TEST_PORT ?? 4517);
 
@@ -42,7 +51,11 @@ export default defineConfig({
   projects: [
     { name: 'webgl2', use: chromium([]), testIgnore: '**/*.{webgpu,canvas2d,large-type}.spec.js' },
     { name: 'webgpu', use: chromium(webgpu), testMatch: '**/*.webgpu.spec.js' },
-    { name: 'large-type', use: chromium(['--blink-settings=defaultFontSize=32']), testMatch: '**/*.large-type.spec.js' },
+    {
+      name: 'large-type',
+      use: chromium(['--blink-settings=defaultFontSize=32']),
+      testMatch: '**/*.large-type.spec.js',
+    },
     { name: 'canvas2d', use: chromium(['--disable-3d-apis']), testMatch: '**/*.canvas2d.spec.js' },
   ],
 });

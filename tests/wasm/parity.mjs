@@ -30,7 +30,7 @@ function accepted(json, name) {
 function solve(core, model, name) {
   const points = new Points();
   accepted(points.model(model), name);
-  for (let done = false; !done; ({ done } = JSON.parse(points.step(BUDGET))));
+  for (let done = false; !done; { done } = JSON.parse(points.step(BUDGET)));
   accepted(core.set_points(points.field(), points.info()), `${name}: set_points`);
   points.free();
 }
@@ -54,7 +54,9 @@ for (const run of [...runs, ...models]) {
   const { count, digest } = sample(run);
   const same = count === run.count && digest === run.digest;
   failures += same ? 0 : 1;
-  console.log(`${same ? 'same' : 'DIFFERENT'}  ${run.name}: ${count} particles ${digest}${same ? '' : `, natively ${run.count} ${run.digest}`}`);
+  console.log(
+    `${same ? 'same' : 'DIFFERENT'}  ${run.name}: ${count} particles ${digest}${same ? '' : `, natively ${run.count} ${run.digest}`}`,
+  );
 }
 
 // With no memory left, a run that needs more is refused in words, and the instance goes on working.
@@ -70,8 +72,11 @@ for (let pages = 32_768; pages >= 1; pages = Math.floor(pages / 2)) {
     // No piece of this size is left: half of it may be.
   }
 }
-const answer = JSON.parse(core.start(JSON.stringify({ size_mode: 'count', count: 3_000_000, max_particles: 4_000_000 })));
-if (answer.ok || !/not enough memory/.test(answer.error.message)) throw new Error(`without memory: ${JSON.stringify(answer)}`);
+const answer = JSON.parse(
+  core.start(JSON.stringify({ size_mode: 'count', count: 3_000_000, max_particles: 4_000_000 })),
+);
+if (answer.ok || !/not enough memory/.test(answer.error.message))
+  throw new Error(`without memory: ${JSON.stringify(answer)}`);
 accepted(core.start(JSON.stringify(enough)), 'a run after one that was refused');
 while (JSON.parse(core.step(BUDGET)).stop_reason === null);
 if (core.digest() !== digest) throw new Error('a run after one that was refused has other particles');

@@ -6,7 +6,9 @@ import { readFile } from 'node:fs/promises';
 import process from 'node:process';
 
 const folder = new URL('../../www/src/wasm/core/', import.meta.url);
-const [first, rest] = await Promise.all(['core_bg.wasm', 'core_rest.wasm'].map(async (name) => new WebAssembly.Module(await readFile(new URL(name, folder)))));
+const [first, rest] = await Promise.all(
+  ['core_bg.wasm', 'core_rest.wasm'].map(async (name) => new WebAssembly.Module(await readFile(new URL(name, folder)))),
+);
 const { surfaces, default_surface, later } = JSON.parse(await readFile(new URL('description.json', folder), 'utf8'));
 
 /** Surfaces that take what the first part has not: sines, exponentials, powers with broken exponents. */
@@ -61,17 +63,23 @@ for (const { id } of surfaces) {
   expect(phase === 'search' && particles > 100, `${id}: ${particles} particles, then ${phase}`);
   const columns = [core.positions(0).length, core.normals(0).length, core.levels(0).length, core.slots(0).length];
   expect(columns.join() === [3, 3, 1, 1].map((width) => width * particles).join(), `${id}: columns of ${columns}`);
-  expect(calls.count === Number(BEYOND.includes(id)), `${id}: the rest was called for ${calls.count} times before the first fronts were complete`);
+  expect(
+    calls.count === Number(BEYOND.includes(id)),
+    `${id}: the rest was called for ${calls.count} times before the first fronts were complete`,
+  );
   step(core, (progress) => progress.stop_reason !== null);
   let report;
-  while ((report = core.measure(1000)) === undefined);
+  while (report === undefined) report = core.measure(1000);
   expect(calls.count === 1, `${id}: the rest was called for ${calls.count} times`);
 
   const { core: other } = await fresh(true);
   accepted(other.set_field(JSON.stringify({ surface: id })));
   accepted(other.start('{}'));
   step(other, (progress) => progress.stop_reason !== null);
-  expect(core.digest() === other.digest(), `${id}: ${core.digest()}, where the rest was there from the start ${other.digest()}`);
+  expect(
+    core.digest() === other.digest(),
+    `${id}: ${core.digest()}, where the rest was there from the start ${other.digest()}`,
+  );
 }
 console.log(`same  ${surfaces.length} surfaces, begun without the rest of the core`);
 
@@ -82,14 +90,20 @@ console.log(`same  ${surfaces.length} surfaces, begun without the rest of the co
   accepted(core.start(JSON.stringify({ radius_share: 0.005 })));
   step(core, (progress) => progress.level > 20);
   const { stop_reason, particles } = JSON.parse(core.cancel());
-  expect(stop_reason === 'cancelled' && particles > 100 && calls.count === 0, `${stop_reason} with ${particles} particles, ${calls.count} calls`);
+  expect(
+    stop_reason === 'cancelled' && particles > 100 && calls.count === 0,
+    `${stop_reason} with ${particles} particles, ${calls.count} calls`,
+  );
 }
 
 // What needs the rest from the start gets it.
 for (const [what, ask] of /** @type {[string, (core: any) => string][]} */ ([
   ['a mistake in the formula', (core) => core.set_field(JSON.stringify({ formula: 'x^2 + sqr(y) = 1' }))],
   ['the adaptive front', (core) => core.start(JSON.stringify({ sampling: 'adaptive' }))],
-  ['a surface that the survey misses', (core) => core.set_field(JSON.stringify({ formula: '(x-0.013)^2 + y^2 + z^2 = 1e-6' })) && core.start('{}')],
+  [
+    'a surface that the survey misses',
+    (core) => core.set_field(JSON.stringify({ formula: '(x-0.013)^2 + y^2 + z^2 = 1e-6' })) && core.start('{}'),
+  ],
 ])) {
   const { core, calls } = await fresh(false);
   const { core: other } = await fresh(true);

@@ -99,7 +99,9 @@ for (const { name, model, steps, normals, centres, digest: expected } of runs) {
   claim(points.centres().length === 3 * centres, `${name}: ${points.centres().length} numbers for ${centres} centres`);
   const count = sampled(points, known, name);
   claim(count > 300, `${name}: ${count} particles`);
-  console.log(`${same ? 'same' : 'DIFFERENT'}  ${name}: ${found}${same ? '' : `, natively ${expected}`}, ${count} particles`);
+  console.log(
+    `${same ? 'same' : 'DIFFERENT'}  ${name}: ${found}${same ? '' : `, natively ${expected}`}, ${count} particles`,
+  );
 }
 
 // A small mesh without normals, binary, and its mistakes.
@@ -110,7 +112,7 @@ const faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
 const ply = new Uint8Array(header.length + 4 * corners.length + 13 * 4);
 ply.set(new TextEncoder().encode(header));
 const view = new DataView(ply.buffer);
-corners.forEach((x, k) => view.setFloat32(header.length + 4 * k, x));
+for (const [k, x] of corners.entries()) view.setFloat32(header.length + 4 * k, x);
 for (let face = 0; face < 4; face += 1) {
   const at = header.length + 4 * corners.length + 13 * face;
   view.setUint8(at, 3);

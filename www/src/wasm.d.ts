@@ -76,7 +76,14 @@ declare module '*/render.js' {
     adapter(): string;
     max_particles(): number;
     resize(width_px: number, height_px: number): void;
-    write(first: number, positions: Float32Array, normals: Float32Array, radii: Float32Array, colours: Uint32Array, birth_s: number): void;
+    write(
+      first: number,
+      positions: Float32Array,
+      normals: Float32Array,
+      radii: Float32Array,
+      colours: Uint32Array,
+      birth_s: number,
+    ): void;
     write_colours(first: number, colours: Uint32Array): void;
     set_count(n: number): void;
     set_view(view: Float32Array): void;

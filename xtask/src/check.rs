@@ -30,7 +30,7 @@ pub(crate) enum Part {
     Shaders,
     /// The core and the solver for points as WebAssembly, in Node, against the digests of the native ones.
     Parity,
-    /// The page: types and unit tests.
+    /// The page: format, lint, types and unit tests.
     Page,
     /// The built site in a browser, at / and in a sub-path.
     Browser,
@@ -189,6 +189,9 @@ fn parity(project: &Project) -> Result<()> {
 }
 
 fn page(project: &Project) -> Result<()> {
+    let mut lint = node::npm()?;
+    lint.args(["run", "--silent", "lint"]).current_dir(&project.www);
+    step::run("page: format and lint", &mut lint, "`npm run format` in www/ puts most of it right.")?;
     bundle::build(project, &Bundle::ALL)?;
     node::script(project, "page: types", "check", &[])?;
     node::script(project, "page: unit tests", "test", &[]).map(drop)

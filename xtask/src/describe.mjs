@@ -1,6 +1,7 @@
 // Writes down what the core says of itself, as `description.json`. What calls for the rest of it (`later`) is found by trying
 // on the first part alone. Run where the bound core is.
 import { readFileSync, writeFileSync } from 'node:fs';
+
 const [first, rest] = ['core_bg.wasm', 'core_rest.wasm'].map((name) => new WebAssembly.Module(readFileSync(name)));
 let instances = 0;
 async function fresh() {

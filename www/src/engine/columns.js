@@ -97,7 +97,8 @@ export class Columns {
   write(piece) {
     const n = piece.radii.length;
     const { first, total } = piece;
-    if (first > this.count || first + n > total || piece.positions.length !== 3 * n || piece.normals.length !== 3 * n) return false;
+    if (first > this.count || first + n > total || piece.positions.length !== 3 * n || piece.normals.length !== 3 * n)
+      return false;
     this.reserve(total);
     this.positions.set(piece.positions, 3 * first);
     this.normals.set(piece.normals, 3 * first);

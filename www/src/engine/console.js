@@ -67,26 +67,33 @@ export const CAMERA_MS = 120;
  */
 export function installConsole({ engine, viewer, sampling, columns, applyState }) {
   /** Resolves when nothing runs, the report is there (or there will be none) and the picture is up to date. */
-  const settled = () => new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
-    let over = false;
-    /** @type {() => void} */
-    let stop = () => {};
-    stop = effect(() => {
-      const idle = engine.description.value !== null && engine.loading.value === null && !engine.busy.value && engine.progress.value.phase === 'done' && engine.reveal.value === null && engine.backend.value !== 'starting';
-      const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
-      if ((!idle && !failed) || over) return;
-      over = true;
-      const report = engine.report.peek();
-      // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
-      const show = () => {
-        if ((viewer.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
-        else setTimeout(() => resolve(report), CAMERA_MS + 10);
-      };
-      // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
-      setTimeout(show);
-      queueMicrotask(() => stop());
+  const settled = () =>
+    new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
+      let over = false;
+      /** @type {() => void} */
+      let stop = () => {};
+      stop = effect(() => {
+        const idle =
+          engine.description.value !== null &&
+          engine.loading.value === null &&
+          !engine.busy.value &&
+          engine.progress.value.phase === 'done' &&
+          engine.reveal.value === null &&
+          engine.backend.value !== 'starting';
+        const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
+        if ((!idle && !failed) || over) return;
+        over = true;
+        const report = engine.report.peek();
+        // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
+        const show = () => {
+          if ((viewer.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
+          else setTimeout(() => resolve(report), CAMERA_MS + 10);
+        };
+        // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
+        setTimeout(show);
+        queueMicrotask(() => stop());
+      });
     });
-  });
   /** @param {() => void} act */
   const after = (act) => {
     act();
@@ -102,10 +109,11 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
     get state() {
       return structuredClone(engine.state.value);
     },
-    set: (patch) => after(() => {
-      const reset = applyState({ ...patch });
-      if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
-    }),
+    set: (patch) =>
+      after(() => {
+        const reset = applyState({ ...patch });
+        if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
+      }),
     run: () => after(() => engine.run()),
     stop: () => after(() => engine.stop()),
     open: (file) => after(() => void engine.openFile(file)),
@@ -156,10 +164,18 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
         else device?.renderer.destroy();
       },
       stale(id) {
-        sampling.receive({ type: 'progress', id, progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 } });
+        sampling.receive({
+          type: 'progress',
+          id,
+          progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 },
+        });
       },
       counts: () => ({
-        frames: viewer.frames, uploads: viewer.uploads, opened: viewer.keeper.opened, restarts: sampling.supervisor.restarts.length, stale: sampling.stale,
+        frames: viewer.frames,
+        uploads: viewer.uploads,
+        opened: viewer.keeper.opened,
+        restarts: sampling.supervisor.restarts.length,
+        stale: sampling.stale,
       }),
     },
   };

@@ -10,7 +10,18 @@ import { CAMERA_MS, installConsole } from './console.js';
 import { ModelLoader, shapeOf } from './points/loader.js';
 import { SamplingClient } from './sampling/client.js';
 import { decode, encode } from './share/codec.js';
-import { completeSettings, defaultState, fieldRequest, fromPoints, modelOf, sanitize, surfaceOf, validBounds, validSetting, validView } from './share/state.js';
+import {
+  completeSettings,
+  defaultState,
+  fieldRequest,
+  fromPoints,
+  modelOf,
+  sanitize,
+  surfaceOf,
+  validBounds,
+  validSetting,
+  validView,
+} from './share/state.js';
 import { createStore } from './store.js';
 import { FILE_SURFACE } from './types.js';
 import { BACKENDS } from './view/backends.js';
@@ -58,7 +69,7 @@ export function createEngine({ canvasHost }) {
 
   // ---- picture --------------------------------------------------------------------------------------------------------------
 
-  canvasHost.tabIndex = canvasHost.tabIndex < 0 ? 0 : canvasHost.tabIndex;
+  canvasHost.tabIndex = Math.max(canvasHost.tabIndex, 0);
 
   const viewer = new Viewer({
     host: canvasHost,
@@ -76,20 +87,28 @@ export function createEngine({ canvasHost }) {
       });
       if (columns.count > device.renderer.max_particles()) {
         store.notice.value = {
-          id: 'too-many-to-draw', kind: 'warn', text: `The picture shows the first ${device.renderer.max_particles()} particles; the figures and exports hold all of them.`,
+          id: 'too-many-to-draw',
+          kind: 'warn',
+          text: `The picture shows the first ${device.renderer.max_particles()} particles; the figures and exports hold all of them.`,
         };
       }
     },
     onLost(kind, message) {
       store.notice.value = {
-        id: 'device-lost', kind: 'warn', text: 'The graphics device was lost and is being opened again.', details: `${kind}: ${message}`,
+        id: 'device-lost',
+        kind: 'warn',
+        text: 'The graphics device was lost and is being opened again.',
+        details: `${kind}: ${message}`,
       };
     },
     onFallback(kind, message) {
       // At the start this is the ordinary way down the list of back ends; later on it is news.
       if (store.backend.value !== 'starting') {
         store.notice.value = {
-          id: 'fallback', kind: 'warn', text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`, details: `${kind}: ${message}`,
+          id: 'fallback',
+          kind: 'warn',
+          text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
+          details: `${kind}: ${message}`,
         };
       }
     },
@@ -125,9 +144,12 @@ export function createEngine({ canvasHost }) {
     if (index === null) {
       if (store.hover.value) store.hover.value = null;
     } else {
-      const triple = (/** @type {Float32Array} */ column) => /** @type {[number, number, number]} */ ([...column.subarray(3 * index, 3 * index + 3)]);
+      const triple = (/** @type {Float32Array} */ column) =>
+        /** @type {[number, number, number]} */ ([...column.subarray(3 * index, 3 * index + 3)]);
       store.hover.value = {
-        index, x, y,
+        index,
+        x,
+        y,
         level: columns.levels[index],
         parent: columns.parents[index] === 0xffffffff ? null : columns.parents[index],
         position: triple(columns.positions),
@@ -147,7 +169,10 @@ export function createEngine({ canvasHost }) {
     store,
     columns,
     picture: viewer,
-    spawn: () => /** @type {any} */ (new Worker(new URL('./sampling/worker.js', import.meta.url), { type: 'module', name: 'sampler' })),
+    spawn: () =>
+      /** @type {any} */ (
+        new Worker(new URL('./sampling/worker.js', import.meta.url), { type: 'module', name: 'sampler' })
+      ),
     whole: () => request({}),
     solved: (key) => loader.client.get(key),
     onReady() {
@@ -165,7 +190,12 @@ export function createEngine({ canvasHost }) {
           label: 'Sample them anyway',
           run() {
             commands.dismissNotice();
-            change({ settings: { ...store.state.value.settings, max_particles: validSetting(description(), 'max_particles', raised) ?? limit } });
+            change({
+              settings: {
+                ...store.state.value.settings,
+                max_particles: validSetting(description(), 'max_particles', raised) ?? limit,
+              },
+            });
             sampling.sample(request({ confirmed: true, grow: true }));
           },
         },
@@ -175,7 +205,10 @@ export function createEngine({ canvasHost }) {
 
   const loader = new ModelLoader({
     store,
-    spawn: () => /** @type {any} */ (new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' })),
+    spawn: () =>
+      /** @type {any} */ (
+        new Worker(new URL('./points/worker.js', import.meta.url), { type: 'module', name: 'points' })
+      ),
     sample: (options) => resample(false, options),
   });
 
@@ -189,7 +222,15 @@ export function createEngine({ canvasHost }) {
   function request(options) {
     const d = description();
     const state = loader.present();
-    return { kind: 'sample', field: fieldRequest(state, d, loader.key()), settings: completeSettings(d, state.settings), grow: false, live: false, fit: false, ...options };
+    return {
+      kind: 'sample',
+      field: fieldRequest(state, d, loader.key()),
+      settings: completeSettings(d, state.settings),
+      grow: false,
+      live: false,
+      fit: false,
+      ...options,
+    };
   }
 
   /** @param {Partial<State>} patch */
@@ -227,10 +268,18 @@ export function createEngine({ canvasHost }) {
     const d = description();
     const { state, reset, problem } = await decode(hash, d, loader.has_file);
     if (problem) {
-      store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${initial ? 'This is the standard surface instead.' : 'Nothing was changed.'}` };
+      store.notice.value = {
+        id: 'link',
+        kind: 'warn',
+        text: `${problem} ${initial ? 'This is the standard surface instead.' : 'Nothing was changed.'}`,
+      };
       if (!initial) return;
     } else if (reset.length) {
-      store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${[...new Set(reset)].join(', ')}.` };
+      store.notice.value = {
+        id: 'link',
+        kind: 'warn',
+        text: `The link was read, except for: ${[...new Set(reset)].join(', ')}.`,
+      };
     }
     applyState(state);
   }
@@ -284,8 +333,18 @@ export function createEngine({ canvasHost }) {
     const theme = view.theme === 'auto' ? (dark.matches ? 'dark' : 'light') : view.theme;
     store.theme.value = theme;
     const box = bounds ?? store.field.value?.bounds ?? null;
-    const solved = view.points && store.field.value?.kind === 'points' ? loader.client.get(sampling.accepted?.field.points) : undefined;
-    viewer.set({ colour: view.colour, size: view.size, theme, box: view.box || store.empty.value ? box : null, points: solved?.centres ?? null, level: view.level });
+    const solved =
+      view.points && store.field.value?.kind === 'points'
+        ? loader.client.get(sampling.accepted?.field.points)
+        : undefined;
+    viewer.set({
+      colour: view.colour,
+      size: view.size,
+      theme,
+      box: view.box || store.empty.value ? box : null,
+      points: solved?.centres ?? null,
+      level: view.level,
+    });
     sampling.showCurvature(view.colour === 'curvature');
   }
   dark.addEventListener('change', showLook);
@@ -313,11 +372,14 @@ export function createEngine({ canvasHost }) {
       if (!rests() || Number.isNaN(written_ms)) return;
       clearTimeout(fit_timer);
       // Once the typing rests: the picture stands still meanwhile.
-      fit_timer = setTimeout(() => {
-        if (!rests()) return;
-        written_ms = NaN;
-        if (viewer.camera.state.fit) viewer.fit();
-      }, written_ms + TYPING_MS - performance.now());
+      fit_timer = setTimeout(
+        () => {
+          if (!rests()) return;
+          written_ms = NaN;
+          if (viewer.camera.state.fit) viewer.fit();
+        },
+        written_ms + TYPING_MS - performance.now(),
+      );
     }),
     effect(() => {
       // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
@@ -445,7 +507,9 @@ export function createEngine({ canvasHost }) {
     async shareUrl() {
       if (store.state.value.surface === FILE_SURFACE) {
         store.notice.value = {
-          id: 'share-file', kind: 'info', text: `A link cannot hold the points of ${store.model.value?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`,
+          id: 'share-file',
+          kind: 'info',
+          text: `A link cannot hold the points of ${store.model.value?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`,
         };
       }
       return location.origin + location.pathname + (await encode(store.state.value, description()));
@@ -462,7 +526,9 @@ export function createEngine({ canvasHost }) {
       if (!sampling.shown) throw new Error('There is no surface.');
       const { field } = sampling.shown.request;
       const model = field.points && loader.client.get(field.points)?.info.info;
-      const what = model ? `${model.name}, interpolated from ${model.centres} points` : `f = ${field.formula ?? surfaceOf(description(), field.surface ?? '')?.formula}`;
+      const what = model
+        ? `${model.name}, interpolated from ${model.centres} points`
+        : `f = ${field.formula ?? surfaceOf(description(), field.surface ?? '')?.formula}`;
       const { csv, ply } = await files();
       return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
     },
@@ -491,9 +557,22 @@ export function createEngine({ canvasHost }) {
     applyState(patch) {
       const d = description();
       const now = store.state.value;
-      const another = typeof patch.surface === 'string' ? patch.surface !== now.surface : typeof patch.formula === 'string' && fromPoints(d, now.surface);
+      const another =
+        typeof patch.surface === 'string'
+          ? patch.surface !== now.surface
+          : typeof patch.formula === 'string' && fromPoints(d, now.surface);
       const base = another ? { ...defaultState(d), view: now.view, settings: now.settings } : now;
-      const { state, reset } = sanitize({ ...base, formula: undefined, ...(patch.surface ? {} : { formula: now.formula }), ...patch, view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) } }, d, loader.has_file);
+      const { state, reset } = sanitize(
+        {
+          ...base,
+          formula: undefined,
+          ...(patch.surface ? {} : { formula: now.formula }),
+          ...patch,
+          view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) },
+        },
+        d,
+        loader.has_file,
+      );
       applyState(state);
       return reset;
     },

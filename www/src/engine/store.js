@@ -10,8 +10,19 @@ import { emptyState } from './share/state.js';
 
 /** @returns {Progress} */
 export const idleProgress = () => ({
-  run: 0, live: false, phase: 'idle', particles: 0, level: 0, relax_step: 0, relax_steps: 0, evaluations: 0, fraction: 0,
-  stop_reason: null, message: null, radius: 0, moved: false,
+  run: 0,
+  live: false,
+  phase: 'idle',
+  particles: 0,
+  level: 0,
+  relax_step: 0,
+  relax_steps: 0,
+  evaluations: 0,
+  fraction: 0,
+  stop_reason: null,
+  message: null,
+  radius: 0,
+  moved: false,
 });
 
 /**

@@ -2,8 +2,8 @@
 import { computed, effect, signal } from '@preact/signals-core';
 import { byId, h, once } from './dom.js';
 import { explain } from './explain.js';
-import { mountField } from './field/panel.js';
 import { mountDrop } from './field/drop.js';
+import { mountField } from './field/panel.js';
 import { createHistory } from './history.js';
 import { icon } from './icons.js';
 import { mountLayout } from './layout.js';
@@ -11,8 +11,8 @@ import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
 import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
 import { mountToasts } from './toasts.js';
-import { createLegend } from './view/legend.js';
 import { mountHover } from './view/hover.js';
+import { createLegend } from './view/legend.js';
 import { mountOverlay } from './view/overlay.js';
 import { createToolbar } from './view/toolbar.js';
 
@@ -22,7 +22,11 @@ import { createToolbar } from './view/toolbar.js';
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
-  const toast = mountToasts(byId('toasts'), engine, ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility());
+  const toast = mountToasts(
+    byId('toasts'),
+    engine,
+    ({ id, details }) => id === 'file' && !details && byId('field-body').checkVisibility(),
+  );
   const samplingTools = h('div', { class: 'sampling-tools' });
   const head = (/** @type {HTMLElement} */ panel) => /** @type {HTMLElement} */ (panel.querySelector('.panel-head'));
   const layout = mountLayout({
@@ -44,11 +48,25 @@ export function mountInterface(engine) {
   const told = signal(/** @type {import('./levels/timeline.js').Told | null} */ (null));
   const shortcuts = mountShortcuts([
     { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
-    { keys: ['Escape'], shown: 'Esc', label: 'Stop', act: () => { if (engine.busy.peek() || engine.loading.peek()) engine.stop(); } },
+    {
+      keys: ['Escape'],
+      shown: 'Esc',
+      label: 'Stop',
+      act: () => {
+        if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+      },
+    },
     { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
     { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
     { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
-    { keys: ['e', 'E'], shown: 'E', label: 'Relax one step', act: () => { if (!engine.busy.peek()) engine.relax(1); } },
+    {
+      keys: ['e', 'E'],
+      shown: 'E',
+      label: 'Relax one step',
+      act: () => {
+        if (!engine.busy.peek()) engine.relax(1);
+      },
+    },
     { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the levels', act: () => timeline?.toggle() },
     { keys: [','], shown: ',', label: 'Level back', act: () => timeline?.back() },
     { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline?.forward() },
@@ -58,7 +76,12 @@ export function mountInterface(engine) {
     { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
     { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
     { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
-    { keys: ['t', 'T'], shown: 'T', label: 'Light or dark', act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }) },
+    {
+      keys: ['t', 'T'],
+      shown: 'T',
+      label: 'Light or dark',
+      act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
+    },
     { keys: ['h', 'H'], shown: 'H', label: 'Hide or show the panels', act: () => layout.toggleHidden() },
     { keys: ['?'], shown: '?', label: 'This sheet', act: () => shortcuts.open() },
   ]);
@@ -72,7 +95,8 @@ export function mountInterface(engine) {
     void engine.theme.value;
     // The browser's own frame takes the ground's colour, also where the theme is not the system's.
     const { backgroundColor } = getComputedStyle(document.documentElement);
-    for (const meta of document.querySelectorAll('meta[name="theme-color"]')) meta.setAttribute('content', backgroundColor);
+    for (const meta of document.querySelectorAll('meta[name="theme-color"]'))
+      meta.setAttribute('content', backgroundColor);
   });
   effect(() => {
     const id = engine.field.value?.surface;
@@ -80,7 +104,12 @@ export function mountInterface(engine) {
     document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
   });
 
-  head(field).querySelector('.fold')?.before(historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo), historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo));
+  head(field)
+    .querySelector('.fold')
+    ?.before(
+      historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo),
+      historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo),
+    );
   mountDrop(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   mountHover(stage, engine);
@@ -99,9 +128,13 @@ export function mountInterface(engine) {
     layout.follow(legend);
     shell.dataset.ready = '';
     import('./levels/timeline.js').then(
-      ({ createTimeline }) => { timeline = createTimeline(byId('levels-body'), engine, told); },
+      ({ createTimeline }) => {
+        timeline = createTimeline(byId('levels-body'), engine, told);
+      },
       // Without it the page does everything else.
-      () => { levels.hidden = true; },
+      () => {
+        levels.hidden = true;
+      },
     );
   });
 }
@@ -114,7 +147,9 @@ function goButton(engine) {
     else engine.run();
   });
   const button = h('button', { type: 'button', class: 'button primary go', on: { click: press } });
-  effect(() => { button.textContent = active.value ? 'Stop' : 'Run'; });
+  effect(() => {
+    button.textContent = active.value ? 'Stop' : 'Run';
+  });
   return button;
 }
 
@@ -126,7 +161,20 @@ function goButton(engine) {
  * @param {() => void} act
  */
 function historyButton(name, label, keys, can, act) {
-  const button = h('button', { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: () => { if (can.peek()) act(); } } }, icon(name));
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain square',
+      'aria-label': label,
+      on: {
+        click: () => {
+          if (can.peek()) act();
+        },
+      },
+    },
+    icon(name),
+  );
   effect(() => button.setAttribute('aria-disabled', String(!can.value)));
   explain(button, () => ({ title: label, text: `Surface, formula, clip box and settings. Keys ${keys}.` }));
   return button;

@@ -15,16 +15,24 @@ export function createDialog(title, ...content) {
       'div',
       { class: 'dialog-head' },
       h('h2', { id }, title),
-      h('button', { type: 'button', class: 'button plain square', 'aria-label': 'Close', on: { click: () => element.close() } }, icon('close')),
+      h(
+        'button',
+        { type: 'button', class: 'button plain square', 'aria-label': 'Close', on: { click: () => element.close() } },
+        icon('close'),
+      ),
     ),
     content,
   );
   // A press on the backdrop closes it.
-  element.addEventListener('click', (event) => { if (event.target === element) element.close(); });
+  element.addEventListener('click', (event) => {
+    if (event.target === element) element.close();
+  });
   document.body.append(element);
   return {
     element,
-    open: () => { if (!element.open) element.showModal(); },
+    open: () => {
+      if (!element.open) element.showModal();
+    },
     close: () => element.close(),
   };
 }

@@ -123,10 +123,20 @@ export function createScope() {
 
 /** True on a keyboard-driven page: the last input was a key other than a modifier. */
 let keyboard = false;
-addEventListener('keydown', (event) => {
-  if (!event.metaKey && !event.ctrlKey && !event.altKey) keyboard = true;
-}, true);
-addEventListener('pointerdown', () => { keyboard = false; }, true);
+addEventListener(
+  'keydown',
+  (event) => {
+    if (!event.metaKey && !event.ctrlKey && !event.altKey) keyboard = true;
+  },
+  true,
+);
+addEventListener(
+  'pointerdown',
+  () => {
+    keyboard = false;
+  },
+  true,
+);
 export const usesKeyboard = () => keyboard;
 
 /** Whether the reader asked for less motion. */

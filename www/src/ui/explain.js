@@ -25,12 +25,16 @@ function ensure() {
   made.addEventListener('pointerenter', () => clearTimeout(timer));
   made.addEventListener('pointerleave', () => later(hide, LEAVE_DELAY_MS));
   document.body.append(made);
-  addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && owner) {
-      hide();
-      event.stopPropagation();
-    }
-  }, true);
+  addEventListener(
+    'keydown',
+    (event) => {
+      if (event.key === 'Escape' && owner) {
+        hide();
+        event.stopPropagation();
+      }
+    },
+    true,
+  );
   addEventListener('scroll', hide, { capture: true, passive: true });
   addEventListener('resize', hide);
   popover = made;
@@ -65,7 +69,8 @@ function show(anchor, explanation, side) {
     explanation.text,
     explanation.ideal ? h('span', { class: 'ideal' }, explanation.ideal) : null,
   );
-  described = document.activeElement !== null && anchor.contains(document.activeElement) ? document.activeElement : anchor;
+  described =
+    document.activeElement !== null && anchor.contains(document.activeElement) ? document.activeElement : anchor;
   if (!described.hasAttribute('aria-describedby')) described.setAttribute('aria-describedby', 'explain');
   if (!element.matches(':popover-open')) element.showPopover();
   place(element, anchor.getBoundingClientRect(), side);
@@ -104,8 +109,12 @@ export function explain(target, read, options = {}) {
     if (/** @type {PointerEvent} */ (event).pointerType === 'mouse') later(open, owner ? 60 : HOVER_DELAY_MS);
   });
   target.addEventListener('pointerleave', () => later(hide, LEAVE_DELAY_MS));
-  target.addEventListener('pointerdown', () => { if (!options.tap) hide(); });
-  target.addEventListener('focusin', () => { if (usesKeyboard()) open(); });
+  target.addEventListener('pointerdown', () => {
+    if (!options.tap) hide();
+  });
+  target.addEventListener('focusin', () => {
+    if (usesKeyboard()) open();
+  });
   target.addEventListener('focusout', hide);
   if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));
 }

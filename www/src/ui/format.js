@@ -41,7 +41,10 @@ function write(value, options) {
     format = new Intl.NumberFormat(locale, options);
     formats.set(key, format);
   }
-  return format.format(value).replace(/-/g, MINUS).replace(/[\u00a0\u2009]/g, THIN_NO_BREAK);
+  return format
+    .format(value)
+    .replace(/-/g, MINUS)
+    .replace(/[\u00a0\u2009]/g, THIN_NO_BREAK);
 }
 
 /** @param {unknown} value @returns {value is number} */
@@ -82,7 +85,19 @@ export function formatSignificant(value, digits = 3) {
   return write(value, { maximumSignificantDigits: digits });
 }
 
-const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({ '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' });
+const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({
+  '-': '⁻',
+  0: '⁰',
+  1: '¹',
+  2: '²',
+  3: '³',
+  4: '⁴',
+  5: '⁵',
+  6: '⁶',
+  7: '⁷',
+  8: '⁸',
+  9: '⁹',
+});
 
 /** 3.1·10⁻⁶. @param {number} value */
 function formatPower(value) {

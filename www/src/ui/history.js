@@ -13,7 +13,14 @@ export const MOST_ENTRIES = 100;
 const PAUSE_MS = 800;
 
 /** @param {State} state @returns {Shape} */
-export const shapeOf = ({ surface, formula, parameters, declared, bounds, settings }) => ({ surface, formula, parameters, declared, bounds, settings });
+export const shapeOf = ({ surface, formula, parameters, declared, bounds, settings }) => ({
+  surface,
+  formula,
+  parameters,
+  declared,
+  bounds,
+  settings,
+});
 
 /**
  * The one thing in which two states differ, such as `formula` or `settings.count`; null where there are several.
@@ -28,7 +35,8 @@ export function difference(before, after) {
   }
   for (const key of /** @type {const} */ (['parameters', 'settings'])) {
     const [a, b] = [before[key], after[key]];
-    for (const name of new Set([...Object.keys(a), ...Object.keys(b)])) if (a[name] !== b[name]) found.push(`${key}.${name}`);
+    for (const name of new Set([...Object.keys(a), ...Object.keys(b)]))
+      if (a[name] !== b[name]) found.push(`${key}.${name}`);
   }
   return found.length === 1 ? found[0] : null;
 }
@@ -63,7 +71,8 @@ export class History {
     const present = this.entries[this.at];
     if (present && JSON.stringify(present) === JSON.stringify(shape)) return;
     const what = present ? difference(present, shape) : null;
-    const goesOn = what !== null && what === this.open && (now_ms - this.last_ms < PAUSE_MS || (faulty && what === 'formula'));
+    const goesOn =
+      what !== null && what === this.open && (now_ms - this.last_ms < PAUSE_MS || (faulty && what === 'formula'));
     this.last_ms = now_ms;
     this.open = what;
     this.entries.length = this.at + 1;

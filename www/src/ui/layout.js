@@ -22,9 +22,19 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   const folds = panels.flatMap(({ title, panel, head }) => (head ? [createFold(title, panel, head)] : []));
   if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
 
-  const tabs = panels.map(({ title, panel }) => h('button', {
-    type: 'button', class: 'button tab', 'aria-controls': panel.id, 'aria-expanded': 'false', on: { click: () => toggle(panel) },
-  }, title));
+  const tabs = panels.map(({ title, panel }) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        class: 'button tab',
+        'aria-controls': panel.id,
+        'aria-expanded': 'false',
+        on: { click: () => toggle(panel) },
+      },
+      title,
+    ),
+  );
   nav.append(...tabs);
 
   /** @param {HTMLElement | null} active */
@@ -40,20 +50,31 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   }
   activate(panels[0].panel);
 
-  const unhide = h('button', { type: 'button', class: 'button unhide', on: { click: () => hide(false) } }, 'Show the panels');
+  const unhide = h(
+    'button',
+    { type: 'button', class: 'button unhide', on: { click: () => hide(false) } },
+    'Show the panels',
+  );
   view.append(unhide);
   /** @param {boolean} hidden */
   function hide(hidden) {
     shell.toggleAttribute('data-hidden', hidden);
-    if (hidden && document.activeElement instanceof HTMLElement && document.activeElement.offsetParent === null) unhide.focus();
+    if (hidden && document.activeElement instanceof HTMLElement && document.activeElement.offsetParent === null)
+      unhide.focus();
   }
 
   const compact = matchMedia(COMPACT);
   const measure = () => {
     const { left, top, right, bottom } = view.getBoundingClientRect();
     // On a phone tools and legend would lie over the surface: they stand beside it and above it.
-    const side = (/** @type {string} */ part) => (compact.matches && view.querySelector(part)) || { clientWidth: 0, clientHeight: 0 };
-    inset({ left, top: top + side('.legend').clientHeight, right: innerWidth - right + side('.toolbar').clientWidth, bottom: innerHeight - bottom });
+    const side = (/** @type {string} */ part) =>
+      (compact.matches && view.querySelector(part)) || { clientWidth: 0, clientHeight: 0 };
+    inset({
+      left,
+      top: top + side('.legend').clientHeight,
+      right: innerWidth - right + side('.toolbar').clientWidth,
+      bottom: innerHeight - bottom,
+    });
   };
   const sizes = new ResizeObserver(measure);
   sizes.observe(view);

@@ -5,11 +5,52 @@
 
 const NAMESPACE = 'http://www.w3.org/1998/Math/MathML';
 const ELEMENTS = new Set([
-  'math', 'mrow', 'mi', 'mn', 'mo', 'ms', 'mtext', 'mspace', 'msup', 'msub', 'msubsup', 'mfrac', 'msqrt', 'mroot', 'mover', 'munder',
-  'mtable', 'mtr', 'mtd', 'mpadded', 'mphantom', 'mstyle', 'merror',
+  'math',
+  'mrow',
+  'mi',
+  'mn',
+  'mo',
+  'ms',
+  'mtext',
+  'mspace',
+  'msup',
+  'msub',
+  'msubsup',
+  'mfrac',
+  'msqrt',
+  'mroot',
+  'mover',
+  'munder',
+  'mtable',
+  'mtr',
+  'mtd',
+  'mpadded',
+  'mphantom',
+  'mstyle',
+  'merror',
 ]);
-const ATTRIBUTES = new Set(['display', 'stretchy', 'fence', 'form', 'lspace', 'rspace', 'separator', 'mathvariant', 'displaystyle', 'linethickness', 'width', 'class']);
-const ENTITIES = /** @type {Record<string, string>} */ ({ amp: '&', lt: '<', gt: '>', quot: '"', apos: "'", nbsp: '\u00a0' });
+const ATTRIBUTES = new Set([
+  'display',
+  'stretchy',
+  'fence',
+  'form',
+  'lspace',
+  'rspace',
+  'separator',
+  'mathvariant',
+  'displaystyle',
+  'linethickness',
+  'width',
+  'class',
+]);
+const ENTITIES = /** @type {Record<string, string>} */ ({
+  amp: '&',
+  lt: '<',
+  gt: '>',
+  quot: '"',
+  apos: "'",
+  nbsp: '\u00a0',
+});
 
 /** @param {string} text */
 function decode(text) {
@@ -86,7 +127,8 @@ const BREAKS = new Set(['=', '+', '−', '-', '<', '>', '≤', '≥', '\u2062'])
 const INVISIBLE = '\u2062';
 
 /** @param {MathNode | string} node */
-const operatorOf = (node) => (typeof node !== 'string' && node.name === 'mo' && typeof node.children[0] === 'string' ? node.children[0] : null);
+const operatorOf = (node) =>
+  typeof node !== 'string' && node.name === 'mo' && typeof node.children[0] === 'string' ? node.children[0] : null;
 
 /**
  * The formula in pieces that may stand in different lines: sums and products outside brackets are taken apart.
@@ -100,7 +142,11 @@ export function piecesOfMath(node) {
     const operator = operatorOf(child);
     if (operator !== null && BREAKS.has(operator)) {
       // At the head of a piece it would be taken for a sign and lose its spaces.
-      pieces.push(operator === INVISIBLE || typeof child === 'string' ? [] : [{ ...child, attributes: [...child.attributes, ['form', 'infix']] }]);
+      pieces.push(
+        operator === INVISIBLE || typeof child === 'string'
+          ? []
+          : [{ ...child, attributes: [...child.attributes, ['form', 'infix']] }],
+      );
       continue;
     }
     const parts = typeof child !== 'string' && isOpen(child) ? piecesOfMath(child) : [[child]];
@@ -123,5 +169,11 @@ function isOpen({ name, children }) {
 export function mathPieces(source) {
   const math = parseMath(source).children.find((child) => typeof child !== 'string' && child.name === 'math');
   if (!math || typeof math === 'string') return [];
-  return piecesOfMath(math).map((children) => build({ name: 'math', attributes: [['displaystyle', 'true']], children: [{ name: 'mrow', attributes: [], children }] }));
+  return piecesOfMath(math).map((children) =>
+    build({
+      name: 'math',
+      attributes: [['displaystyle', 'true']],
+      children: [{ name: 'mrow', attributes: [], children }],
+    }),
+  );
 }

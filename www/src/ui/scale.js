@@ -70,7 +70,11 @@ export function nudge(scale, value, presses, fine) {
     const moved = snap(scale, value * (1 + scale.step / fineness) ** presses, 10);
     if (moved !== value) return moved;
     // Too coarse a grid for so small a factor: one unit of the grid instead.
-    return snap(scale, value + Math.sign(presses) * (scale.integer ? 1 : 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS)), 10);
+    return snap(
+      scale,
+      value + Math.sign(presses) * (scale.integer ? 1 : 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS)),
+      10,
+    );
   }
   const step = (scale.step > 0 ? scale.step : (scale.max - scale.min) / 100) / (scale.integer ? 1 : fineness);
   return snap(scale, value + presses * step, fineness);
@@ -85,5 +89,7 @@ const SLIDER_PLACES = 20000;
  */
 export function wantsSlider(info) {
   if (info.kind === 'choice') return false;
-  return info.scale === 'log' || info.kind === 'number' || (info.max - info.min) / Math.max(info.step, 1) <= SLIDER_PLACES;
+  return (
+    info.scale === 'log' || info.kind === 'number' || (info.max - info.min) / Math.max(info.step, 1) <= SLIDER_PLACES
+  );
 }

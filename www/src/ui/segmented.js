@@ -9,9 +9,14 @@ import { h, uniqueId } from './dom.js';
  */
 export function createSegmented({ name, choices, change }) {
   const group = uniqueId('segmented');
-  const inputs = choices.map(({ value }) => h('input', {
-    type: 'radio', name: group, value, on: { change: () => change(value) },
-  }));
+  const inputs = choices.map(({ value }) =>
+    h('input', {
+      type: 'radio',
+      name: group,
+      value,
+      on: { change: () => change(value) },
+    }),
+  );
   const element = h(
     'div',
     { class: 'segmented', role: 'radiogroup', 'aria-label': name },

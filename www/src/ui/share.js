@@ -35,7 +35,11 @@ export async function savePicture(engine, toast) {
 /** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
 export async function exportFile(engine, toast, format) {
   if (engine.empty.peek()) {
-    toast({ id: 'save', kind: 'info', text: 'There are no particles to export: the formula has no surface in the box.' });
+    toast({
+      id: 'save',
+      kind: 'info',
+      text: 'There are no particles to export: the formula has no surface in the box.',
+    });
     return;
   }
   try {

@@ -1,6 +1,7 @@
 /** Single-key shortcuts, the sheet that lists them, and the switch that turns them off (WCAG 2.1.4). */
-import { h } from './dom.js';
+
 import { createDialog } from './dialog.js';
+import { h } from './dom.js';
 
 /** `ctrl` asks for Control or Command, `shift` then for Shift as well or for none. @typedef {{ keys: string[], shown: string, label: string, act: () => void, ctrl?: boolean, shift?: boolean }} Shortcut */
 
@@ -12,32 +13,55 @@ const STORED = 'marching-particles.shortcuts';
 /** @param {EventTarget | null} target */
 function types(target) {
   if (!(target instanceof HTMLElement)) return false;
-  return target.isContentEditable || target.shadowRoot !== null || target.matches('textarea, select, input:not([type=range], [type=checkbox], [type=radio])');
+  return (
+    target.isContentEditable ||
+    target.shadowRoot !== null ||
+    target.matches('textarea, select, input:not([type=range], [type=checkbox], [type=radio])')
+  );
 }
 
 /** @param {Shortcut[]} shortcuts */
 export function mountShortcuts(shortcuts) {
   let enabled = read();
-  const toggle = h('input', { type: 'checkbox', prop: { checked: enabled }, on: { change: () => {
-    enabled = toggle.checked;
-    write(enabled);
-  } } });
+  const toggle = h('input', {
+    type: 'checkbox',
+    prop: { checked: enabled },
+    on: {
+      change: () => {
+        enabled = toggle.checked;
+        write(enabled);
+      },
+    },
+  });
   const rest = /** @type {const} */ ([
-    ['Arrow keys', 'Turn, with the picture focused'], ['Drag', 'Turn'], ['Right drag, Shift drag', 'Move'], ['Wheel, pinch', 'Zoom'],
-    ['Shift with a slider', 'Ten times finer'], ['Double click on a slider', 'Reset'],
+    ['Arrow keys', 'Turn, with the picture focused'],
+    ['Drag', 'Turn'],
+    ['Right drag, Shift drag', 'Move'],
+    ['Wheel, pinch', 'Zoom'],
+    ['Shift with a slider', 'Ten times finer'],
+    ['Double click on a slider', 'Reset'],
   ]);
   const dialog = createDialog(
     'Keyboard and hand',
-    h('dl', { class: 'keys' }, [...shortcuts.map(({ shown, label }) => /** @type {const} */ ([shown, label])), ...rest].flatMap(([key, label]) => [
-      h('dt', null, h('kbd', null, key)), h('dd', null, label),
-    ])),
+    h(
+      'dl',
+      { class: 'keys' },
+      [...shortcuts.map(({ shown, label }) => /** @type {const} */ ([shown, label])), ...rest].flatMap(
+        ([key, label]) => [h('dt', null, h('kbd', null, key)), h('dd', null, label)],
+      ),
+    ),
     h('label', { class: 'check' }, toggle, 'Single-key shortcuts'),
   );
   addEventListener('keydown', (event) => {
     const ctrl = event.ctrlKey || event.metaKey;
     if (event.defaultPrevented || event.altKey || types(event.composedPath()[0] ?? null) || types(event.target)) return;
     if (document.querySelector('dialog[open], [popover]:popover-open:not(.explain)')) return;
-    const found = shortcuts.find((shortcut) => shortcut.keys.includes(event.key) && (shortcut.ctrl ?? false) === ctrl && (!ctrl || (shortcut.shift ?? false) === event.shiftKey));
+    const found = shortcuts.find(
+      (shortcut) =>
+        shortcut.keys.includes(event.key) &&
+        (shortcut.ctrl ?? false) === ctrl &&
+        (!ctrl || (shortcut.shift ?? false) === event.shiftKey),
+    );
     if (!found || (!enabled && !ctrl && event.key !== 'Escape')) return;
     event.preventDefault();
     found.act();

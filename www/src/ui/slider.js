@@ -3,8 +3,8 @@
  * number can be typed and stepped.
  */
 import { h, setAttribute, uniqueId } from './dom.js';
-import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 import { decimalsOf } from './format.js';
+import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 
 /** @typedef {import('./scale.js').Scale} Scale */
 /**
@@ -27,7 +27,14 @@ import { decimalsOf } from './format.js';
  */
 
 const KEYS = /** @type {Record<string, number>} */ ({
-  ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10, Home: -Infinity, End: Infinity,
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  ArrowRight: 1,
+  ArrowUp: 1,
+  PageDown: -10,
+  PageUp: 10,
+  Home: -Infinity,
+  End: Infinity,
 });
 /** Places of the range input: fine enough for a 4K wide slider under shift. */
 const PLACES = 10000;
@@ -37,11 +44,24 @@ export function createSlider(options) {
   let { scale, value } = options;
   const factor = options.factor ?? 1;
   let dragging = false;
-  const range = h('input', { type: 'range', class: 'slider', min: 0, max: PLACES, step: 1, 'aria-label': options.name });
+  const range = h('input', {
+    type: 'range',
+    class: 'slider',
+    min: 0,
+    max: PLACES,
+    step: 1,
+    'aria-label': options.name,
+  });
   const box = options.number === false ? null : createBox();
 
   function createBox() {
-    const input = h('input', { type: 'number', class: 'box', id: uniqueId('number'), 'aria-label': `${options.name}, number`, inputmode: 'decimal' });
+    const input = h('input', {
+      type: 'number',
+      class: 'box',
+      id: uniqueId('number'),
+      'aria-label': `${options.name}, number`,
+      inputmode: 'decimal',
+    });
     // A typed number counts once it is finished: half a number is another number.
     const read = () => {
       const typed = input.valueAsNumber / factor;
@@ -74,7 +94,11 @@ export function createSlider(options) {
     range.setAttribute('aria-valuetext', options.describe(value));
     if (box && except !== box) {
       // Two digits beyond the grid, for values made under shift or typed.
-      const exact = scale.integer ? value : scale.scale === 'log' ? Number(value.toPrecision(5)) : Number(value.toFixed(Math.min(decimalsOf(scale.step) + 2, 12)));
+      const exact = scale.integer
+        ? value
+        : scale.scale === 'log'
+          ? Number(value.toPrecision(5))
+          : Number(value.toFixed(Math.min(decimalsOf(scale.step) + 2, 12)));
       box.value = String(Number((exact * factor).toPrecision(12)));
     }
   }
@@ -136,15 +160,21 @@ export function createSlider(options) {
     if (dragging) write();
     else take(toValue(scale, range.valueAsNumber / PLACES), true);
   });
-  range.addEventListener('change', () => { if (!dragging) options.change(value, false); });
+  range.addEventListener('change', () => {
+    if (!dragging) options.change(value, false);
+  });
   range.addEventListener('keydown', (event) => {
     const presses = KEYS[event.key];
     if (presses === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    const next = Number.isFinite(presses) ? nudge(scale, value, presses, event.shiftKey) : snap(scale, presses > 0 ? scale.max : scale.min);
+    const next = Number.isFinite(presses)
+      ? nudge(scale, value, presses, event.shiftKey)
+      : snap(scale, presses > 0 ? scale.max : scale.min);
     take(next, true);
   });
-  range.addEventListener('keyup', (event) => { if (KEYS[event.key] !== undefined) options.change(value, false); });
+  range.addEventListener('keyup', (event) => {
+    if (KEYS[event.key] !== undefined) options.change(value, false);
+  });
   range.addEventListener('dblclick', options.reset);
 
   writeScale();
@@ -155,7 +185,7 @@ export function createSlider(options) {
     set(next) {
       if (dragging || next === value) return;
       value = next;
-      write(document.activeElement === box ? box ?? undefined : undefined);
+      write(document.activeElement === box ? (box ?? undefined) : undefined);
     },
     setScale(next) {
       scale = next;

@@ -41,17 +41,51 @@ export function mountToasts(host, engine, isTold) {
     fill(
       element,
       h('p', null, text),
-      action ? h('button', { type: 'button', class: 'button', on: { click: () => { remove(id); action.run(); } } }, action.label) : null,
-      details ? h('button', { type: 'button', class: 'button plain', on: { click: () => { void navigator.clipboard.writeText(details).catch(() => {}); } } }, 'Copy report') : null,
-      h('button', { type: 'button', class: 'button plain square', 'aria-label': 'Dismiss', on: { click: () => remove(id) } }, icon('close')),
+      action
+        ? h(
+            'button',
+            {
+              type: 'button',
+              class: 'button',
+              on: {
+                click: () => {
+                  remove(id);
+                  action.run();
+                },
+              },
+            },
+            action.label,
+          )
+        : null,
+      details
+        ? h(
+            'button',
+            {
+              type: 'button',
+              class: 'button plain',
+              on: {
+                click: () => {
+                  void navigator.clipboard.writeText(details).catch(() => {});
+                },
+              },
+            },
+            'Copy report',
+          )
+        : null,
+      h(
+        'button',
+        { type: 'button', class: 'button plain square', 'aria-label': 'Dismiss', on: { click: () => remove(id) } },
+        icon('close'),
+      ),
     );
     const stays = kind === 'error' || action !== undefined || details !== undefined;
     /** @type {() => number} */
-    const count = () => window.setTimeout(() => {
-      const entry = shown.get(id);
-      if (entry && element.matches(':hover, :focus-within')) entry.timer = count();
-      else remove(id);
-    }, STAY_MS);
+    const count = () =>
+      window.setTimeout(() => {
+        const entry = shown.get(id);
+        if (entry && element.matches(':hover, :focus-within')) entry.timer = count();
+        else remove(id);
+      }, STAY_MS);
     shown.set(id, { element, timer: stays ? 0 : count() });
   };
 

@@ -22,14 +22,14 @@ test('an adaptive run draws discs of different size: small where the surface ben
     expect(report.stop_reason).toBe('complete');
     return (await spots(page)).found.filter(({ off }) => off < 25)[0].area;
   };
-  const many = await seen(adaptive, Math.PI / 2) / await seen(adaptive, 0);
+  const many = (await seen(adaptive, Math.PI / 2)) / (await seen(adaptive, 0));
   const ratio = await page.evaluate(() => {
     const { radii } = /** @type {any} */ (window).marchingParticles.particles();
     return Math.max(...radii) / Math.min(...radii);
   });
   expect(ratio).toBeGreaterThan(1.8);
   const uniform = { sampling: 'uniform', radius_share: 0.013 };
-  const one = await seen(uniform, Math.PI / 2) / await seen(uniform, 0);
+  const one = (await seen(uniform, Math.PI / 2)) / (await seen(uniform, 0));
   expect(many / one).toBeGreaterThan(2);
 });
 
@@ -43,7 +43,10 @@ test('radius and curvature colour the surface by a ramp that follows it', async 
   expect((await picture(page)).hues).toBeGreaterThanOrEqual(4);
 
   // Dented like a peanut: it bulges at the ends and is hollow in the middle.
-  const peanut = { formula: '(x^2 + y^2 + z^2 + 1)^2 - 4 x^2 = 1.2', bounds: { min: [-1.8, -1, -1], max: [1.8, 1, 1] } };
+  const peanut = {
+    formula: '(x^2 + y^2 + z^2 + 1)^2 - 4 x^2 = 1.2',
+    bounds: { min: [-1.8, -1, -1], max: [1.8, 1, 1] },
+  };
   await set(page, { ...peanut, settings: { radius_share: 0.012 }, view: { colour: 'curvature' } });
   await expect.poll(async () => (await legend(page)).pending).toBe(false);
   const bent = await legend(page);
@@ -68,7 +71,12 @@ test('the curvature of a sphere is that of a sphere, also when it is asked for a
 test('pieces have colours of their own, with their counts', async ({ page }) => {
   await open(page);
   const three = 'min((x-1.2)^2 + y^2 + z^2 - 0.3, (x+1.2)^2 + y^2 + z^2 - 0.2, x^2 + (y-1.2)^2 + z^2 - 0.1)';
-  const report = await set(page, { formula: three, bounds: { min: [-2, -1, -1], max: [2, 2, 1] }, settings: { radius_share: 0.012 }, view: { colour: 'component' } });
+  const report = await set(page, {
+    formula: three,
+    bounds: { min: [-2, -1, -1], max: [2, 2, 1] },
+    settings: { radius_share: 0.012 },
+    view: { colour: 'component' },
+  });
   expect(report.components).toBe(3);
   const { entries } = await legend(page);
   const counts = entries.map((/** @type {{count: number}} */ e) => e.count);
@@ -88,20 +96,22 @@ test('pieces have colours of their own, with their counts', async ({ page }) => 
 test('a setting of an adaptive run dragged at 60 Hz ends at its last value', async ({ page }) => {
   await open(page);
   await set(page, { settings: adaptive });
-  const end = /** @type {any} */ (await page.evaluate(async () => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    for (let k = 0; k < 60; k += 1) {
-      p.engine.setSetting('chord_error', 6e-4 - 9e-6 * k, { live: true });
-      await new Promise((resolve) => setTimeout(resolve, 16));
-    }
-    p.engine.setSetting('chord_error', 6e-5);
-    await new Promise((resolve) => {
-      const off = p.engine.report.subscribe((/** @type {any} */ report) => {
-        if (report) setTimeout(() => resolve(off()));
+  const end = /** @type {any} */ (
+    await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      for (let k = 0; k < 60; k += 1) {
+        p.engine.setSetting('chord_error', 6e-4 - 9e-6 * k, { live: true });
+        await new Promise((resolve) => setTimeout(resolve, 16));
+      }
+      p.engine.setSetting('chord_error', 6e-5);
+      await new Promise((resolve) => {
+        const off = p.engine.report.subscribe((/** @type {any} */ report) => {
+          if (report) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    return { drag: p.engine.lastDrag.value, report: p.report(), setting: p.state.settings.chord_error };
-  }));
+      return { drag: p.engine.lastDrag.value, report: p.report(), setting: p.state.settings.chord_error };
+    })
+  );
   expect(end.setting).toBe(6e-5);
   expect(end.drag.shown).toBeGreaterThan(0);
   const whole = await set(page, { settings: { ...adaptive, chord_error: 6e-5 } });
@@ -111,7 +121,13 @@ test('a setting of an adaptive run dragged at 60 Hz ends at its last value', asy
 
 test('a link holds every setting of an adaptive run', async ({ page }) => {
   await open(page);
-  const settings = { ...adaptive, radius_law: 'sum_of_curvatures', curvature_scale: 0.11, grading: 0.3, placement: 'faithful' };
+  const settings = {
+    ...adaptive,
+    radius_law: 'sum_of_curvatures',
+    curvature_scale: 0.11,
+    grading: 0.3,
+    placement: 'faithful',
+  };
   const before = await set(page, { ...spindle, settings, view: { colour: 'radius' } });
   const shared = String(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl()));
   await page.goto('about:blank');
@@ -119,5 +135,7 @@ test('a link holds every setting of an adaptive run', async ({ page }) => {
   const state = /** @type {any} */ (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state));
   expect(state.settings).toEqual(settings);
   expect(state.view.colour).toBe('radius');
-  expect(/** @type {any} */ (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.report())).digest).toBe(before.digest);
+  expect(
+    /** @type {any} */ (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.report())).digest,
+  ).toBe(before.digest);
 });

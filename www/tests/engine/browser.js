@@ -24,7 +24,8 @@ export async function open(page, address = `./${link(coarse)}`) {
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('request', (request) => {
     const url = new URL(request.url());
-    if (url.protocol !== 'data:' && url.protocol !== 'blob:' && url.hostname !== 'localhost') strangers.push(request.url());
+    if (url.protocol !== 'data:' && url.protocol !== 'blob:' && url.hostname !== 'localhost')
+      strangers.push(request.url());
   });
   await page.goto(address);
   await page.waitForFunction(() => 'marchingParticles' in window);
@@ -39,13 +40,18 @@ export const status = (page) => page.evaluate(() => /** @type {any} */ (window).
 export const counts = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts());
 
 /** Waits until nothing is drawn any more: two looks, further apart than any frame, see as many frames. @param {Page} page */
-export const atRest = (page) => page.waitForFunction(() => {
-  const store = /** @type {any} */ (window);
-  const { frames } = store.marchingParticles.debug.counts();
-  const same = store.lastFrames === frames;
-  store.lastFrames = frames;
-  return same;
-}, undefined, { polling: 400 });
+export const atRest = (page) =>
+  page.waitForFunction(
+    () => {
+      const store = /** @type {any} */ (window);
+      const { frames } = store.marchingParticles.debug.counts();
+      const same = store.lastFrames === frames;
+      store.lastFrames = frames;
+      return same;
+    },
+    undefined,
+    { polling: 400 },
+  );
 
 /**
  * What is in the picture: the share of pixels that differ from its corner, and how many of 12 hues there are.
@@ -53,27 +59,34 @@ export const atRest = (page) => page.waitForFunction(() => {
  * @param {number} [width] @param {number} [height]
  */
 export function picture(page, width = 160, height = 120) {
-  return page.evaluate(async ([w, h]) => {
-    const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
-    const corner = [pixels[0], pixels[1], pixels[2]];
-    const hues = new Array(12).fill(0);
-    let drawn = 0;
-    for (let i = 0; i < pixels.length; i += 4) {
-      const [r, g, b] = [pixels[i], pixels[i + 1], pixels[i + 2]];
-      if (Math.abs(r - corner[0]) + Math.abs(g - corner[1]) + Math.abs(b - corner[2]) < 24) continue;
-      drawn += 1;
-      const most = Math.max(r, g, b);
-      const chroma = most - Math.min(r, g, b);
-      if (chroma < 20) continue;
-      const hue = most === r ? (g - b) / chroma + 6 : most === g ? (b - r) / chroma + 2 : (r - g) / chroma + 4;
-      hues[Math.floor(hue * 2) % 12] += 1;
-    }
-    const middle = 4 * (Math.floor(ph / 2) * pw + Math.floor(pw / 2));
-    return {
-      width: pw, height: ph, drawn: drawn / (pw * ph), hues: hues.filter((n) => n > 4).length,
-      corner, middle: [...pixels.subarray(middle, middle + 4)],
-    };
-  }, [width, height]);
+  return page.evaluate(
+    async ([w, h]) => {
+      const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
+      const corner = [pixels[0], pixels[1], pixels[2]];
+      const hues = new Array(12).fill(0);
+      let drawn = 0;
+      for (let i = 0; i < pixels.length; i += 4) {
+        const [r, g, b] = [pixels[i], pixels[i + 1], pixels[i + 2]];
+        if (Math.abs(r - corner[0]) + Math.abs(g - corner[1]) + Math.abs(b - corner[2]) < 24) continue;
+        drawn += 1;
+        const most = Math.max(r, g, b);
+        const chroma = most - Math.min(r, g, b);
+        if (chroma < 20) continue;
+        const hue = most === r ? (g - b) / chroma + 6 : most === g ? (b - r) / chroma + 2 : (r - g) / chroma + 4;
+        hues[Math.floor(hue * 2) % 12] += 1;
+      }
+      const middle = 4 * (Math.floor(ph / 2) * pw + Math.floor(pw / 2));
+      return {
+        width: pw,
+        height: ph,
+        drawn: drawn / (pw * ph),
+        hues: hues.filter((n) => n > 4).length,
+        corner,
+        middle: [...pixels.subarray(middle, middle + 4)],
+      };
+    },
+    [width, height],
+  );
 }
 
 /** The picture shows a surface in many colours, not a blank or a flat one. @param {Page} page */
@@ -93,17 +106,21 @@ export async function expectSurface(page) {
 export async function expectCanvasShown(page) {
   // Panels and the poster must not lend the picture their colours.
   await page.evaluate(() => {
-    for (const element of document.querySelectorAll('#shell, #poster, #toasts')) /** @type {HTMLElement} */ (element).style.visibility = 'hidden';
+    const panels = /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll('#shell, #poster, #toasts'));
+    for (const panel of panels) panel.style.visibility = 'hidden';
   });
   const shot = await page.locator('#canvas-host canvas').screenshot();
   const colours = await page.evaluate(async (base64) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }));
+    const bitmap = await createImageBitmap(
+      new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' }),
+    );
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
     const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
     context.drawImage(bitmap, 0, 0);
     const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
     const seen = new Set();
-    for (let i = 0; i < data.length; i += 4) seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
+    for (let i = 0; i < data.length; i += 4)
+      seen.add(((data[i] >> 4) << 8) | ((data[i + 1] >> 4) << 4) | (data[i + 2] >> 4));
     return seen.size;
   }, shot.toString('base64'));
   expect(colours).toBeGreaterThan(40);
@@ -116,36 +133,44 @@ export async function expectCanvasShown(page) {
  * @param {number} [width] @param {number} [height]
  */
 export function spots(page, width = 600, height = 450) {
-  return page.evaluate(async ([w, h]) => {
-    const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
-    const [r0, g0, b0] = pixels;
-    const drawn = new Uint8Array(pw * ph);
-    let [black, white] = [0, 0];
-    for (let i = 0; i < drawn.length; i += 1) {
-      const [r, g, b] = pixels.subarray(4 * i, 4 * i + 3);
-      drawn[i] = Number(Math.abs(r - r0) + Math.abs(g - g0) + Math.abs(b - b0) > 60);
-      black += Number(Math.max(r, g, b) < 40);
-      white += Number(Math.min(r, g, b) > 215);
-    }
-    const found = [];
-    for (let start = 0; start < drawn.length; start += 1) {
-      if (!drawn[start]) continue;
-      const open = [start];
-      drawn[start] = 0;
-      let [area, sum_x, sum_y] = [0, 0, 0];
-      for (let at = open.pop(); at !== undefined; at = open.pop()) {
-        area += 1;
-        const x = at % pw;
-        sum_x += x;
-        sum_y += Math.floor(at / pw);
-        for (const [next, inside] of /** @type {[number, boolean][]} */ ([[at - 1, x > 0], [at + 1, x < pw - 1], [at - pw, at >= pw], [at + pw, at < pw * (ph - 1)]])) {
-          if (!inside || !drawn[next]) continue;
-          drawn[next] = 0;
-          open.push(next);
-        }
+  return page.evaluate(
+    async ([w, h]) => {
+      const { pixels, width: pw, height: ph } = await /** @type {any} */ (window).marchingParticles.pixels(w, h);
+      const [r0, g0, b0] = pixels;
+      const drawn = new Uint8Array(pw * ph);
+      let [black, white] = [0, 0];
+      for (let i = 0; i < drawn.length; i += 1) {
+        const [r, g, b] = pixels.subarray(4 * i, 4 * i + 3);
+        drawn[i] = Number(Math.abs(r - r0) + Math.abs(g - g0) + Math.abs(b - b0) > 60);
+        black += Number(Math.max(r, g, b) < 40);
+        white += Number(Math.min(r, g, b) > 215);
       }
-      found.push({ area, off: Math.hypot(sum_x / area - pw / 2, sum_y / area - ph / 2) });
-    }
-    return { found: found.sort((p, q) => q.area - p.area), black, white };
-  }, [width, height]);
+      const found = [];
+      for (let start = 0; start < drawn.length; start += 1) {
+        if (!drawn[start]) continue;
+        const open = [start];
+        drawn[start] = 0;
+        let [area, sum_x, sum_y] = [0, 0, 0];
+        for (let at = open.pop(); at !== undefined; at = open.pop()) {
+          area += 1;
+          const x = at % pw;
+          sum_x += x;
+          sum_y += Math.floor(at / pw);
+          for (const [next, inside] of /** @type {[number, boolean][]} */ ([
+            [at - 1, x > 0],
+            [at + 1, x < pw - 1],
+            [at - pw, at >= pw],
+            [at + pw, at < pw * (ph - 1)],
+          ])) {
+            if (!inside || !drawn[next]) continue;
+            drawn[next] = 0;
+            open.push(next);
+          }
+        }
+        found.push({ area, off: Math.hypot(sum_x / area - pw / 2, sum_y / area - ph / 2) });
+      }
+      return { found: found.sort((p, q) => q.area - p.area), black, white };
+    },
+    [width, height],
+  );
 }

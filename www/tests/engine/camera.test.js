@@ -30,7 +30,10 @@ describe('the view', () => {
     for (const yaw of [0, 1, 2.5, -2]) {
       const view = viewOf({ ...state, target: [0, 0, 0], yaw }, ...size, scene);
       for (const sign of [-2, 2]) {
-        const depth = project(view, view.forward.map((f) => f * sign)).depth;
+        const depth = project(
+          view,
+          view.forward.map((f) => f * sign),
+        ).depth;
         expect(depth).toBeGreaterThanOrEqual(0);
         expect(depth).toBeLessThanOrEqual(1);
       }
@@ -38,11 +41,25 @@ describe('the view', () => {
   });
 
   test('keeps circles round in any shape of picture', () => {
-    for (const [w, h] of /** @type {[number, number][]} */ ([[800, 600], [390, 844], [3840, 1000]])) {
+    for (const [w, h] of /** @type {[number, number][]} */ ([
+      [800, 600],
+      [390, 844],
+      [3840, 1000],
+    ])) {
       const view = viewOf(state, w, h, scene);
       const c = project(view, state.target, w, h);
-      const right = project(view, state.target.map((t, k) => t + 0.1 * view.right[k]), w, h);
-      const up = project(view, state.target.map((t, k) => t + 0.1 * view.up[k]), w, h);
+      const right = project(
+        view,
+        state.target.map((t, k) => t + 0.1 * view.right[k]),
+        w,
+        h,
+      );
+      const up = project(
+        view,
+        state.target.map((t, k) => t + 0.1 * view.up[k]),
+        w,
+        h,
+      );
       expect(right.x - c.x).toBeCloseTo(c.y - up.y, 2);
     }
   });
@@ -58,14 +75,20 @@ describe('the view', () => {
   });
 
   test('survives panels that cover everything', () => {
-    for (const insets of [{ left: 900, right: 900, top: 600, bottom: 0 }, { left: Number.NaN, right: -50, top: 0, bottom: 1e9 }]) {
+    for (const insets of [
+      { left: 900, right: 900, top: 600, bottom: 0 },
+      { left: Number.NaN, right: -50, top: 0, bottom: 1e9 },
+    ]) {
       const view = viewOf(state, ...size, scene, insets);
       const c = project(view, state.target);
       expect(c.x).toBeGreaterThan(0);
       expect(c.x).toBeLessThan(800);
       expect(c.y).toBeGreaterThan(0);
       expect(c.y).toBeLessThan(600);
-      const edge = project(view, state.target.map((t, k) => t + 0.5 * view.right[k]));
+      const edge = project(
+        view,
+        state.target.map((t, k) => t + 0.5 * view.right[k]),
+      );
       expect(edge.x - c.x).toBeGreaterThan(15);
     }
   });
@@ -87,7 +110,8 @@ describe('the camera', () => {
     const before = viewOf(camera.state, ...size, scene);
     const at = { view: before, x_px: 650, y_px: 120, width_px: 800, height_px: 600 };
     const ray = rayThrough(before, 650, 120, ...size);
-    const along = state.distance / (ray[0] * before.forward[0] + ray[1] * before.forward[1] + ray[2] * before.forward[2]);
+    const along =
+      state.distance / (ray[0] * before.forward[0] + ray[1] * before.forward[1] + ray[2] * before.forward[2]);
     const point = before.eye.map((e, k) => e + along * ray[k]);
     camera.zoom(1.7, at);
     const after = project(viewOf(camera.state, ...size, scene), point);

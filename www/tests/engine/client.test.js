@@ -1,84 +1,38 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { Columns } from '../../src/engine/columns.js';
-import { SamplingClient } from '../../src/engine/sampling/client.js';
-import { createStore } from '../../src/engine/store.js';
+import {
+  asked,
+  begin,
+  columnsMessage,
+  done,
+  page,
+  progress,
+  reportMessage,
+  request,
+  told,
+  workers,
+} from './client-page.js';
 import { description } from './description.js';
 
-/** @typedef {import('../../src/engine/sampling/client.js').SampleRequest} SampleRequest */
-
-/** @type {any[]} */
-let workers = [];
-/** What the picture was told. @type {string[]} */
-let told = [];
-/** @type {number[]} */
-let asked = [];
-
-const seconds = { seeding: 0.001, generation: 0.002, relaxation: 0.003, quality: 0 };
-const progress = (/** @type {number} */ particles, /** @type {any} */ more = {}) => ({
-  phase: 'generation', particles, level: 1, relax_step: 0, relax_steps: 10, evaluations: 0, fraction: 0.5, stop_reason: null, message: null, radius: 0.1, moved: false, ...more,
-});
-const answer = (/** @type {string} */ formula) => ({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
-const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
-  type: 'columns', id, first: 0, total: n, positions: new Float32Array(3 * n), normals: new Float32Array(3 * n), radii: new Float32Array(n),
-  levels: new Uint32Array(n), parents: new Uint32Array(n), slots_from: 0, slots: new Uint32Array(n), curvature_from: 0, curvature: new Float32Array(0), progress: progress(n),
-});
-const done = (/** @type {number} */ id, /** @type {string} */ outcome, /** @type {number} */ n = 0, more = {}) => ({
-  type: 'done', id, outcome, progress: progress(n, { phase: 'done', stop_reason: outcome === 'stopped' ? 'cancelled' : 'complete' }), seconds, predicted: n, message: '', report_follows: false, ...more,
-});
-
-const reportMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
-  type: 'report', id, report: { count: n, seconds }, valence: new Uint8Array(n), nearest: new Float32Array(n), residual: new Float32Array(n), component: new Uint32Array(n),
-});
-
-/** @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, jobs: () => any[]}} */
-function page() {
-  const store = createStore();
-  const columns = new Columns();
-  const client = new SamplingClient({
-    store,
-    columns,
-    picture: {
-      begin: ({ grow, fit }) => told.push(`${grow ? 'grow' : 'swap'}${fit ? ' in view' : ''}`),
-      changed: (first, last, drawn) => {
-        told.push(`changed ${first}..${last}`);
-        drawn();
-      },
-      recolour: () => {},
-      fit: () => told.push('fit'),
-      dim: (dim) => told.push(dim ? 'dim' : 'clear'),
-    },
-    spawn: () => {
-      const worker = { posted: /** @type {any[]} */ ([]), postMessage: (/** @type {any} */ m) => worker.posted.push(m), terminate() {}, onmessage: null, onerror: null };
-      workers.push(worker);
-      return worker;
-    },
-    whole: () => request('whole'),
-    onReady: () => told.push('ready'),
-    onAsk: (predicted) => asked.push(predicted),
-    clock: { now: () => Date.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout },
-  });
-  client.start();
-  const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
-  say({ type: 'ready', description });
-  const accept = (/** @type {number} */ id, formula = 'x') => say({ type: 'field', id, answer: answer(formula) });
-  return { client, store, columns, say, accept, jobs: () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'job').map((/** @type {any} */ m) => m.job) };
-}
-/** @param {string} formula @param {Partial<SampleRequest>} [more] @returns {SampleRequest} */
-const request = (formula, more = {}) => ({
-  kind: 'sample', field: { formula }, settings: { max_particles: 1000, relax_steps: 10 }, grow: true, live: false, fit: false, ...more,
-});
-
-beforeEach(() => {
-  vi.useFakeTimers();
-  workers = [];
-  told = [];
-  asked = [];
-});
+beforeEach(begin);
 afterEach(() => vi.useRealTimers());
 
 describe('a model from points', () => {
-  const solved = /** @type {any} */ ({ field: Uint8Array.of(1), info: { info: { name: 'Bunny' }, bounds: description.surfaces[0].bounds }, centres: new Float32Array(3) });
-  const answer = { ok: true, kind: 'points', model: { name: 'Bunny' }, surface: null, formula: '', parameters: [], auto: [], bounds: description.surfaces[0].bounds, mathml: '' };
+  const solved = /** @type {any} */ ({
+    field: Uint8Array.of(1),
+    info: { info: { name: 'Bunny' }, bounds: description.surfaces[0].bounds },
+    centres: new Float32Array(3),
+  });
+  const answer = {
+    ok: true,
+    kind: 'points',
+    model: { name: 'Bunny' },
+    surface: null,
+    formula: '',
+    parameters: [],
+    auto: [],
+    bounds: description.surfaces[0].bounds,
+    mathml: '',
+  };
 
   test('goes to the worker with every job, so that a new worker has it too', () => {
     const { client, store, say, jobs } = page();
@@ -99,7 +53,11 @@ describe('a model from points', () => {
 
 test('the curvature is asked for while it is shown, of a new worker again', () => {
   const { client, say } = page();
-  const asked_for = () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'curvature').map((/** @type {any} */ m) => m.on);
+  const asked_for = () =>
+    workers
+      .at(-1)
+      .posted.filter((/** @type {any} */ m) => m.type === 'curvature')
+      .map((/** @type {any} */ m) => m.on);
   client.showCurvature(false);
   client.showCurvature(true);
   client.showCurvature(true);
@@ -197,9 +155,16 @@ describe('a run', () => {
     expect(store.empty.value).toBe(true);
     expect(told.at(-1)).toBe('dim');
     // A mistake after that, and an empty editor, change nothing of it.
-    for (const [id, kind] of /** @type {const} */ ([[3, 'syntax'], [4, 'empty']])) {
+    for (const [id, kind] of /** @type {const} */ ([
+      [3, 'syntax'],
+      [4, 'empty'],
+    ])) {
       client.sample(request(''));
-      say({ type: 'field', id, answer: { ok: false, error: { kind, message: '', start: 0, end: 0, suggestion: null, names: [] } } });
+      say({
+        type: 'field',
+        id,
+        answer: { ok: false, error: { kind, message: '', start: 0, end: 0, suggestion: null, names: [] } },
+      });
       expect(told.at(-1)).toBe('dim');
     }
     expect(columns.stale).toBe(true);
@@ -247,8 +212,17 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   say(reportMessage(1, 7));
   client.sample(request('x'));
   accept(2);
-  say(done(2, 'refused', 0, { progress: null, message: 'there is not enough memory for about 3000000 particles: choose fewer' }));
-  expect(store.notice.value).toMatchObject({ id: 'size', kind: 'error', text: 'There is not enough memory for about 3000000 particles: choose fewer.' });
+  say(
+    done(2, 'refused', 0, {
+      progress: null,
+      message: 'there is not enough memory for about 3000000 particles: choose fewer',
+    }),
+  );
+  expect(store.notice.value).toMatchObject({
+    id: 'size',
+    kind: 'error',
+    text: 'There is not enough memory for about 3000000 particles: choose fewer.',
+  });
   expect(store.busy.value).toBe(false);
   expect(columns.count).toBe(7);
   expect(told.at(-1)).toBe('dim');
@@ -256,444 +230,6 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   client.sample(request('x'));
   accept(3);
   expect(store.notice.value).toBe(null);
-});
-
-describe('a formula with a fault', () => {
-  const fault = { ok: false, error: { kind: 'syntax', message: 'no', start: 0, end: 1, suggestion: null, names: [] } };
-
-  test('leaves the last surface, dimmed', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    told = [];
-    client.sample(request('x+'));
-    say({ type: 'field', id: 2, answer: fault });
-    expect(columns.count).toBe(7);
-    expect(store.field.value?.formula).toBe('x');
-    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
-    expect(told).toEqual(['dim']);
-    expect(store.busy.value).toBe(false);
-  });
-
-  test('that is just an empty editor dims nothing', () => {
-    const { client, say } = page();
-    client.sample(request(''));
-    told = [];
-    say({ type: 'field', id: 1, answer: { ok: false, error: { ...fault.error, kind: 'empty' } } });
-    expect(told).toEqual(['clear']);
-  });
-
-  test('that is the first of all is the end of it', () => {
-    const { client, store, say } = page();
-    client.sample(request('x+'));
-    say({ type: 'field', id: 1, answer: fault });
-    expect(store.busy.value).toBe(false);
-    expect(store.progress.value.phase).toBe('done');
-  });
-
-  test('typed during a run lets that run go on, dimmed, with its figures', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x', { fit: true }));
-    accept(1);
-    client.sample(request('x+'));
-    // What comes before the answer is the run's too.
-    say(columnsMessage(1, 3));
-    say({ type: 'field', id: 2, answer: fault });
-    expect(store.busy.value).toBe(true);
-    say(columnsMessage(1, 7));
-    expect(columns.count).toBe(7);
-    expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
-    say(done(1, 'complete', 7, { report_follows: true }));
-    expect(store.busy.value).toBe(false);
-    expect(told.at(-1)).toBe('fit');
-    say(reportMessage(1, 7));
-    expect(store.report.value?.count).toBe(7);
-    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
-    expect(jobs()).toHaveLength(2);
-  });
-
-  test('dims also what comes to the page only after it', () => {
-    const { client, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    client.sample(request('x+'));
-    say({ type: 'field', id: 2, answer: fault });
-    say(columnsMessage(1, 7));
-    expect(told.at(-2)).toBe('dim');
-  });
-
-  test('typed during a measurement lets the figures come', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    client.sample(request('x+'));
-    say({ type: 'field', id: 2, answer: fault });
-    expect(store.busy.value).toBe(false);
-    say(reportMessage(1, 7));
-    expect(store.report.value?.count).toBe(7);
-    // And the surface that stayed can be relaxed on.
-    client.relax(1);
-    expect(workers[0].posted.at(-1)).toMatchObject({ job: { kind: 'relax', of: 1 } });
-  });
-
-  test('that was followed by another that is accepted is forgotten, answered or not', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
-    client.sample(request('x+'));
-    client.sample(request('y'));
-    accept(1);
-    expect(store.busy.value).toBe(true);
-    accept(3, 'y');
-    say(columnsMessage(3, 7));
-    say(done(3, 'complete', 7));
-    expect(store.busy.value).toBe(false);
-    expect(store.field.value?.formula).toBe('y');
-  });
-
-  test('taken back while the run before it is under way is no fault any more', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    client.sample(request('x+'));
-    say({ type: 'field', id: 2, answer: fault });
-    client.sample(request('x'));
-    accept(3);
-    expect(store.fieldError.value).toBe(null);
-  });
-
-  test('and the worker’s end in the middle of the run before it: that run is made again', () => {
-    const { client, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    client.sample(request('x+'));
-    say({ type: 'field', id: 2, answer: fault });
-    say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
-    expect(jobs()).toMatchObject([{ field: { formula: 'x' } }]);
-  });
-});
-
-describe('the surface that stays', () => {
-  test('because another would need too many particles, or is refused, gets the figures it has not had', () => {
-    for (const outcome of ['ask', 'refused']) {
-      const { client, store, say, accept, jobs } = page();
-      client.sample(request('x'));
-      accept(1);
-      say(columnsMessage(1, 7));
-      client.sample(request('y'));
-      accept(2, 'y');
-      say(done(2, outcome, 0, { progress: null }));
-      expect(told.at(-1)).toBe('dim');
-      expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
-      accept(3);
-      expect(store.field.value?.formula).toBe('y');
-      say(columnsMessage(3, 9));
-      say(done(3, 'complete', 9, { report_follows: true }));
-      say(reportMessage(3, 9));
-      expect(store.report.value?.count).toBe(9);
-      expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
-      // With its figures there it is left alone.
-      client.sample(request('z'));
-      accept(4, 'z');
-      say(done(4, outcome, 0, { progress: null }));
-      expect(jobs()).toHaveLength(4);
-      expect(store.report.value?.count).toBe(9);
-    }
-  });
-
-  test('is made with the relaxation that another cut off', () => {
-    const { client, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.relax(1);
-    say(columnsMessage(2, 7));
-    client.sample(request('y'));
-    accept(3, 'y');
-    say(done(3, 'refused', 0, { progress: null }));
-    expect(jobs().at(-1)).toMatchObject({ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 11 } });
-  });
-
-  test('is the one asked for again where it is asked for while it is being restored', () => {
-    const { client, store, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    client.sample(request('y'));
-    accept(2, 'y');
-    say(done(2, 'ask', 0, { progress: null }));
-    accept(3);
-    client.sample(request('x'));
-    expect(jobs()).toHaveLength(4);
-    accept(4);
-    say(columnsMessage(4, 7));
-    say(done(4, 'complete', 7));
-    expect(store.field.value?.formula).toBe('x');
-    expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
-  });
-
-  test('stays dimmed where its restoring is stopped at once, or the worker fails while it is idle', () => {
-    for (const end of ['stop', 'crash']) {
-      const { client, say, accept } = page();
-      client.sample(request('x'));
-      accept(1);
-      say(columnsMessage(1, 7));
-      if (end === 'crash') {
-        say(done(1, 'complete', 7, { report_follows: true }));
-        say(reportMessage(1, 7));
-      }
-      client.sample(request('y'));
-      accept(2, 'y');
-      say(done(2, 'refused', 0, { progress: null }));
-      if (end === 'stop') {
-        accept(3);
-        client.stop();
-        say(done(3, 'stopped', 0));
-      } else {
-        say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
-      }
-      expect(told.at(-1), end).toBe('dim');
-    }
-  });
-
-  test('from a drag that a mistake broke off, or a stop, gets its figures', () => {
-    for (const end of ['mistake', 'mistake meanwhile', 'stop']) {
-      const { client, say, accept, jobs } = page();
-      const ended = () => {
-        say(columnsMessage(1, 7));
-        say(done(1, 'complete', 7));
-      };
-      client.sampleLive(request('x'), 3);
-      accept(1);
-      if (end !== 'mistake meanwhile') ended();
-      expect(jobs()).toHaveLength(1);
-      if (end === 'stop') {
-        client.stop();
-      } else {
-        client.sample(request('x+'));
-        say({ type: 'field', id: 2, answer: { ok: false, error: { kind: 'syntax', message: '', start: 0, end: 0, suggestion: null, names: [] } } });
-      }
-      if (end === 'mistake meanwhile') ended();
-      expect(jobs().at(-1)).toMatchObject({ field: { formula: 'x' }, live: false });
-    }
-  });
-
-  test('because the sampler fails on every other is dimmed and gets its figures', () => {
-    const { client, say, accept, jobs } = page();
-    const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    client.sample(request('y'));
-    accept(2, 'y');
-    say(crash);
-    accept(3, 'y');
-    say(crash);
-    expect(told.at(-1)).toBe('dim');
-    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
-  });
-
-  test('because the next was stopped before the worker looked at it is dimmed, and that one can be asked for again', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.sample(request('y'));
-    client.stop();
-    say(done(2, 'stopped', 0, { progress: null }));
-    expect(store.busy.value).toBe(false);
-    expect(client.supervisor.busy).toBe(false);
-    expect(store.progress.value.phase).toBe('done');
-    expect(told.at(-1)).toBe('dim');
-    expect(store.report.value?.count).toBe(7);
-    client.sample(request('y'));
-    expect(jobs()).toHaveLength(3);
-    accept(3, 'y');
-    say(columnsMessage(3, 5));
-    say(done(3, 'complete', 5));
-    expect(columns.count).toBe(5);
-    expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
-  });
-
-  test('and was stopped with the next, which the worker never looked at, keeps what it has', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    client.sample(request('y'));
-    client.stop();
-    say(done(2, 'stopped', 0, { progress: null }));
-    expect(store.busy.value).toBe(true);
-    expect(told.at(-1)).toBe('dim');
-    say(done(1, 'stopped', 7, { report_follows: true }));
-    expect(store.busy.value).toBe(false);
-    expect(store.partial.value).toBe(true);
-    say(reportMessage(1, 7));
-    expect(client.supervisor.busy).toBe(false);
-    expect(store.report.value?.count).toBe(7);
-    expect(columns.count).toBe(7);
-    expect(jobs()).toHaveLength(2);
-  });
-
-  test('because the same was sampled anew and stopped at once is not dimmed', () => {
-    const { client, columns, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.sample(request('x'));
-    accept(2);
-    say(done(2, 'stopped', 0));
-    expect(columns.count).toBe(7);
-    expect(told.at(-1)).toBe('clear');
-  });
-
-  test('because the next was stopped before its first particle is whole, and dimmed', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.sample(request('y'));
-    accept(2, 'y');
-    client.stop();
-    say(columnsMessage(2, 0));
-    say(done(2, 'stopped', 0));
-    expect(columns).toMatchObject({ count: 7, stale: false });
-    expect(store.partial.value).toBe(false);
-    expect(store.report.value?.count).toBe(7);
-    expect(store.progress.value).toMatchObject({ phase: 'done', particles: 7 });
-    expect(told.at(-1)).toBe('dim');
-  });
-
-  test('keeps its figures until there are particles of another', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.sample(request('y'));
-    accept(2, 'y');
-    expect(store.report.value?.count).toBe(7);
-    say(columnsMessage(2, 5));
-    expect(store.report.value).toBe(null);
-  });
-});
-
-describe('a worker that fails', () => {
-  const crash = { type: 'crashed', id: 1, message: 'panicked at src/x.rs', stack: 'at f' };
-
-  test('is replaced, and its run made again', () => {
-    const { client, store, say, jobs } = page();
-    client.sample(request('x'));
-    say(crash);
-    expect(workers).toHaveLength(2);
-    expect(jobs()).toHaveLength(1);
-    expect(jobs()[0].field).toEqual({ formula: 'x' });
-    expect(store.notice.value).toMatchObject({ id: 'panic', kind: 'warn' });
-    expect(store.notice.value?.details).toContain('panicked at src/x.rs');
-    expect(told.filter((t) => t === 'ready')).toHaveLength(1);
-  });
-
-  test('twice on the same input is not sent it a third time', () => {
-    const { client, store, say, jobs } = page();
-    client.sample(request('x'));
-    say(crash);
-    say(crash);
-    expect(workers).toHaveLength(3);
-    expect(jobs()).toHaveLength(0);
-    expect(store.notice.value?.kind).toBe('error');
-    expect(store.busy.value).toBe(false);
-    client.sample(request('y'));
-    expect(jobs()).toHaveLength(1);
-  });
-
-  test('in the middle of a measurement owes the figures: that run is made again', () => {
-    const { client, store, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(crash);
-    expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
-    expect(store.busy.value).toBe(true);
-  });
-
-  test('by silence is replaced too', () => {
-    const { client, store, jobs } = page();
-    client.sample(request('x'));
-    vi.advanceTimersByTime(2500);
-    expect(workers).toHaveLength(2);
-    expect(jobs()).toHaveLength(1);
-    expect(store.notice.value?.id).toBe('hang');
-  });
-
-  test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
-    const { client, store, columns, say, jobs, accept } = page();
-    client.sample(request('kept'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7));
-    for (let k = 0; k < 4; k += 1) {
-      client.sample(request(`formula ${k}`));
-      say({ ...crash, id: 0 });
-    }
-    expect(store.notice.value?.id).toBe('safe-mode');
-    expect(store.busy.value).toBe(false);
-    expect(columns.count).toBe(7);
-    client.sample(request('later'));
-    expect(store.busy.value).toBe(false);
-    store.notice.value?.action?.run();
-    expect(store.notice.value).toBe(null);
-    expect(jobs()[0].field).toEqual({ formula: 'whole' });
-  });
-
-  test('after it, relaxing makes the whole run again with the steps added', () => {
-    const { client, say, jobs, accept } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
-    client.relax(5);
-    expect(jobs()[1]).toMatchObject({ kind: 'relax', of: 1, steps: 5 });
-    say(columnsMessage(2, 7));
-    say({ ...done(2, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 15, relax_steps: 15 }) });
-    client.relax(1);
-    expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
-    say(crash);
-    // The relaxation that was lost cannot be made again on its own: the run that ends with it is.
-    expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
-    client.store.description.value = description;
-    expect(client.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
-    accept(4);
-    say(columnsMessage(4, 7));
-    say(done(4, 'complete', 7, { report_follows: true }));
-    say(reportMessage(4, 7));
-    say(crash);
-    expect(jobs()).toHaveLength(0);
-    client.relax(2);
-    expect(jobs()[0]).toMatchObject({ kind: 'sample', field: { formula: 'whole' } });
-  });
-
-  test('to load says why, and tries again when asked', () => {
-    const { client, store } = page();
-    client.supervisor.receive({ type: 'failed', fault: 'missing', message: 'The sampler is not on the server.' });
-    expect(store.notice.value).toMatchObject({ id: 'load', kind: 'error', text: 'The sampler is not on the server.' });
-    store.notice.value?.action?.run();
-    expect(workers).toHaveLength(2);
-  });
 });
 
 test('a drag is counted: what was asked for, what was shown, how late', () => {

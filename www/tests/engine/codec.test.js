@@ -15,7 +15,15 @@ const elaborate = () => ({
   declared: [{ name: 'k', label: 'k', value: 1, min: -3, max: 3, step: 0.01 }],
   bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
   settings: { radius_share: 0.012, relax_steps: 20 },
-  view: { colour: 'valence', size: 0.8, theme: 'dark', box: true, points: false, level: 12, camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false } },
+  view: {
+    colour: 'valence',
+    size: 0.8,
+    theme: 'dark',
+    box: true,
+    points: false,
+    level: 12,
+    camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false },
+  },
 });
 
 const inLink = (/** @type {unknown} */ value, kind = 'j') =>
@@ -99,11 +107,19 @@ describe('a surface made of points', () => {
   });
 
   test('takes no formula', () => {
-    expect(sanitize({ surface: 'bunny', formula: 'x' }, description)).toMatchObject({ state: { surface: 'bunny', formula: '' }, reset: ['formula'] });
+    expect(sanitize({ surface: 'bunny', formula: 'x' }, description)).toMatchObject({
+      state: { surface: 'bunny', formula: '' },
+      reset: ['formula'],
+    });
   });
 
   test('from a file is not in the link: the standard surface comes in its place, with settings and colour', async () => {
-    const file = { ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds, view: { ...elaborate().view, colour: /** @type {const} */ ('radius') } };
+    const file = {
+      ...bunny,
+      surface: FILE_SURFACE,
+      bounds: elaborate().bounds,
+      view: { ...elaborate().view, colour: /** @type {const} */ ('radius') },
+    };
     const link = await encode(file, description);
     const { state, reset, problem } = await decode(link, description);
     expect(problem).toBe(null);
@@ -116,25 +132,35 @@ describe('a surface made of points', () => {
 
   test('is asked of the core by the name of its solved model', () => {
     expect(fieldRequest(bunny, description, 'bunny')).toEqual({ points: 'bunny', surface: 'bunny' });
-    expect(fieldRequest({ ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds }, description, 'file 3')).toEqual({ points: 'file 3', surface: 'file', bounds: elaborate().bounds });
+    expect(
+      fieldRequest({ ...bunny, surface: FILE_SURFACE, bounds: elaborate().bounds }, description, 'file 3'),
+    ).toEqual({ points: 'file 3', surface: 'file', bounds: elaborate().bounds });
   });
 });
 
 test('settings of a coarser run stay within their ranges', () => {
-  expect(clampSettings(description, { radius_share: 3, relax_steps: 2, size_mode: 'count', unknown: 7 })).toEqual({ radius_share: 0.1, relax_steps: 2, size_mode: 'count', unknown: 7 });
+  expect(clampSettings(description, { radius_share: 3, relax_steps: 2, size_mode: 'count', unknown: 7 })).toEqual({
+    radius_share: 0.1,
+    relax_steps: 2,
+    size_mode: 'count',
+    unknown: 7,
+  });
 });
 
 describe('a state from anywhere', () => {
   test('is clamped, and what was reset is named', () => {
-    const { state, reset } = sanitize({
-      surface: 'no such surface',
-      formula: 'x'.repeat(5000),
-      parameters: { a: Infinity, 'bad name': 1, b: 1e9, c: 2 },
-      declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
-      bounds: { min: [0, 0, 0], max: [1, 0, 1] },
-      settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
-      view: { colour: 'pink', size: 99, theme: 'blue', box: 'yes', camera: { distance: Number.NaN } },
-    }, description);
+    const { state, reset } = sanitize(
+      {
+        surface: 'no such surface',
+        formula: 'x'.repeat(5000),
+        parameters: { a: Infinity, 'bad name': 1, b: 1e9, c: 2 },
+        declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
+        bounds: { min: [0, 0, 0], max: [1, 0, 1] },
+        settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
+        view: { colour: 'pink', size: 99, theme: 'blue', box: 'yes', camera: { distance: Number.NaN } },
+      },
+      description,
+    );
     expect(state.surface).toBe('ellipsoid');
     expect(state.formula).toBe(description.surfaces[0].formula);
     expect(state.parameters).toEqual({ b: 1e6, c: 2 });
@@ -142,19 +168,43 @@ describe('a state from anywhere', () => {
     expect(state.bounds).toBe(null);
     expect(state.settings).toEqual({ radius_share: 0.1, relax_steps: 2 });
     expect(state.view).toEqual({ ...defaultState(description).view, size: 1.5 });
-    for (const name of ['surface', 'formula', 'parameter a', 'parameter bad name', 'parameter b', 'a declared parameter', 'clip box', 'setting radius_share', 'setting relax_steps', 'setting size_mode', 'setting nothing', 'setting count', 'colour', 'disc size', 'theme', 'box', 'camera']) {
+    for (const name of [
+      'surface',
+      'formula',
+      'parameter a',
+      'parameter bad name',
+      'parameter b',
+      'a declared parameter',
+      'clip box',
+      'setting radius_share',
+      'setting relax_steps',
+      'setting size_mode',
+      'setting nothing',
+      'setting count',
+      'colour',
+      'disc size',
+      'theme',
+      'box',
+      'camera',
+    ]) {
       expect(reset).toContain(name);
     }
     expect(reset).not.toContain('parameter c');
   });
 
-  test.each([null, 7, 'text', [], [[]], { view: 3, settings: [], parameters: 'x', declared: {} }])('%j is turned into a valid one', (raw) => {
-    const { state } = sanitize(raw, description);
-    expect(state).toEqual(defaultState(description));
-  });
+  test.each([null, 7, 'text', [], [[]], { view: 3, settings: [], parameters: 'x', declared: {} }])(
+    '%j is turned into a valid one',
+    (raw) => {
+      const { state } = sanitize(raw, description);
+      expect(state).toEqual(defaultState(description));
+    },
+  );
 
   test('a prototype is not to be had through it', () => {
-    const { state } = sanitize(JSON.parse('{"parameters":{"__proto__":1,"constructor":2},"settings":{"__proto__":{"a":1}}}'), description);
+    const { state } = sanitize(
+      JSON.parse('{"parameters":{"__proto__":1,"constructor":2},"settings":{"__proto__":{"a":1}}}'),
+      description,
+    );
     expect(Object.getPrototypeOf(state.parameters)).toBe(Object.prototype);
     expect(/** @type {any} */ ({}).a).toBe(undefined);
   });
@@ -164,6 +214,10 @@ test('the core is told the formula only where it differs from the gallery’s', 
   const state = defaultState(description);
   expect(fieldRequest(state, description)).toEqual({ surface: 'ellipsoid', parameters: {} });
   expect(fieldRequest(elaborate(), description)).toEqual({
-    surface: 'torus', formula: 'x^2 + y^2 + sin(k z)^2 − 1', parameters: { k: 2.5, R: 1.25 }, declare: elaborate().declared, bounds: elaborate().bounds,
+    surface: 'torus',
+    formula: 'x^2 + y^2 + sin(k z)^2 − 1',
+    parameters: { k: 2.5, R: 1.25 },
+    declare: elaborate().declared,
+    bounds: elaborate().bounds,
   });
 });

@@ -16,8 +16,13 @@ function sphere(n) {
   }
   const columns = new Columns();
   columns.write({
-    first: 0, total: n, positions, normals: positions.slice(), radii: new Float32Array(n).fill(1.6 / Math.sqrt(n)),
-    levels: Uint32Array.from({ length: n }, (_, i) => Math.floor(Math.sqrt(i))), parents: Uint32Array.from({ length: n }, (_, i) => (i === 0 ? 0xffffffff : i >> 1)),
+    first: 0,
+    total: n,
+    positions,
+    normals: positions.slice(),
+    radii: new Float32Array(n).fill(1.6 / Math.sqrt(n)),
+    levels: Uint32Array.from({ length: n }, (_, i) => Math.floor(Math.sqrt(i))),
+    parents: Uint32Array.from({ length: n }, (_, i) => (i === 0 ? 0xffffffff : i >> 1)),
   });
   return columns;
 }
@@ -25,7 +30,8 @@ function sphere(n) {
 describe('columns', () => {
   test('take the curvature of particles in order, as far as it is known, until another run begins', () => {
     const columns = sphere(100);
-    const values = (/** @type {number} */ from, /** @type {number} */ to) => Float32Array.from({ length: 2 * (to - from) }, (_, i) => 2 * from + i);
+    const values = (/** @type {number} */ from, /** @type {number} */ to) =>
+      Float32Array.from({ length: 2 * (to - from) }, (_, i) => 2 * from + i);
     columns.writeCurvature(0, values(0, 60));
     expect(columns.curved).toBe(60);
     // A gap, and more than there are particles, are not taken.
@@ -45,7 +51,13 @@ describe('columns', () => {
     const columns = sphere(10);
     columns.valence = new Uint8Array(10);
     columns.write({
-      first: 10, total: 10, positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0),
+      first: 10,
+      total: 10,
+      positions: new Float32Array(0),
+      normals: new Float32Array(0),
+      radii: new Float32Array(0),
+      levels: new Uint32Array(0),
+      parents: new Uint32Array(0),
     });
     expect(columns.valence).not.toBe(null);
   });
@@ -53,7 +65,12 @@ describe('columns', () => {
   test('know their last level, also where the last particles are of an earlier one', () => {
     const columns = sphere(100);
     expect(columns.last_level).toBe(9);
-    const one = { positions: new Float32Array(3), normals: new Float32Array(3), radii: new Float32Array(1), parents: new Uint32Array(1) };
+    const one = {
+      positions: new Float32Array(3),
+      normals: new Float32Array(3),
+      radii: new Float32Array(1),
+      parents: new Uint32Array(1),
+    };
     columns.write({ first: 100, total: 101, ...one, levels: Uint32Array.of(4) });
     expect(columns.last_level).toBe(9);
     columns.clear();
@@ -64,8 +81,13 @@ describe('columns', () => {
     const whole = sphere(5000);
     const columns = new Columns();
     const piece = (/** @type {number} */ a, /** @type {number} */ b, total = b) => ({
-      first: a, total, positions: whole.positions.slice(3 * a, 3 * b), normals: whole.normals.slice(3 * a, 3 * b), radii: whole.radii.slice(a, b),
-      levels: whole.levels.slice(a, b), parents: whole.parents.slice(a, b),
+      first: a,
+      total,
+      positions: whole.positions.slice(3 * a, 3 * b),
+      normals: whole.normals.slice(3 * a, 3 * b),
+      radii: whole.radii.slice(a, b),
+      levels: whole.levels.slice(a, b),
+      parents: whole.parents.slice(a, b),
     });
     for (let a = 0; a < 5000; a += 700) expect(columns.write(piece(a, Math.min(5000, a + 700)))).toBe(true);
     expect(columns.count).toBe(5000);
@@ -79,7 +101,13 @@ describe('columns', () => {
     const columns = sphere(10);
     const before = columns.positions.slice();
     const three = new Float32Array(3).fill(9);
-    const one = { positions: three, normals: three, radii: new Float32Array(1), levels: new Uint32Array(1), parents: new Uint32Array(1) };
+    const one = {
+      positions: three,
+      normals: three,
+      radii: new Float32Array(1),
+      levels: new Uint32Array(1),
+      parents: new Uint32Array(1),
+    };
     expect(columns.write({ first: 11, total: 12, ...one })).toBe(false);
     expect(columns.write({ first: 9, total: 9, ...one })).toBe(false);
     expect(columns.write({ first: 0, total: 1, ...one, normals: new Float32Array(6) })).toBe(false);
@@ -91,7 +119,15 @@ describe('columns', () => {
     const columns = sphere(10);
     columns.valence = new Uint8Array(10);
     const three = new Float32Array(3);
-    columns.write({ first: 0, total: 10, positions: three, normals: three, radii: new Float32Array(1), levels: new Uint32Array(1), parents: new Uint32Array(1) });
+    columns.write({
+      first: 0,
+      total: 10,
+      positions: three,
+      normals: three,
+      radii: new Float32Array(1),
+      levels: new Uint32Array(1),
+      parents: new Uint32Array(1),
+    });
     expect(columns.valence).toBe(null);
   });
 });
@@ -106,7 +142,11 @@ describe('picking', () => {
       const p = [...columns.positions.subarray(3 * i, 3 * i + 3)];
       const n = [...columns.normals.subarray(3 * i, 3 * i + 3)];
       const dot = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-      const t = dot(p.map((c, k) => c - eye[k]), n) / dot(ray, n);
+      const t =
+        dot(
+          p.map((c, k) => c - eye[k]),
+          n,
+        ) / dot(ray, n);
       const hit = eye.map((e, k) => e + t * ray[k] - p[k]);
       if (t > 0 && t < best_t && dot(hit, hit) <= (columns.radii[i] * scale) ** 2) {
         best_t = t;
@@ -117,7 +157,8 @@ describe('picking', () => {
   }
 
   /** @param {number} i @param {number} j */
-  const apart = (i, j) => Math.hypot(...[0, 1, 2].map((k) => columns.positions[3 * i + k] - columns.positions[3 * j + k]));
+  const apart = (i, j) =>
+    Math.hypot(...[0, 1, 2].map((k) => columns.positions[3 * i + k] - columns.positions[3 * j + k]));
 
   test('sees through particles of later levels', () => {
     const eye = /** @type {const} */ ([0, 0, -5]);
@@ -200,9 +241,16 @@ describe('exports', () => {
         at += width[type];
       }
       expect(row).toEqual({
-        x: columns.positions[3 * i], y: columns.positions[3 * i + 1], z: columns.positions[3 * i + 2],
-        nx: columns.normals[3 * i], ny: columns.normals[3 * i + 1], nz: columns.normals[3 * i + 2],
-        radius: columns.radii[i], level: columns.levels[i], parent: i === 0 ? -1 : i >> 1, valence: 4 + (i % 4),
+        x: columns.positions[3 * i],
+        y: columns.positions[3 * i + 1],
+        z: columns.positions[3 * i + 2],
+        nx: columns.normals[3 * i],
+        ny: columns.normals[3 * i + 1],
+        nz: columns.normals[3 * i + 2],
+        radius: columns.radii[i],
+        level: columns.levels[i],
+        parent: i === 0 ? -1 : i >> 1,
+        valence: 4 + (i % 4),
         singular: i === 17 ? 1 : 0,
       });
     }

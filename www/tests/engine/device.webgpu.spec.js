@@ -41,7 +41,13 @@ test('without navigator.gpu WebGL2 draws', async ({ page }) => {
 
 test('WebGPU draws the points of a model', async ({ page }) => {
   await open(page);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.set({ surface: 'bunny', settings: { radius_share: 0.015 }, view: { colour: 'plain' } }));
+  await page.evaluate(() =>
+    /** @type {any} */ (window).marchingParticles.set({
+      surface: 'bunny',
+      settings: { radius_share: 0.015 },
+      view: { colour: 'plain' },
+    }),
+  );
   const dotted = await spots(page);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setView({ points: false }));
   expect(dotted.black).toBeGreaterThan((await spots(page)).black + 100);

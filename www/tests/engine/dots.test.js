@@ -29,5 +29,6 @@ test('a point at the eye or behind it does no harm', () => {
   const view = viewOf(homeCamera(), 800, 600, scene);
   const behind = view.eye.map((v, k) => v - view.forward[k]);
   const dots = dotsOf(Float32Array.of(...view.eye, ...behind), view, { px: 1, size: 1, lift: 0.1, palette });
-  for (const column of [dots.positions, dots.normals, dots.radii]) expect([...column].every(Number.isFinite)).toBe(true);
+  for (const column of [dots.positions, dots.normals, dots.radii])
+    expect([...column].every(Number.isFinite)).toBe(true);
 });

@@ -11,7 +11,13 @@
  * @param {number} [options.pieces]  of a measurement
  * @param {number} [options.us_per_piece]
  */
-export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10, pieces = 1000, us_per_piece = 50 } = {}) {
+export function fakeCore({
+  particles = 1000,
+  relax_steps = 2,
+  us_per_unit = 10,
+  pieces = 1000,
+  us_per_piece = 50,
+} = {}) {
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -22,12 +28,25 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10, 
   let stop = null;
   let moves = 0;
   let measured = 0;
-  const progress = (moved = false) => JSON.stringify({
-    phase: stop ? 'done' : count < target ? 'generation' : 'relaxation', particles: count, level: Math.floor(Math.sqrt(count)), relax_step: step,
-    relax_steps: steps, evaluations: 2 * count, fraction: 0, stop_reason: stop, message: null, radius: 0.01, moved,
-  });
+  const progress = (moved = false) =>
+    JSON.stringify({
+      phase: stop ? 'done' : count < target ? 'generation' : 'relaxation',
+      particles: count,
+      level: Math.floor(Math.sqrt(count)),
+      relax_step: step,
+      relax_steps: steps,
+      evaluations: 2 * count,
+      fraction: 0,
+      stop_reason: stop,
+      message: null,
+      radius: 0.01,
+      moved,
+    });
   const column = (/** @type {number} */ from, /** @type {number} */ width, /** @type {any} */ Type) =>
-    Type.from({ length: (count - from) * width }, (/** @type {unknown} */ _, /** @type {number} */ i) => from * width + i + moves * 0.5);
+    Type.from(
+      { length: (count - from) * width },
+      (/** @type {unknown} */ _, /** @type {number} */ i) => from * width + i + moves * 0.5,
+    );
   return {
     clock,
     calls,
@@ -35,14 +54,36 @@ export function fakeCore({ particles = 1000, relax_steps = 2, us_per_unit = 10, 
     set_field(json) {
       calls.push('set_field');
       const { formula } = JSON.parse(json);
-      if (formula === 'x^2+') return JSON.stringify({ ok: false, error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] } });
-      return JSON.stringify({ ok: true, surface: null, formula, parameters: [], auto: [], bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, mathml: '' });
+      if (formula === 'x^2+')
+        return JSON.stringify({
+          ok: false,
+          error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] },
+        });
+      return JSON.stringify({
+        ok: true,
+        surface: null,
+        formula,
+        parameters: [],
+        auto: [],
+        bounds: { min: [-1, -1, -1], max: [1, 1, 1] },
+        mathml: '',
+      });
     },
     /** @param {Uint8Array} bytes @param {string} about */
     set_points(bytes, about) {
       calls.push(`set_points ${bytes.length}`);
       const { info, bounds } = JSON.parse(about);
-      return JSON.stringify({ ok: true, kind: 'points', model: info, surface: null, formula: '', parameters: [], auto: [], bounds, mathml: '' });
+      return JSON.stringify({
+        ok: true,
+        kind: 'points',
+        model: info,
+        surface: null,
+        formula: '',
+        parameters: [],
+        auto: [],
+        bounds,
+        mathml: '',
+      });
     },
     /** @param {string} json */
     start(json) {

@@ -8,7 +8,15 @@ import { fakeCore } from './fake-core.js';
 
 /** @param {Partial<SampleJob>} [part] @returns {SampleJob} */
 const sampleJob = (part = {}) => ({
-  kind: 'sample', id: 7, field: { formula: 'x' }, points: null, settings: {}, grow: true, live: false, ask_above: Infinity, ...part,
+  kind: 'sample',
+  id: 7,
+  field: { formula: 'x' },
+  points: null,
+  settings: {},
+  grow: true,
+  live: false,
+  ask_above: Infinity,
+  ...part,
 });
 
 /**
@@ -17,20 +25,29 @@ const sampleJob = (part = {}) => ({
  * @param {import('../../src/engine/sampling/protocol.js').Job} job
  * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}, rest?: (posted: FromWorker[]) => Promise<void> | null}} [options]
  */
-async function run(core, job, { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 }, rest = () => null } = {}) {
+async function run(
+  core,
+  job,
+  { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 }, rest = () => null } = {},
+) {
   /** @type {FromWorker[]} */
   const posted = [];
-  await runJob(core, job, {
-    now_ms: () => core.clock.ms,
-    pause: async () => {
-      core.clock.ms += 1;
+  await runJob(
+    core,
+    job,
+    {
+      now_ms: () => core.clock.ms,
+      pause: async () => {
+        core.clock.ms += 1;
+      },
+      post: (message) => posted.push(structuredClone(message)),
+      interrupt: () => interrupt(posted),
+      room: () => room(posted),
+      curvature: () => curvature(posted),
+      rest: () => rest(posted),
     },
-    post: (message) => posted.push(structuredClone(message)),
-    interrupt: () => interrupt(posted),
-    room: () => room(posted),
-    curvature: () => curvature(posted),
-    rest: () => rest(posted),
-  }, memory);
+    memory,
+  );
   return { posted, memory };
 }
 
@@ -141,7 +158,9 @@ describe('a job', () => {
 
   test('a stop keeps what there is and says so', async () => {
     const core = fakeCore({ particles: 1_000_000 });
-    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'columns').length >= 2 ? 'stop' : null) });
+    const { posted, memory } = await run(core, sampleJob(), {
+      interrupt: (p) => (of(p, 'columns').length >= 2 ? 'stop' : null),
+    });
     const [done] = of(posted, 'done');
     expect(done.outcome).toBe('stopped');
     expect(done.progress?.stop_reason).toBe('cancelled');
@@ -170,7 +189,9 @@ describe('a job', () => {
 
   test('a newer job takes over at once, without a report of the old one', async () => {
     const core = fakeCore({ particles: 1_000_000 });
-    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'columns').length >= 1 ? 'replace' : null) });
+    const { posted, memory } = await run(core, sampleJob(), {
+      interrupt: (p) => (of(p, 'columns').length >= 1 ? 'replace' : null),
+    });
     expect(of(posted, 'done')).toHaveLength(0);
     expect(of(posted, 'report')).toHaveLength(0);
     expect(memory.held).toBe(0);
@@ -195,7 +216,9 @@ describe('a job', () => {
 
   test('a newer job ends a measurement, and a long one lets itself be heard', async () => {
     const core = fakeCore({ pieces: 100_000, us_per_piece: 50 });
-    const { posted, memory } = await run(core, sampleJob(), { interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null) });
+    const { posted, memory } = await run(core, sampleJob(), {
+      interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null),
+    });
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'complete', report_follows: true });
     expect(of(posted, 'beat')).toHaveLength(3);
     expect(of(posted, 'report')).toHaveLength(0);
@@ -221,10 +244,16 @@ describe('a job', () => {
   });
 
   test('a live job that is stopped is the last of its drag, and is reported', async () => {
-    const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt: () => 'stop' });
+    const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), {
+      interrupt: () => 'stop',
+    });
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: false });
     let calls = 0;
-    const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt: () => ((calls += 1) > 5 ? 'stop' : null) });
+    const interrupt = () => {
+      calls += 1;
+      return calls > 5 ? 'stop' : null;
+    };
+    const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt });
     expect(of(later.posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: true });
     expect(of(later.posted, 'report')).toHaveLength(1);
   });
@@ -244,7 +273,9 @@ describe('a job', () => {
 
   test('brings the curvature only while it is shown: once per particle as they come, and of all when they rest', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3, us_per_unit: 5 });
-    expect((await run(core, sampleJob())).posted.some((m) => m.type === 'columns' && m.curvature.length > 0)).toBe(false);
+    expect((await run(core, sampleJob())).posted.some((m) => m.type === 'columns' && m.curvature.length > 0)).toBe(
+      false,
+    );
     core.calls.length = 0;
     const { posted } = await run(core, sampleJob(), { curvature: () => true });
     let have = 0;
@@ -253,7 +284,9 @@ describe('a job', () => {
       have = Math.max(have, piece.curvature_from + piece.curvature.length / 2);
     }
     expect(have).toBe(20_000);
-    const last = of(posted, 'columns').filter((piece) => piece.curvature.length > 0).at(-1);
+    const last = of(posted, 'columns')
+      .filter((piece) => piece.curvature.length > 0)
+      .at(-1);
     expect(last?.curvature_from).toBe(0);
     expect(last?.curvature).toEqual(core.curvature(0));
     expect(core.calls.filter((call) => call === 'curvature 0').length).toBeLessThanOrEqual(3);
@@ -274,7 +307,11 @@ describe('a job', () => {
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
     expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
     for (const piece of of(again.posted, 'columns')) expect(piece.first).toBe(0);
-    const lost = await run(core, { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true }, { memory: { held: 0 } });
+    const lost = await run(
+      core,
+      { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true },
+      { memory: { held: 0 } },
+    );
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
   });
 });
@@ -293,18 +330,23 @@ async function work(core, first, meanwhile = () => {}) {
   const memory = { held: 0 };
   jobs.add(first);
   for (let job = jobs.take(core); job; job = jobs.take(core)) {
-    await runJob(core, job, {
-      now_ms: () => core.clock.ms,
-      pause: async () => {
-        core.clock.ms += 1;
-        meanwhile(jobs, posted);
+    await runJob(
+      core,
+      job,
+      {
+        now_ms: () => core.clock.ms,
+        pause: async () => {
+          core.clock.ms += 1;
+          meanwhile(jobs, posted);
+        },
+        post,
+        interrupt: () => jobs.interrupt(core),
+        room: () => true,
+        curvature: () => false,
+        rest: () => null,
       },
-      post,
-      interrupt: () => jobs.interrupt(core),
-      room: () => true,
-      curvature: () => false,
-      rest: () => null,
-    }, memory);
+      memory,
+    );
   }
   return { posted, memory };
 }
@@ -324,7 +366,10 @@ describe('a job that comes while another is under way', () => {
   test('with a fault in its formula lets the run come to its end, and its report, as if nothing had been asked', async () => {
     const alone = await work(fakeCore({ particles: 6000 }), sampleJob());
     const { posted, memory } = await work(fakeCore({ particles: 6000 }), sampleJob(), once(faulty, 'columns', 2));
-    expect(of(posted, 'field').map(({ id, answer }) => [id, answer.ok])).toEqual([[7, true], [8, false]]);
+    expect(of(posted, 'field').map(({ id, answer }) => [id, answer.ok])).toEqual([
+      [7, true],
+      [8, false],
+    ]);
     expect(posted.filter((m) => m.type !== 'field')).toEqual(alone.posted.filter((m) => m.type !== 'field'));
     expect(memory.held).toBe(7);
   });
@@ -341,7 +386,11 @@ describe('a job that comes while another is under way', () => {
 
   test('takes over once its field is accepted, and its field is set once', async () => {
     const core = fakeCore({ particles: 20_000 });
-    const { posted, memory } = await work(core, sampleJob(), once(sampleJob({ id: 8, field: { formula: 'y' } }), 'columns', 2));
+    const { posted, memory } = await work(
+      core,
+      sampleJob(),
+      once(sampleJob({ id: 8, field: { formula: 'y' } }), 'columns', 2),
+    );
     expect(core.calls.filter((call) => call === 'set_field')).toHaveLength(2);
     const taken = posted.findIndex((m) => m.type === 'field' && m.id === 8);
     expect(posted.slice(taken).every((m) => !('id' in m) || m.id === 8)).toBe(true);
@@ -426,7 +475,10 @@ describe('a job that waits for the rest of the core', () => {
     jobs.stop();
     expect(jobs.endStopped()).toBe(true);
     expect(posted.map(({ type, id, answer }) => [type, id, answer?.ok])).toEqual([
-      ['field', 9, false], ['field', 10, true], ['done', 10, undefined], ['done', 11, undefined],
+      ['field', 9, false],
+      ['field', 10, true],
+      ['done', 10, undefined],
+      ['done', 11, undefined],
     ]);
     expect(jobs.take(core)).toBe(null);
   });
@@ -441,22 +493,33 @@ describe('what the first part of the core cannot do', () => {
     const job = jobs.take(core);
     if (!job) throw new Error('the first job was not taken');
     let waits = 0;
-    await runJob(core, job, {
-      now_ms: () => core.clock.ms,
-      pause: async () => { core.clock.ms += 1; },
-      post: (message) => posted.push(message),
-      interrupt: () => jobs.interrupt(core, waits === 4),
-      curvature: () => false,
-      room: () => true,
-      rest: () => {
-        if (waits === 4) return null;
-        waits += 1;
-        if (waits === 1) jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
-        if (waits === 2) jobs.stop();
-        if (waits > 3) expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[8, 'stopped'], [7, 'stopped']]);
-        return Promise.resolve();
+    await runJob(
+      core,
+      job,
+      {
+        now_ms: () => core.clock.ms,
+        pause: async () => {
+          core.clock.ms += 1;
+        },
+        post: (message) => posted.push(message),
+        interrupt: () => jobs.interrupt(core, waits === 4),
+        curvature: () => false,
+        room: () => true,
+        rest: () => {
+          if (waits === 4) return null;
+          waits += 1;
+          if (waits === 1) jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
+          if (waits === 2) jobs.stop();
+          if (waits > 3)
+            expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([
+              [8, 'stopped'],
+              [7, 'stopped'],
+            ]);
+          return Promise.resolve();
+        },
       },
-    }, { held: 0 });
+      { held: 0 },
+    );
     expect(waits).toBe(4);
     expect(of(posted, 'report').map(({ id }) => id)).toEqual([7]);
     expect(jobs.take(core)).toBe(null);
@@ -471,8 +534,10 @@ describe('what the first part of the core cannot do', () => {
   };
 
   test('is told by the names of surfaces and of functions', () => {
-    for (const formula of ['sin(x)', '2sin(x) + y', 'x + exp (y)', 'z-sin x']) expect(waits({ formula }), formula).toBe(true);
-    for (const formula of ['x', 'sine + x', 'asin(x)', 'expo', 'sqrt(x)']) expect(waits({ formula }), formula).toBe(false);
+    for (const formula of ['sin(x)', '2sin(x) + y', 'x + exp (y)', 'z-sin x'])
+      expect(waits({ formula }), formula).toBe(true);
+    for (const formula of ['x', 'sine + x', 'asin(x)', 'expo', 'sqrt(x)'])
+      expect(waits({ formula }), formula).toBe(false);
     expect(waits({ surface: 'gyroid' })).toBe(true);
     expect(waits({ surface: 'torus' })).toBe(false);
     expect(waits({ surface: 'gyroid', formula: 'x^2 + y^2 = 1' })).toBe(false);
@@ -501,7 +566,10 @@ test('a formula with a fault starts nothing', async () => {
 
 test('a job on a model hands the core the solved system, with the clip box in force', async () => {
   const info = /** @type {any} */ ({ name: 'Bunny' });
-  const bounds = { min: /** @type {[number, number, number]} */ ([-1, -1, -1]), max: /** @type {[number, number, number]} */ ([1, 1, 1]) };
+  const bounds = {
+    min: /** @type {[number, number, number]} */ ([-1, -1, -1]),
+    max: /** @type {[number, number, number]} */ ([1, 1, 1]),
+  };
   const points = { field: new Uint8Array(44), info: { info, bounds } };
   const core = fakeCore();
   const own = await work(core, sampleJob({ field: { points: 'bunny' }, points }));

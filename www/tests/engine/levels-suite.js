@@ -5,14 +5,18 @@ import { atRest, coarse, counts, link, open, picture } from './browser.js';
 /** @typedef {import('@playwright/test').Page} Page */
 
 /** @param {Page} page @param {number | null} level */
-const show = (page, level) => page.evaluate((k) => /** @type {any} */ (window).marchingParticles.engine.setView({ level: k }), level);
+const show = (page, level) =>
+  page.evaluate((k) => /** @type {any} */ (window).marchingParticles.engine.setView({ level: k }), level);
 
 /** Faces the seed, so that the first levels are in front. @param {Page} page */
-const faceSeed = (page) => page.evaluate(() => {
-  const p = /** @type {any} */ (window).marchingParticles;
-  const [x, y, z] = p.particles().normals;
-  p.engine.setView({ camera: { ...p.state.view.camera, yaw: Math.atan2(y, x), pitch: Math.asin(Math.max(-1, Math.min(1, z))) } });
-});
+const faceSeed = (page) =>
+  page.evaluate(() => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    const [x, y, z] = p.particles().normals;
+    p.engine.setView({
+      camera: { ...p.state.view.camera, yaw: Math.atan2(y, x), pitch: Math.asin(Math.max(-1, Math.min(1, z))) },
+    });
+  });
 
 export const suite = () => {
   test('a level hides the later ones and mutes the earlier ones', async ({ page }) => {
@@ -67,7 +71,13 @@ export const suite = () => {
       p.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
       const [x, y, z] = p.particles().normals;
       // The seed on the far side.
-      p.engine.setView({ camera: { ...p.state.view.camera, yaw: Math.atan2(y, x) + Math.PI, pitch: -Math.asin(Math.max(-1, Math.min(1, z))) } });
+      p.engine.setView({
+        camera: {
+          ...p.state.view.camera,
+          yaw: Math.atan2(y, x) + Math.PI,
+          pitch: -Math.asin(Math.max(-1, Math.min(1, z))),
+        },
+      });
       const at = () => p.engine.pick(host.clientWidth / 2, host.clientHeight / 2);
       const { levels } = p.particles();
       const near = at();

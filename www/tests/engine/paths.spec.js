@@ -4,7 +4,8 @@ import { expect, test } from '@playwright/test';
 import { atRest, coarse, counts, expectCanvasShown, expectSurface, link, open, picture, status } from './browser.js';
 
 /** @param {import('@playwright/test').Page} page @param {string} expression  of `p`, the console interface */
-const on = (page, expression) => page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
+const on = (page, expression) =>
+  page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
 
 for (const place of ['/', '/sub/path/']) {
   test(`the ellipsoid appears by itself at ${place}, and nobody else is asked for anything`, async ({ page }) => {
@@ -27,10 +28,15 @@ test('the page forbids itself every other host', async ({ page }) => {
   const policy = await page.locator('meta[http-equiv="Content-Security-Policy"]').getAttribute('content');
   expect(policy).toContain("default-src 'none'");
   expect(policy).toContain("connect-src 'self'");
-  const refused = await page.evaluate(() => new Promise((resolve) => {
-    document.addEventListener('securitypolicyviolation', (event) => resolve(event.violatedDirective), { once: true });
-    fetch('https://example.org/').catch(() => {});
-  }));
+  const refused = await page.evaluate(
+    () =>
+      new Promise((resolve) => {
+        document.addEventListener('securitypolicyviolation', (event) => resolve(event.violatedDirective), {
+          once: true,
+        });
+        fetch('https://example.org/').catch(() => {});
+      }),
+  );
   expect(refused).toBe('connect-src');
 });
 
@@ -40,7 +46,9 @@ test('the same state gives the same particles as the native core', async ({ page
   await open(page);
   for (const { name, field, settings, digest, count } of runs) {
     const state = { parameters: {}, bounds: null, ...field, declared: field.declare ?? [], settings };
-    const report = /** @type {any} */ (await page.evaluate((patch) => /** @type {any} */ (window).marchingParticles.set(patch), state));
+    const report = /** @type {any} */ (
+      await page.evaluate((patch) => /** @type {any} */ (window).marchingParticles.set(patch), state)
+    );
     expect({ name, digest: report.digest, count: report.count }).toEqual({ name, digest, count });
   }
 });
@@ -90,13 +98,16 @@ test('a lost pointer ends the drag', async ({ page }) => {
   const after = await page.evaluate(async () => {
     const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
     const { engine } = /** @type {any} */ (window).marchingParticles;
-    const fire = (/** @type {string} */ type, /** @type {number} */ x) => host.dispatchEvent(new PointerEvent(type, { pointerId: 7, clientX: x, clientY: 100, button: 0, isPrimary: true, bubbles: true }));
+    const fire = (/** @type {string} */ type, /** @type {number} */ x) =>
+      host.dispatchEvent(
+        new PointerEvent(type, { pointerId: 7, clientX: x, clientY: 100, button: 0, isPrimary: true, bubbles: true }),
+      );
     fire('pointerdown', 100);
     fire('pointermove', 140);
     fire('pointercancel', 140);
     // The state follows the camera with a delay.
     const settledYaw = async () => {
-      for (let last = NaN; ;) {
+      for (let last = NaN; ; ) {
         const { yaw } = engine.state.value.view.camera;
         if (yaw === last) return yaw;
         last = yaw;
@@ -112,22 +123,33 @@ test('a lost pointer ends the drag', async ({ page }) => {
 
 test('pointing at the middle tells of the particle there', async ({ page }) => {
   await open(page);
-  const hover = /** @type {any} */ (await page.evaluate(() => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
-    engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-    const [x, y] = [host.clientWidth / 2, host.clientHeight / 2];
-    const { left, top } = host.getBoundingClientRect();
-    host.dispatchEvent(new PointerEvent('pointermove', { pointerId: 1, pointerType: 'mouse', clientX: x + left, clientY: y + top, bubbles: true }));
-    return new Promise((resolve) => {
-      const stop = engine.hover.subscribe((/** @type {any} */ value) => {
-        if (value) setTimeout(() => {
-          stop();
-          resolve({ ...value, picked: engine.pick(x, y) });
+  const hover = /** @type {any} */ (
+    await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
+      engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      const [x, y] = [host.clientWidth / 2, host.clientHeight / 2];
+      const { left, top } = host.getBoundingClientRect();
+      host.dispatchEvent(
+        new PointerEvent('pointermove', {
+          pointerId: 1,
+          pointerType: 'mouse',
+          clientX: x + left,
+          clientY: y + top,
+          bubbles: true,
+        }),
+      );
+      return new Promise((resolve) => {
+        const stop = engine.hover.subscribe((/** @type {any} */ value) => {
+          if (value)
+            setTimeout(() => {
+              stop();
+              resolve({ ...value, picked: engine.pick(x, y) });
+            });
         });
       });
-    });
-  }));
+    })
+  );
   expect(hover.index).toBe(hover.picked);
   expect(hover.valence).toBeGreaterThanOrEqual(3);
   expect(hover.residual).toBeLessThan(1e-3);
@@ -136,9 +158,16 @@ test('pointing at the middle tells of the particle there', async ({ page }) => {
 
 test.describe('links', () => {
   test('bring back surface, settings and view', async ({ page }) => {
-    await open(page, `/${link({ surface: 'torus', settings: { radius_share: 0.02 }, view: { colour: 'valence', theme: 'dark' } })}`);
+    await open(
+      page,
+      `/${link({ surface: 'torus', settings: { radius_share: 0.02 }, view: { colour: 'valence', theme: 'dark' } })}`,
+    );
     const state = /** @type {any} */ (await on(page, 'p.state'));
-    expect(state).toMatchObject({ surface: 'torus', settings: { radius_share: 0.02 }, view: { colour: 'valence', theme: 'dark' } });
+    expect(state).toMatchObject({
+      surface: 'torus',
+      settings: { radius_share: 0.02 },
+      view: { colour: 'valence', theme: 'dark' },
+    });
     const report = /** @type {any} */ (await on(page, 'p.report()'));
     expect(report.quality.euler).toBe(0);
     const shared = String(await on(page, 'p.engine.shareUrl()'));
@@ -175,7 +204,10 @@ test.describe('links', () => {
   test('to what cannot be had leave the surface before, whole, with its figures and files', async ({ page }) => {
     await open(page);
     const { count } = /** @type {any} */ (await on(page, 'p.report()'));
-    for (const [state, sign] of /** @type {[object, string][]} */ ([[{ ...coarse, formula: 'x^2 +' }, 'fieldError'], [{ settings: { radius_share: 0.0005 } }, 'notice']])) {
+    for (const [state, sign] of /** @type {[object, string][]} */ ([
+      [{ ...coarse, formula: 'x^2 +' }, 'fieldError'],
+      [{ settings: { radius_share: 0.0005 } }, 'notice'],
+    ])) {
       await page.evaluate((hash) => {
         location.hash = hash;
       }, link(state));
@@ -184,16 +216,24 @@ test.describe('links', () => {
       expect((await status(page)).dimmed).toBe(true);
       expect(await on(page, 'p.report().count')).toBe(count);
       expect(await on(page, 'p.particles().count')).toBe(count);
-      expect(await on(page, 'p.engine.exportFile("csv").then((blob) => blob.text()).then((text) => text.trim().split("\\n").length)')).toBeGreaterThan(count);
+      expect(
+        await on(
+          page,
+          'p.engine.exportFile("csv").then((blob) => blob.text()).then((text) => text.trim().split("\\n").length)',
+        ),
+      ).toBeGreaterThan(count);
     }
   });
 
   test('to what cannot be had leave the surface before in view, also where their box is smaller', async ({ page }) => {
     await open(page);
     const before = await picture(page);
-    await page.evaluate((hash) => {
-      location.hash = hash;
-    }, link({ ...coarse, formula: 'x^2 +', bounds: { min: [0.4, -0.1, -0.1], max: [0.6, 0.1, 0.1] } }));
+    await page.evaluate(
+      (hash) => {
+        location.hash = hash;
+      },
+      link({ ...coarse, formula: 'x^2 +', bounds: { min: [0.4, -0.1, -0.1], max: [0.6, 0.1, 0.1] } }),
+    );
     await expect.poll(async () => (await status(page)).fieldError).toBeTruthy();
     // Nothing of it is cut off, and the camera shows it as it did.
     await expect.poll(async () => (await picture(page)).drawn).toBeCloseTo(before.drawn, 2);
@@ -203,7 +243,9 @@ test.describe('links', () => {
     const formula = '<img src=x onerror="window.hit=1">';
     await open(page, `/${link({ ...coarse, formula })}`);
     expect((await status(page)).fieldError).not.toBe(null);
-    expect(await page.evaluate(() => document.querySelectorAll('img[src="x"]').length + Number('hit' in window))).toBe(0);
+    expect(await page.evaluate(() => document.querySelectorAll('img[src="x"]').length + Number('hit' in window))).toBe(
+      0,
+    );
   });
 });
 
@@ -214,7 +256,9 @@ test.describe('a sampler that fails', () => {
       const before = await on(page, 'p.state');
       await on(page, `p.debug.${fault}()`);
       if (fault === 'hang') await on(page, '(p.engine.setParameter("a", 1.25), 0)');
-      await expect.poll(async () => (await status(page)).notice?.id, { timeout: 15_000 }).toBe(fault === 'hang' ? 'hang' : 'panic');
+      await expect
+        .poll(async () => (await status(page)).notice?.id, { timeout: 15_000 })
+        .toBe(fault === 'hang' ? 'hang' : 'panic');
       expect((await counts(page)).restarts).toBe(1);
       const report = /** @type {any} */ (await on(page, 'p.run()'));
       expect(report.count).toBeGreaterThan(500);
@@ -241,24 +285,30 @@ test.describe('a sampler that fails', () => {
 
 test('a stop keeps the partial surface, and says so', async ({ page }) => {
   await open(page);
-  const outcome = /** @type {any} */ (await page.evaluate(async () => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    // So many steps that it does not end before the stop, and few enough particles for a slow machine to draw.
-    void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 1000 } });
-    await new Promise((resolve) => {
-      const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
-        if (v.phase !== 'generation' || v.particles === 0) return;
-        p.engine.stop();
-        setTimeout(() => resolve(off()));
+  const outcome = /** @type {any} */ (
+    await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      // So many steps that it does not end before the stop, and few enough particles for a slow machine to draw.
+      void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 1000 } });
+      await new Promise((resolve) => {
+        const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
+          if (v.phase !== 'generation' || v.particles === 0) return;
+          p.engine.stop();
+          setTimeout(() => resolve(off()));
+        });
       });
-    });
-    await new Promise((resolve) => {
-      const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
-        if (!busy) setTimeout(() => resolve(off()));
+      await new Promise((resolve) => {
+        const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
+          if (!busy) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    return { partial: p.engine.partial.value, count: p.particles().count, reason: p.engine.progress.value.stop_reason };
-  }));
+      return {
+        partial: p.engine.partial.value,
+        count: p.particles().count,
+        reason: p.engine.progress.value.stop_reason,
+      };
+    })
+  );
   expect(outcome).toMatchObject({ partial: true, reason: 'cancelled' });
   expect(outcome.count).toBeGreaterThan(0);
 });
@@ -274,23 +324,25 @@ test('a message of an old run changes nothing', async ({ page }) => {
 
 test('a slider dragged at 120 Hz ends at its last value, with one surface on screen', async ({ page }) => {
   await open(page);
-  const end = /** @type {any} */ (await page.evaluate(async () => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    for (let k = 0; k < 120; k += 1) {
-      p.engine.setParameter('a', 0.6 + 0.005 * k, { live: true });
-      await new Promise((resolve) => setTimeout(resolve, 8));
-    }
-    p.engine.setParameter('a', 1.2);
-    await new Promise((resolve) => {
-      const off = p.engine.report.subscribe((/** @type {any} */ report) => {
-        if (report) setTimeout(() => resolve(off()));
+  const end = /** @type {any} */ (
+    await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      for (let k = 0; k < 120; k += 1) {
+        p.engine.setParameter('a', 0.6 + 0.005 * k, { live: true });
+        await new Promise((resolve) => setTimeout(resolve, 8));
+      }
+      p.engine.setParameter('a', 1.2);
+      await new Promise((resolve) => {
+        const off = p.engine.report.subscribe((/** @type {any} */ report) => {
+          if (report) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    const { positions, count } = p.particles();
-    let widest = 0;
-    for (let i = 0; i < count; i += 1) widest = Math.max(widest, Math.abs(positions[3 * i]));
-    return { widest, drag: p.engine.lastDrag.value, queued: p.engine.busy.value };
-  }));
+      const { positions, count } = p.particles();
+      let widest = 0;
+      for (let i = 0; i < count; i += 1) widest = Math.max(widest, Math.abs(positions[3 * i]));
+      return { widest, drag: p.engine.lastDrag.value, queued: p.engine.busy.value };
+    })
+  );
   expect(end.widest).toBeCloseTo(1.2, 1);
   expect(end.drag.shown).toBeGreaterThan(0);
   expect(end.drag.shown).toBeLessThanOrEqual(end.drag.requested);
@@ -309,7 +361,9 @@ test('a mistake in the formula keeps the last surface, dimmed; mending it brings
   expect((await picture(page)).drawn).not.toBe(clear.drawn);
 });
 
-test('a formula without a surface leaves the last one, dimmed, says why, and takes nothing for its own', async ({ page }) => {
+test('a formula without a surface leaves the last one, dimmed, says why, and takes nothing for its own', async ({
+  page,
+}) => {
   await open(page);
   await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 + 1"), 0)');
   await expect.poll(async () => (await status(page)).empty).toBe(true);
@@ -394,12 +448,18 @@ test('changes leave no trail for the Back button', async ({ page }) => {
 test.describe('files', () => {
   test('PLY and CSV hold every particle', async ({ page }) => {
     await open(page);
-    const files = /** @type {any} */ (await page.evaluate(async () => {
-      const p = /** @type {any} */ (window).marchingParticles;
-      const text = new TextDecoder('latin1').decode(await (await p.engine.exportFile('ply')).arrayBuffer());
-      const csv = await (await p.engine.exportFile('csv')).text();
-      return { count: p.particles().count, header: text.slice(0, text.indexOf('end_header')), csv: csv.trimEnd().split('\n').length };
-    }));
+    const files = /** @type {any} */ (
+      await page.evaluate(async () => {
+        const p = /** @type {any} */ (window).marchingParticles;
+        const text = new TextDecoder('latin1').decode(await (await p.engine.exportFile('ply')).arrayBuffer());
+        const csv = await (await p.engine.exportFile('csv')).text();
+        return {
+          count: p.particles().count,
+          header: text.slice(0, text.indexOf('end_header')),
+          csv: csv.trimEnd().split('\n').length,
+        };
+      })
+    );
     expect(files.header).toContain(`element vertex ${files.count}\n`);
     expect(files.header).toContain('property uchar valence');
     expect(files.csv).toBe(files.count + 1);
@@ -407,18 +467,26 @@ test.describe('files', () => {
 
   test('PNG is the picture, at any size and on no ground', async ({ page }) => {
     await open(page);
-    const image = /** @type {any} */ (await page.evaluate(async () => {
-      const p = /** @type {any} */ (window).marchingParticles;
-      const blob = await p.engine.savePng({ width: 300, height: 200, transparent: true });
-      const bitmap = await createImageBitmap(blob);
-      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-      const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
-      context.drawImage(bitmap, 0, 0);
-      const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
-      let solid = 0;
-      for (let i = 3; i < data.length; i += 4) if (data[i] > 250) solid += 1;
-      return { type: blob.type, width: bitmap.width, height: bitmap.height, corner: data[3], solid: solid / (bitmap.width * bitmap.height) };
-    }));
+    const image = /** @type {any} */ (
+      await page.evaluate(async () => {
+        const p = /** @type {any} */ (window).marchingParticles;
+        const blob = await p.engine.savePng({ width: 300, height: 200, transparent: true });
+        const bitmap = await createImageBitmap(blob);
+        const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+        const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+        context.drawImage(bitmap, 0, 0);
+        const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
+        let solid = 0;
+        for (let i = 3; i < data.length; i += 4) if (data[i] > 250) solid += 1;
+        return {
+          type: blob.type,
+          width: bitmap.width,
+          height: bitmap.height,
+          corner: data[3],
+          solid: solid / (bitmap.width * bitmap.height),
+        };
+      })
+    );
     expect(image).toMatchObject({ type: 'image/png', width: 300, height: 200, corner: 0 });
     expect(image.solid).toBeGreaterThan(0.1);
     expect(image.solid).toBeLessThan(0.8);
@@ -432,7 +500,9 @@ test.describe('the rest of the core', () => {
   async function hold(page) {
     /** @type {() => void} */
     let send = () => {};
-    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = () => resolve(); });
+    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => {
+      send = () => resolve();
+    });
     await page.route(rest, async (route) => {
       await sent;
       await route.continue();
@@ -443,7 +513,9 @@ test.describe('the rest of the core', () => {
   test('is not awaited to show the first surface, nor to stop', async ({ page }) => {
     const send = await hold(page);
     await page.goto('/');
-    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search');
+    await page.waitForFunction(
+      () => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search',
+    );
     await expect.poll(() => on(page, 'p.particles().count')).toBeGreaterThan(4000);
     await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
     await expect(() => expectSurface(page)).toPass();
@@ -475,10 +547,14 @@ test.describe('the rest of the core', () => {
     });
   }
 
-  test('where it hangs does not keep what is asked for after the first surface from being stopped', async ({ page }) => {
+  test('where it hangs does not keep what is asked for after the first surface from being stopped', async ({
+    page,
+  }) => {
     const send = await hold(page);
     await page.goto('/');
-    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search');
+    await page.waitForFunction(
+      () => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search',
+    );
     await on(page, '(p.engine.setSurface("gyroid"), 0)');
     await expect.poll(async () => (await status(page)).busy).toBe(true);
     await on(page, '(p.engine.stop(), 0)');
@@ -516,8 +592,17 @@ test.describe('a sampler that does not load', () => {
   const faults = [
     ['is missing', (route) => route.fulfill({ status: 404, body: 'not found' }), /404/],
     ['is blocked', (route) => route.abort('blockedbyclient'), /could not be fetched/],
-    ['is damaged', (route) => route.fulfill({ contentType: 'application/wasm', body: Buffer.from([0, 97, 115, 109, 1, 0, 0, 0, 255, 1]) }), /damaged/],
-    ['is a page', (route) => route.fulfill({ contentType: 'text/html', body: '<!doctype html><title>Hello</title>' }), /page in its place/],
+    [
+      'is damaged',
+      (route) =>
+        route.fulfill({ contentType: 'application/wasm', body: Buffer.from([0, 97, 115, 109, 1, 0, 0, 0, 255, 1]) }),
+      /damaged/,
+    ],
+    [
+      'is a page',
+      (route) => route.fulfill({ contentType: 'text/html', body: '<!doctype html><title>Hello</title>' }),
+      /page in its place/,
+    ],
   ];
   for (const [what, answer, words] of faults) {
     test(`because its file ${what} is named, and another try helps`, async ({ page }) => {

@@ -5,7 +5,8 @@ import { counts, expectCanvasShown, expectSurface, link, open, spots, status } f
 /** @typedef {import('@playwright/test').Page} Page */
 
 /** @param {Page} page @param {string} expression  of `p`, the console interface */
-const on = (page, expression) => page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
+const on = (page, expression) =>
+  page.evaluate(`(async () => { const p = window.marchingParticles; return ${expression}; })()`);
 /** @param {Page} page @param {object} patch @returns {Promise<any>} */
 const set = (page, patch) => page.evaluate((p) => /** @type {any} */ (window).marchingParticles.set(p), patch);
 const bunny = { surface: 'bunny', settings: { radius_share: 0.015 } };
@@ -23,26 +24,30 @@ function spherePly(n, radius) {
   return ['ply', 'format ascii 1.0', `element vertex ${n}`, ...names, 'end_header', ...rows, ''].join('\n');
 }
 /** Opens a file by the console interface and gives the report. @param {Page} page @param {string} name @param {string} text @returns {Promise<any>} */
-const openFile = (page, name, text) => page.evaluate(
-  ([file, content]) => /** @type {any} */ (window).marchingParticles.open(new File([content], file)),
-  [name, text],
-);
+const openFile = (page, name, text) =>
+  page.evaluate(
+    ([file, content]) => /** @type {any} */ (window).marchingParticles.open(new File([content], file)),
+    [name, text],
+  );
 
 /** Counts the workers of the page by name. @param {Page} page */
-const countWorkers = (page) => page.addInitScript(() => {
-  /** @type {any} */ (window).started = {};
-  const Plain = window.Worker;
-  window.Worker = class extends Plain {
-    /** @param {string | URL} url @param {WorkerOptions} [options] */
-    constructor(url, options = {}) {
-      super(url, options);
-      const { started } = /** @type {any} */ (window);
-      started[options.name ?? ''] = (started[options.name ?? ''] ?? 0) + 1;
-    }
-  };
-});
+const countWorkers = (page) =>
+  page.addInitScript(() => {
+    /** @type {any} */ (window).started = {};
+    const Plain = window.Worker;
+    window.Worker = class extends Plain {
+      /** @param {string | URL} url @param {WorkerOptions} [options] */
+      constructor(url, options = {}) {
+        super(url, options);
+        const { started } = /** @type {any} */ (window);
+        started[options.name ?? ''] = (started[options.name ?? ''] ?? 0) + 1;
+      }
+    };
+  });
 
-test('the bunny is solved when it is chosen, drawn with its points, and there at once the second time', async ({ page }) => {
+test('the bunny is solved when it is chosen, drawn with its points, and there at once the second time', async ({
+  page,
+}) => {
   await countWorkers(page);
   const { errors, strangers } = await open(page);
   expect(await page.evaluate(() => /** @type {any} */ (window).started.points)).toBe(undefined);
@@ -51,7 +56,12 @@ test('the bunny is solved when it is chosen, drawn with its points, and there at
   expect(report.count).toBeGreaterThan(300);
   expect(report.components).toBe(1);
   const { model } = await status(page);
-  expect(model).toMatchObject({ name: expect.stringContaining('bunny'), points: 200, centres: 200, credit: expect.stringContaining('Stanford') });
+  expect(model).toMatchObject({
+    name: expect.stringContaining('bunny'),
+    points: 200,
+    centres: 200,
+    credit: expect.stringContaining('Stanford'),
+  });
   await expectSurface(page);
   await expectCanvasShown(page);
 
@@ -93,7 +103,12 @@ test('a model goes through a link, with its settings', async ({ page }) => {
   expect((await status(page)).notice).toBe(null);
   await page.goto('about:blank');
   await open(page, `/${new URL(shared).hash}`);
-  expect(await on(page, 'p.state')).toMatchObject({ surface: 'bunny', formula: '', settings: bunny.settings, view: { colour: 'curvature', points: false } });
+  expect(await on(page, 'p.state')).toMatchObject({
+    surface: 'bunny',
+    formula: '',
+    settings: bunny.settings,
+    view: { colour: 'curvature', points: false },
+  });
   expect(/** @type {any} */ (await on(page, 'p.report()')).digest).toBe(before.digest);
 });
 
@@ -109,25 +124,30 @@ test('a formula typed on a model leads back to formulas', async ({ page }) => {
 test('settings and the clip box of a model are sampled live', async ({ page }) => {
   await open(page);
   await set(page, bunny);
-  const end = /** @type {any} */ (await page.evaluate(async () => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    const { bounds } = p.engine.field.value;
-    const half = (bounds.min[2] + bounds.max[2]) / 2;
-    for (let k = 0; k < 30; k += 1) {
-      p.engine.setBounds({ min: bounds.min, max: [bounds.max[0], bounds.max[1], bounds.max[2] + ((half - bounds.max[2]) * k) / 29] }, { live: true });
-      await new Promise((resolve) => setTimeout(resolve, 16));
-    }
-    p.engine.setBounds({ min: bounds.min, max: [bounds.max[0], bounds.max[1], half] });
-    await new Promise((resolve) => {
-      const off = p.engine.report.subscribe((/** @type {any} */ report) => {
-        if (report) setTimeout(() => resolve(off()));
+  const end = /** @type {any} */ (
+    await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      const { bounds } = p.engine.field.value;
+      const half = (bounds.min[2] + bounds.max[2]) / 2;
+      for (let k = 0; k < 30; k += 1) {
+        p.engine.setBounds(
+          { min: bounds.min, max: [bounds.max[0], bounds.max[1], bounds.max[2] + ((half - bounds.max[2]) * k) / 29] },
+          { live: true },
+        );
+        await new Promise((resolve) => setTimeout(resolve, 16));
+      }
+      p.engine.setBounds({ min: bounds.min, max: [bounds.max[0], bounds.max[1], half] });
+      await new Promise((resolve) => {
+        const off = p.engine.report.subscribe((/** @type {any} */ report) => {
+          if (report) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    const { positions, count } = p.particles();
-    let highest = -Infinity;
-    for (let i = 0; i < count; i += 1) highest = Math.max(highest, positions[3 * i + 2]);
-    return { highest, half, drag: p.engine.lastDrag.value, count };
-  }));
+      const { positions, count } = p.particles();
+      let highest = -Infinity;
+      for (let i = 0; i < count; i += 1) highest = Math.max(highest, positions[3 * i + 2]);
+      return { highest, half, drag: p.engine.lastDrag.value, count };
+    })
+  );
   expect(end.count).toBeGreaterThan(100);
   expect(end.highest).toBeLessThanOrEqual(end.half + 1e-4);
   expect(end.drag.shown).toBeGreaterThan(0);
@@ -146,23 +166,30 @@ test('the sampler replaced in the middle of a model samples it again', async ({ 
 test('a stop in the slowest run there is keeps what there is, and nobody takes it for a hang', async ({ page }) => {
   await open(page);
   await set(page, bunny);
-  const out = /** @type {any} */ (await page.evaluate(async () => {
-    const p = /** @type {any} */ (window).marchingParticles;
-    void p.set({ settings: { sampling: 'adaptive', placement: 'faithful', chord_error: 2e-5 } });
-    await new Promise((resolve) => {
-      const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
-        if (v.phase === 'generation' && v.particles > 200) setTimeout(() => resolve(off()));
+  const out = /** @type {any} */ (
+    await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      void p.set({ settings: { sampling: 'adaptive', placement: 'faithful', chord_error: 2e-5 } });
+      await new Promise((resolve) => {
+        const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
+          if (v.phase === 'generation' && v.particles > 200) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    const asked = performance.now();
-    p.engine.stop();
-    await new Promise((resolve) => {
-      const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
-        if (!busy) setTimeout(() => resolve(off()));
+      const asked = performance.now();
+      p.engine.stop();
+      await new Promise((resolve) => {
+        const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
+          if (!busy) setTimeout(() => resolve(off()));
+        });
       });
-    });
-    return { ms: performance.now() - asked, partial: p.engine.partial.value, reason: p.engine.progress.value.stop_reason, count: p.particles().count };
-  }));
+      return {
+        ms: performance.now() - asked,
+        partial: p.engine.partial.value,
+        reason: p.engine.progress.value.stop_reason,
+        count: p.particles().count,
+      };
+    })
+  );
   test.info().annotations.push({ type: 'stopped after', description: `${Math.round(out.ms)} ms` });
   expect(out).toMatchObject({ partial: true, reason: 'cancelled' });
   expect(out.count).toBeGreaterThan(200);
@@ -177,10 +204,14 @@ test.describe('a file', () => {
     const report = await openFile(page, 'ball.ply', spherePly(300, 1.5));
     expect(report.stop_reason).toBe('complete');
     expect(report.components).toBe(1);
-    const far = /** @type {number[]} */ (await page.evaluate(() => {
-      const { positions, count } = /** @type {any} */ (window).marchingParticles.particles();
-      return Array.from({ length: count }, (_, i) => Math.hypot(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]));
-    }));
+    const far = /** @type {number[]} */ (
+      await page.evaluate(() => {
+        const { positions, count } = /** @type {any} */ (window).marchingParticles.particles();
+        return Array.from({ length: count }, (_, i) =>
+          Math.hypot(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]),
+        );
+      })
+    );
     expect(Math.min(...far)).toBeGreaterThan(1.5 * 0.97);
     expect(Math.max(...far)).toBeLessThan(1.5 * 1.03);
     expect((await status(page)).model).toMatchObject({ name: 'ball.ply', points: 300, normals: 'given' });
@@ -201,8 +232,23 @@ test.describe('a file', () => {
 
   /** @type {[string, string, string, number | null][]} */
   const broken = [
-    ['with a word for a number', 'word.ply', spherePly(150, 1).replace(/\n(\S+) (\S+) (\S+)/g, (row, x, _, z, at, all) => (all.slice(0, at).split('\n').length === 20 ? `\n${x} seven ${z}` : row)), 21],
-    ['with NaN in it', 'nan.ply', spherePly(150, 1).split('\n').map((row, k) => (k === 30 ? row.replace(/^\S+/, 'nan') : row)).join('\n'), 31],
+    [
+      'with a word for a number',
+      'word.ply',
+      spherePly(150, 1).replace(/\n(\S+) (\S+) (\S+)/g, (row, x, _, z, at, all) =>
+        all.slice(0, at).split('\n').length === 20 ? `\n${x} seven ${z}` : row,
+      ),
+      21,
+    ],
+    [
+      'with NaN in it',
+      'nan.ply',
+      spherePly(150, 1)
+        .split('\n')
+        .map((row, k) => (k === 30 ? row.replace(/^\S+/, 'nan') : row))
+        .join('\n'),
+      31,
+    ],
     ['that ends too soon', 'short.ply', spherePly(150, 1).split('\n').slice(0, 60).join('\n'), null],
     ['that is no such file', 'picture.ply', '\u0089PNG\r\n\u001a\n nothing of use', null],
     ['that is empty', 'empty.ply', '', null],
@@ -242,11 +288,14 @@ test.describe('a file', () => {
   test('can be given up while it is read', async ({ page }) => {
     await open(page);
     const before = /** @type {any} */ (await on(page, 'p.report()'));
-    await page.evaluate((text) => {
-      const { engine } = /** @type {any} */ (window).marchingParticles;
-      void engine.openFile(new File([text], 'large.ply'));
-      return new Promise((resolve) => setTimeout(resolve, 20));
-    }, spherePly(60_000, 1));
+    await page.evaluate(
+      (text) => {
+        const { engine } = /** @type {any} */ (window).marchingParticles;
+        void engine.openFile(new File([text], 'large.ply'));
+        return new Promise((resolve) => setTimeout(resolve, 20));
+      },
+      spherePly(60_000, 1),
+    );
     expect((await status(page)).loading).toMatchObject({ id: 'file', name: 'large.ply' });
     await on(page, 'p.engine.cancelLoading()');
     await expect.poll(async () => (await status(page)).loading).toBe(null);
@@ -255,7 +304,9 @@ test.describe('a file', () => {
   });
 });
 
-test('a solver that does not load is named, and the surface stays; without any surface the standard one comes', async ({ page }) => {
+test('a solver that does not load is named, and the surface stays; without any surface the standard one comes', async ({
+  page,
+}) => {
   await page.route('**/points_bg*.wasm', (route) => route.fulfill({ status: 404, body: 'not found' }));
   await open(page);
   await on(page, '(p.engine.setSurface("bunny"), 0)');

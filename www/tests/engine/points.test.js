@@ -10,11 +10,23 @@ import { description } from './description.js';
 /** @typedef {import('../../src/engine/points/protocol.js').FromPoints} FromPoints */
 /** @typedef {import('../../src/engine/points/protocol.js').Solved} Solved */
 
-const bounds = { min: /** @type {[number, number, number]} */ ([-1, -1, -1]), max: /** @type {[number, number, number]} */ ([1, 1, 1]) };
+const bounds = {
+  min: /** @type {[number, number, number]} */ ([-1, -1, -1]),
+  max: /** @type {[number, number, number]} */ ([1, 1, 1]),
+};
 const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
-  name: 'Bunny', credit: 'Stanford', points: 200, centres: 200, condition: 1e7, residual_mean: 0.002, residual_max: 0.01, normals: 'given', warnings: [],
+  name: 'Bunny',
+  credit: 'Stanford',
+  points: 200,
+  centres: 200,
+  condition: 1e7,
+  residual_mean: 0.002,
+  residual_max: 0.01,
+  normals: 'given',
+  warnings: [],
 });
-const solved = () => /** @type {Solved} */ ({ field: Uint8Array.of(1, 2, 3), info: { info, bounds }, centres: Float32Array.of(0, 0, 1) });
+const solved = () =>
+  /** @type {Solved} */ ({ field: Uint8Array.of(1, 2, 3), info: { info, bounds }, centres: Float32Array.of(0, 0, 1) });
 const settle = () => new Promise((resolve) => setTimeout(resolve));
 
 /** A solver in three stages that refuses names with “broken” in them. */
@@ -22,7 +34,8 @@ function fakePoints() {
   let steps = 0;
   let broken = false;
   return {
-    model: (/** @type {string} */ id) => (id === 'bunny' ? '{"ok":true}' : '{"ok":false,"error":{"kind":"unknown","message":"no such model"}}'),
+    model: (/** @type {string} */ id) =>
+      id === 'bunny' ? '{"ok":true}' : '{"ok":false,"error":{"kind":"unknown","message":"no such model"}}',
     file: (/** @type {string} */ name) => {
       broken = name.includes('broken');
       return '{"ok":true}';
@@ -30,7 +43,13 @@ function fakePoints() {
     step: () => {
       steps += 1;
       if (broken) return '{"ok":false,"error":{"kind":"format","message":"line 17: a number is missing","line":17}}';
-      return JSON.stringify({ ok: true, stage: ['reading', 'thinning', 'solving'][steps - 1] ?? 'solving', label: 'x', fraction: steps / 4, done: steps === 4 });
+      return JSON.stringify({
+        ok: true,
+        stage: ['reading', 'thinning', 'solving'][steps - 1] ?? 'solving',
+        label: 'x',
+        fraction: steps / 4,
+        done: steps === 4,
+      });
     },
     field: () => Uint8Array.of(1, 2, 3),
     info: () => JSON.stringify({ ok: true, info, bounds }),
@@ -48,15 +67,36 @@ async function answers(order) {
 describe('solving', () => {
   test('tells its stages and ends with the system, what is known of it and the centres', async () => {
     const posted = await answers({ model: 'bunny' });
-    expect(posted.filter((m) => m.type === 'progress').map((m) => m.stage)).toEqual(['reading', 'reading', 'thinning', 'solving']);
-    expect(posted.at(-1)).toEqual({ type: 'solved', solved: { field: Uint8Array.of(1, 2, 3), centres: Float32Array.of(0, 0, 1), info: { info, bounds } } });
+    expect(posted.filter((m) => m.type === 'progress').map((m) => m.stage)).toEqual([
+      'reading',
+      'reading',
+      'thinning',
+      'solving',
+    ]);
+    expect(posted.at(-1)).toEqual({
+      type: 'solved',
+      solved: { field: Uint8Array.of(1, 2, 3), centres: Float32Array.of(0, 0, 1), info: { info, bounds } },
+    });
   });
 
   test('of what is no model, no file or broken is refused in the core’s words', async () => {
     expect((await answers({ model: 'cow' })).at(-1)).toMatchObject({ type: 'refused', kind: 'unknown' });
-    const file = (/** @type {string} */ name, read = async () => new ArrayBuffer(8)) => /** @type {File} */ (/** @type {unknown} */ ({ name, size: 8, arrayBuffer: read }));
-    expect((await answers({ file: file('broken.ply') })).at(-1)).toMatchObject({ type: 'refused', message: 'line 17: a number is missing', line: 17 });
-    expect((await answers({ file: file('gone.ply', async () => { throw new Error('NotFound'); }) })).at(-1)).toMatchObject({ type: 'refused', kind: 'unreadable' });
+    const file = (/** @type {string} */ name, read = async () => new ArrayBuffer(8)) =>
+      /** @type {File} */ (/** @type {unknown} */ ({ name, size: 8, arrayBuffer: read }));
+    expect((await answers({ file: file('broken.ply') })).at(-1)).toMatchObject({
+      type: 'refused',
+      message: 'line 17: a number is missing',
+      line: 17,
+    });
+    expect(
+      (
+        await answers({
+          file: file('gone.ply', async () => {
+            throw new Error('NotFound');
+          }),
+        })
+      ).at(-1),
+    ).toMatchObject({ type: 'refused', kind: 'unreadable' });
   });
 });
 
@@ -66,10 +106,19 @@ function scripted() {
   const workers = [];
   const spawn = () => {
     const worker = {
-      order: /** @type {any} */ (null), ended: false, onmessage: /** @type {any} */ (null), onerror: /** @type {any} */ (null),
-      postMessage(/** @type {any} */ order) { worker.order = order; },
-      terminate() { worker.ended = true; },
-      say(/** @type {FromPoints} */ data) { worker.onmessage?.({ data }); },
+      order: /** @type {any} */ (null),
+      ended: false,
+      onmessage: /** @type {any} */ (null),
+      onerror: /** @type {any} */ (null),
+      postMessage(/** @type {any} */ order) {
+        worker.order = order;
+      },
+      terminate() {
+        worker.ended = true;
+      },
+      say(/** @type {FromPoints} */ data) {
+        worker.onmessage?.({ data });
+      },
     };
     workers.push(worker);
     return worker;
@@ -83,8 +132,17 @@ describe('the client', () => {
     /** @type {(() => void)[]} */
     const timers = [];
     const client = new PointsClient({
-      spawn, onProgress: () => {},
-      clock: { setTimeout: (f, ms) => { expect(ms).toBe(SILENCE_MS); return timers.push(f) - 1; }, clearTimeout: (id) => { delete timers[id]; } },
+      spawn,
+      onProgress: () => {},
+      clock: {
+        setTimeout: (f, ms) => {
+          expect(ms).toBe(SILENCE_MS);
+          return timers.push(f) - 1;
+        },
+        clearTimeout: (id) => {
+          delete timers[id];
+        },
+      },
     });
     return { workers, client, timers };
   };
@@ -143,7 +201,8 @@ describe('a wish for a model', () => {
     };
     return { workers, store, loader, sample, wish };
   };
-  const file = (/** @type {string} */ name, size = 1000) => /** @type {File} */ (/** @type {unknown} */ ({ name, size }));
+  const file = (/** @type {string} */ name, size = 1000) =>
+    /** @type {File} */ (/** @type {unknown} */ ({ name, size }));
 
   test('is met once it is solved, and at once the second time', async () => {
     const { workers, store, loader, sample, wish } = make();

@@ -5,7 +5,10 @@ function scripted() {
   const clock = { ms: 0 };
   /** @type {{id: number, request: {live: boolean, value: number}}[]} */
   const sent = [];
-  const scheduler = new Scheduler((id, request) => sent.push({ id, request: /** @type {any} */ (request) }), () => clock.ms);
+  const scheduler = new Scheduler(
+    (id, request) => sent.push({ id, request: /** @type {any} */ (request) }),
+    () => clock.ms,
+  );
   return { clock, sent, scheduler };
 }
 const live = (/** @type {number} */ value) => ({ live: true, value });
@@ -64,7 +67,12 @@ describe('latest wins', () => {
 
 describe('coarse to fine', () => {
   const settings = { size_mode: 'radius', radius_share: 0.006, count: 10_000, relax_steps: 10, max_particles: 200_000 };
-  const seconds = (/** @type {number} */ n) => ({ seeding: 0.004, generation: n * 1.2e-6, relaxation: n * 10 * 0.3e-6, quality: 0 });
+  const seconds = (/** @type {number} */ n) => ({
+    seeding: 0.004,
+    generation: n * 1.2e-6,
+    relaxation: n * 10 * 0.3e-6,
+    quality: 0,
+  });
   const diagonal = 4;
   const radius = 0.006 * diagonal;
 
@@ -115,35 +123,57 @@ describe('coarse to fine', () => {
     cost.record({ seconds: { ...seconds(50_000), seeding: 0.2 }, particles: 50_000, relax_steps: 10, size: radius });
     const plan = planLive(settings, diagonal, cost);
     expect(plan.coarse).toBe(true);
-    expect(cost.milliseconds(cost.expected(plan.settings, diagonal), Number(plan.settings.relax_steps))).toBeCloseTo(200 + LIVE_MS / 2, 3);
+    expect(cost.milliseconds(cost.expected(plan.settings, diagonal), Number(plan.settings.relax_steps))).toBeCloseTo(
+      200 + LIVE_MS / 2,
+      3,
+    );
   });
 
   test('even a very slow machine keeps the shape visible', () => {
     const cost = new CostModel();
-    cost.record({ seconds: { seeding: 0.5, generation: 10, relaxation: 30, quality: 0 }, particles: 50_000, relax_steps: 10, size: radius });
+    cost.record({
+      seconds: { seeding: 0.5, generation: 10, relaxation: 30, quality: 0 },
+      particles: 50_000,
+      relax_steps: 10,
+      size: radius,
+    });
     const plan = planLive(settings, diagonal, cost);
     expect(Math.round(cost.expected(plan.settings, diagonal))).toBe(500);
   });
 
   describe('of an adaptive run', () => {
     const adaptive = {
-      ...settings, sampling: 'adaptive', radius_law: 'chord_error', chord_error: 4e-5, curvature_scale: 0.02, radius_min_share: 0.001, radius_max_share: 0.03,
+      ...settings,
+      sampling: 'adaptive',
+      radius_law: 'chord_error',
+      chord_error: 4e-5,
+      curvature_scale: 0.02,
+      radius_min_share: 0.001,
+      radius_max_share: 0.03,
     };
-    const slow = (/** @type {number} */ n) => ({ seeding: 0.004, generation: n * 6e-6, relaxation: n * 10 * 1e-6, quality: 0 });
-
-    test.each(['chord_error', 'max_curvature', 'sum_of_curvatures'])('scales every radius by one factor: %s', (radius_law) => {
-      const now = { ...adaptive, radius_law };
-      const cost = new CostModel();
-      cost.record({ seconds: slow(20_000), particles: 20_000, relax_steps: 10, size: sizeOf(now, diagonal) });
-      const plan = planLive(now, diagonal, cost);
-      expect(plan.coarse).toBe(true);
-      const n = cost.expected(plan.settings, diagonal);
-      expect(cost.milliseconds(n, Number(plan.settings.relax_steps))).toBeCloseTo(LIVE_MS, 3);
-      const factor = Math.sqrt(20_000 / n);
-      expect(Number(plan.settings.radius_min_share) / now.radius_min_share).toBeCloseTo(factor, 6);
-      expect(Number(plan.settings.radius_max_share) / now.radius_max_share).toBeCloseTo(factor, 6);
-      expect(sizeOf(plan.settings, diagonal) / sizeOf(now, diagonal)).toBeCloseTo(factor, 6);
+    const slow = (/** @type {number} */ n) => ({
+      seeding: 0.004,
+      generation: n * 6e-6,
+      relaxation: n * 10 * 1e-6,
+      quality: 0,
     });
+
+    test.each(['chord_error', 'max_curvature', 'sum_of_curvatures'])(
+      'scales every radius by one factor: %s',
+      (radius_law) => {
+        const now = { ...adaptive, radius_law };
+        const cost = new CostModel();
+        cost.record({ seconds: slow(20_000), particles: 20_000, relax_steps: 10, size: sizeOf(now, diagonal) });
+        const plan = planLive(now, diagonal, cost);
+        expect(plan.coarse).toBe(true);
+        const n = cost.expected(plan.settings, diagonal);
+        expect(cost.milliseconds(n, Number(plan.settings.relax_steps))).toBeCloseTo(LIVE_MS, 3);
+        const factor = Math.sqrt(20_000 / n);
+        expect(Number(plan.settings.radius_min_share) / now.radius_min_share).toBeCloseTo(factor, 6);
+        expect(Number(plan.settings.radius_max_share) / now.radius_max_share).toBeCloseTo(factor, 6);
+        expect(sizeOf(plan.settings, diagonal) / sizeOf(now, diagonal)).toBeCloseTo(factor, 6);
+      },
+    );
 
     test('by count asks for fewer', () => {
       const now = { ...adaptive, size_mode: 'count', count: 50_000 };
@@ -155,7 +185,12 @@ describe('coarse to fine', () => {
     });
 
     test('and of points is measured apart from that of a formula', () => {
-      const keys = [costKey({ formula: 'x' }, settings), costKey({ points: 'bunny' }, settings), costKey({ formula: 'x' }, adaptive), costKey({ points: 'bunny' }, adaptive)];
+      const keys = [
+        costKey({ formula: 'x' }, settings),
+        costKey({ points: 'bunny' }, settings),
+        costKey({ formula: 'x' }, adaptive),
+        costKey({ points: 'bunny' }, adaptive),
+      ];
       expect(new Set(keys).size).toBe(4);
     });
   });

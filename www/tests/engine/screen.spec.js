@@ -3,18 +3,23 @@ import { expect, test } from '@playwright/test';
 import { coarse, counts, expectCanvasShown, expectSurface, open, picture, status } from './browser.js';
 
 /** Sizes of the canvas: its pixels, and what it covers of the page. @param {import('@playwright/test').Page} page */
-const canvas = (page) => page.evaluate(() => {
-  const element = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
-  const { width, height } = element.getBoundingClientRect();
-  return { width: element.width, height: element.height, css_width: width, css_height: height };
-});
+const canvas = (page) =>
+  page.evaluate(() => {
+    const element = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
+    const { width, height } = element.getBoundingClientRect();
+    return { width: element.width, height: element.height, css_width: width, css_height: height };
+  });
 
 /** Tells the page that its tab is hidden, or shown again. @param {import('@playwright/test').Page} page @param {boolean} hidden */
-const hide = (page, hidden) => page.evaluate((value) => {
-  Object.defineProperty(document, 'hidden', { configurable: true, get: () => value });
-  Object.defineProperty(document, 'visibilityState', { configurable: true, get: () => (value ? 'hidden' : 'visible') });
-  document.dispatchEvent(new Event('visibilitychange'));
-}, hidden);
+const hide = (page, hidden) =>
+  page.evaluate((value) => {
+    Object.defineProperty(document, 'hidden', { configurable: true, get: () => value });
+    Object.defineProperty(document, 'visibilityState', {
+      configurable: true,
+      get: () => (value ? 'hidden' : 'visible'),
+    });
+    document.dispatchEvent(new Event('visibilitychange'));
+  }, hidden);
 
 test('a hidden tab draws nothing and samples on; shown again it has the new surface', async ({ page }) => {
   await open(page);
@@ -22,7 +27,12 @@ test('a hidden tab draws nothing and samples on; shown again it has the new surf
   await hide(page, true);
   await page.waitForTimeout(200);
   const { frames } = await counts(page);
-  const report = /** @type {any} */ (await page.evaluate((settings) => /** @type {any} */ (window).marchingParticles.set({ surface: 'torus', settings }), coarse.settings));
+  const report = /** @type {any} */ (
+    await page.evaluate(
+      (settings) => /** @type {any} */ (window).marchingParticles.set({ surface: 'torus', settings }),
+      coarse.settings,
+    )
+  );
   expect(report.stop_reason).toBe('complete');
   expect(report.quality.euler).toBe(0);
   await page.waitForTimeout(300);
@@ -40,23 +50,34 @@ test('a tab hidden while the surface grows is not stuck half-way', async ({ page
     const { engine } = /** @type {any} */ (window).marchingParticles;
     engine.run();
   });
-  await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.reveal.value !== null)).toBe(true);
+  await expect
+    .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.reveal.value !== null))
+    .toBe(true);
   await hide(page, true);
   await expect.poll(async () => (await status(page)).busy).toBe(false);
   await hide(page, false);
-  await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.reveal.value)).toBe(null);
+  await expect
+    .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.reveal.value))
+    .toBe(null);
   await expectSurface(page);
   await expectCanvasShown(page);
 });
 
 test('a window in motion ends with a canvas of its size', async ({ page }) => {
   await open(page);
-  for (const [width, height] of [[700, 300], [320, 640], [900, 700], [480, 360]]) {
+  for (const [width, height] of [
+    [700, 300],
+    [320, 640],
+    [900, 700],
+    [480, 360],
+  ]) {
     await page.setViewportSize({ width, height });
-    await expect.poll(async () => {
-      const now = await canvas(page);
-      return [now.css_width, now.css_height, now.width, now.height];
-    }).toEqual([width, height, width, height]);
+    await expect
+      .poll(async () => {
+        const now = await canvas(page);
+        return [now.css_width, now.css_height, now.width, now.height];
+      })
+      .toEqual([width, height, width, height]);
   }
   await expectSurface(page);
   await expectCanvasShown(page);
@@ -75,8 +96,18 @@ test('a window taken to a screen of another pixel ratio is drawn in its pixels',
   });
   await open(page);
   const session = await page.context().newCDPSession(page);
-  for (const [ratio, drawn] of [[2, 2], [1.5, 1.5], [4, 2], [1, 1]]) {
-    await session.send('Emulation.setDeviceMetricsOverride', { width: 480, height: 360, deviceScaleFactor: ratio, mobile: false });
+  for (const [ratio, drawn] of [
+    [2, 2],
+    [1.5, 1.5],
+    [4, 2],
+    [1, 1],
+  ]) {
+    await session.send('Emulation.setDeviceMetricsOverride', {
+      width: 480,
+      height: 360,
+      deviceScaleFactor: ratio,
+      mobile: false,
+    });
     await page.evaluate(() => /** @type {any} */ (window).monitors.at(-1).dispatchEvent(new Event('change')));
     await expect.poll(async () => (await canvas(page)).width).toBe(480 * drawn);
     expect((await canvas(page)).height).toBe(360 * drawn);
@@ -91,10 +122,12 @@ test('a window wider than the device can draw is drawn smaller, in proportion', 
   await page.setViewportSize({ width: 9000, height: 300 });
   await expect.poll(async () => (await canvas(page)).css_width).toBe(9000);
   // The page has its size before the canvas has one of its own.
-  await expect.poll(async () => {
-    const { width, height } = await canvas(page);
-    return Math.round(width / height);
-  }).toBe(30);
+  await expect
+    .poll(async () => {
+      const { width, height } = await canvas(page);
+      return Math.round(width / height);
+    })
+    .toBe(30);
   const { width } = await canvas(page);
   expect(width).toBeLessThanOrEqual(8192);
   expect(width).toBeGreaterThan(4000);

@@ -29,20 +29,21 @@ let events = [];
 /** @type {string[]} */
 let messages = [];
 /** @returns {Supervisor} */
-const supervised = () => new Supervisor({
-  spawn: () => {
-    const worker = new FakeWorker();
-    workers.push(worker);
-    return worker;
-  },
-  onMessage: (message) => events.push(message.type),
-  onRestart: (crash) => {
-    events.push(`restart: ${crash.cause}`);
-    messages.push(crash.message);
-  },
-  onSafeMode: (crash) => events.push(`safe after ${crash.restarts}`),
-  onLoadError: (message) => events.push(`load: ${message}`),
-});
+const supervised = () =>
+  new Supervisor({
+    spawn: () => {
+      const worker = new FakeWorker();
+      workers.push(worker);
+      return worker;
+    },
+    onMessage: (message) => events.push(message.type),
+    onRestart: (crash) => {
+      events.push(`restart: ${crash.cause}`);
+      messages.push(crash.message);
+    },
+    onSafeMode: (crash) => events.push(`safe after ${crash.restarts}`),
+    onLoadError: (message) => events.push(`load: ${message}`),
+  });
 const ready = { type: 'ready', description: {} };
 const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
 

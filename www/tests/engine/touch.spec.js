@@ -5,22 +5,28 @@ import { open } from './browser.js';
 test.use({ hasTouch: true, viewport: { width: 480, height: 640 } });
 
 /** @param {import('@playwright/test').Page} page @returns {Promise<any>} */
-const camera = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.state.value.view.camera);
+const camera = (page) =>
+  page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.state.value.view.camera);
 
 /** A place of the picture that no panel covers and where a particle is. @param {import('@playwright/test').Page} page @returns {Promise<[number, number]>} */
-const place = (page) => page.evaluate(() => {
-  const { engine } = /** @type {any} */ (window).marchingParticles;
-  const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
-  const { left, top } = host.getBoundingClientRect();
-  for (let v = 0.15; v < 0.7; v += 0.02) {
-    for (let u = 0.3; u < 0.7; u += 0.02) {
-      const [x, y] = [Math.round(innerWidth * u), Math.round(innerHeight * v)];
-      const free = [[0, 0], [70, 0], [-70, 0]].every(([dx, dy]) => host.contains(document.elementFromPoint(x + dx, y + dy)));
-      if (free && engine.pick(x - left, y - top) !== null) return [x, y];
+const place = (page) =>
+  page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
+    const { left, top } = host.getBoundingClientRect();
+    for (let v = 0.15; v < 0.7; v += 0.02) {
+      for (let u = 0.3; u < 0.7; u += 0.02) {
+        const [x, y] = [Math.round(innerWidth * u), Math.round(innerHeight * v)];
+        const free = [
+          [0, 0],
+          [70, 0],
+          [-70, 0],
+        ].every(([dx, dy]) => host.contains(document.elementFromPoint(x + dx, y + dy)));
+        if (free && engine.pick(x - left, y - top) !== null) return [x, y];
+      }
     }
-  }
-  throw new Error('no free place with a particle');
-});
+    throw new Error('no free place with a particle');
+  });
 
 /**
  * Two fingers, from and to these distances from the middle, in steps.
@@ -29,11 +35,15 @@ const place = (page) => page.evaluate(() => {
  */
 async function pinch(page, at, from_px, to_px, carry = [0, 0]) {
   const session = await page.context().newCDPSession(page);
-  const fingers = (/** @type {number} */ t) => [-1, 1].map((side, id) => ({
-    id, x: at[0] + carry[0] * t + side * (from_px + (to_px - from_px) * t), y: at[1] + carry[1] * t,
-  }));
+  const fingers = (/** @type {number} */ t) =>
+    [-1, 1].map((side, id) => ({
+      id,
+      x: at[0] + carry[0] * t + side * (from_px + (to_px - from_px) * t),
+      y: at[1] + carry[1] * t,
+    }));
   await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: fingers(0) });
-  for (let k = 1; k <= 10; k += 1) await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: fingers(k / 10) });
+  for (let k = 1; k <= 10; k += 1)
+    await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: fingers(k / 10) });
   await session.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
   await session.detach();
 }
@@ -54,7 +64,8 @@ test('a tap on a particle tells of it, and a tap on the ground takes that away',
     const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
     const { left, top } = host.getBoundingClientRect();
     for (let y = 4; y < innerHeight; y += 6) {
-      for (let x = 4; x < innerWidth; x += 6) if (host.contains(document.elementFromPoint(x, y)) && engine.pick(x - left, y - top) === null) return [x, y];
+      for (let x = 4; x < innerWidth; x += 6)
+        if (host.contains(document.elementFromPoint(x, y)) && engine.pick(x - left, y - top) === null) return [x, y];
     }
     throw new Error('no free ground');
   });
@@ -92,13 +103,29 @@ test('a finger lifted from a pinch leaves the other one turning, without a jump'
   await open(page);
   const before = await camera(page);
   // The browser's protocol lifts all fingers or none, so these are the page's own events.
-  const fire = (/** @type {[string, number, number][]} */ events) => page.evaluate((list) => {
-    const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
-    for (const [type, pointerId, clientX] of list) {
-      host.dispatchEvent(new PointerEvent(type, { pointerId, clientX, clientY: 200, button: type === 'pointermove' ? -1 : 0, pointerType: 'touch', bubbles: true }));
-    }
-  }, events);
-  await fire([['pointerdown', 5, 200], ['pointerdown', 6, 280], ['pointermove', 5, 180], ['pointermove', 6, 300], ['pointerup', 6, 300]]);
+  const fire = (/** @type {[string, number, number][]} */ events) =>
+    page.evaluate((list) => {
+      const host = /** @type {HTMLElement} */ (document.querySelector('#canvas-host'));
+      for (const [type, pointerId, clientX] of list) {
+        host.dispatchEvent(
+          new PointerEvent(type, {
+            pointerId,
+            clientX,
+            clientY: 200,
+            button: type === 'pointermove' ? -1 : 0,
+            pointerType: 'touch',
+            bubbles: true,
+          }),
+        );
+      }
+    }, events);
+  await fire([
+    ['pointerdown', 5, 200],
+    ['pointerdown', 6, 280],
+    ['pointermove', 5, 180],
+    ['pointermove', 6, 300],
+    ['pointerup', 6, 300],
+  ]);
   await expect.poll(async () => (await camera(page)).distance).toBeLessThan(before.distance * 0.8);
   const held = await camera(page);
   expect(held.yaw).toBe(before.yaw);

@@ -1,7 +1,14 @@
 import { describe, expect, it } from 'vitest';
 import { beginsFunction, describeFault, excerptOf, piecesOf } from '../../src/ui/field/fault.js';
 
-const fault = { kind: 'unknown_name', message: 'Unknown name foo.', start: 4, end: 7, suggestion: null, names: ['foo'] };
+const fault = {
+  kind: 'unknown_name',
+  message: 'Unknown name foo.',
+  start: 4,
+  end: 7,
+  suggestion: null,
+  names: ['foo'],
+};
 
 describe('a fault in a formula', () => {
   it('is a hint, not an error, where nothing is typed', () => {
@@ -16,7 +23,10 @@ describe('a fault in a formula', () => {
   it('marks its place and offers a slider for every unknown name', () => {
     const view = describeFault('x + foo = 1', { ...fault, names: ['foo', 'bar'] });
     expect(view?.excerpt).toEqual({ before: 'x + ', marked: 'foo', after: ' = 1' });
-    expect(view?.repairs.map(({ label, declare }) => [label, declare])).toEqual([['Add slider foo', 'foo'], ['Add slider bar', 'bar']]);
+    expect(view?.repairs.map(({ label, declare }) => [label, declare])).toEqual([
+      ['Add slider foo', 'foo'],
+      ['Add slider bar', 'bar'],
+    ]);
   });
 
   it('offers a suggestion first, as a change of the marked place', () => {
@@ -25,13 +35,23 @@ describe('a fault in a formula', () => {
   });
 
   it('says insert where something is missing and remove where something is too much', () => {
-    expect(describeFault('(x', { ...fault, start: 2, end: 2, names: [], suggestion: ')' })?.repairs[0].label).toBe('Insert )');
-    expect(describeFault('x ?', { ...fault, start: 2, end: 3, names: [], suggestion: '' })?.repairs[0].label).toBe('Remove ?');
-    expect(describeFault('sin', { ...fault, start: 0, end: 3, names: [], suggestion: 'sin(…)' })?.repairs[0].replace?.text).toBe('sin()');
+    expect(describeFault('(x', { ...fault, start: 2, end: 2, names: [], suggestion: ')' })?.repairs[0].label).toBe(
+      'Insert )',
+    );
+    expect(describeFault('x ?', { ...fault, start: 2, end: 3, names: [], suggestion: '' })?.repairs[0].label).toBe(
+      'Remove ?',
+    );
+    expect(
+      describeFault('sin', { ...fault, start: 0, end: 3, names: [], suggestion: 'sin(…)' })?.repairs[0].replace?.text,
+    ).toBe('sin()');
   });
 
   it('shows what stands between backticks as code', () => {
-    expect(piecesOf('No `foo` here')).toEqual([{ text: 'No ', code: false }, { text: 'foo', code: true }, { text: ' here', code: false }]);
+    expect(piecesOf('No `foo` here')).toEqual([
+      { text: 'No ', code: false },
+      { text: 'foo', code: true },
+      { text: ' here', code: false },
+    ]);
     expect(piecesOf('A ` alone')).toEqual([{ text: 'A ` alone', code: false }]);
   });
 
@@ -52,11 +72,14 @@ describe('a fault in a formula', () => {
 
 describe('a name at the caret', () => {
   const functions = ['sqrt', 'sin', 'sinh', 'exp'].map((name) => ({ name, signature: `${name}(a)`, help: '' }));
-  const begins = (/** @type {string} */ text, /** @type {string[]} */ parameters = []) => beginsFunction(text, functions, parameters);
+  const begins = (/** @type {string} */ text, /** @type {string[]} */ parameters = []) =>
+    beginsFunction(text, functions, parameters);
 
   it('may be the beginning of a function until it is one, or is another', () => {
     expect(['x^2 + s', 'x^2 + sq', '2sq', 'x s'].map((text) => begins(text))).toEqual([true, true, true, true]);
-    expect(['', 'x^2 + ', 'x', 'x + e', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text))).toEqual([]);
+    expect(
+      ['', 'x^2 + ', 'x', 'x + e', 'k', 'sqx', 'sin', 'sqrt', 'sqrt(', 's ', 's2'].filter((text) => begins(text)),
+    ).toEqual([]);
   });
 
   it('is none where the formula has such a parameter', () => {

@@ -1,12 +1,22 @@
 import { beforeAll, describe, expect, it } from 'vitest';
+import { FILE_SURFACE } from '../../src/engine/types.js';
 import { factsOf } from '../../src/ui/field/facts.js';
 import { carriesFiles, describeLoadingError, FORMATS, LIMIT, listOf } from '../../src/ui/field/files.js';
 import { storyOf } from '../../src/ui/field/story.js';
 import { setLocale } from '../../src/ui/format.js';
-import { FILE_SURFACE } from '../../src/engine/types.js';
 
 beforeAll(() => setLocale('en'));
-const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({ name: 'dragon.ply', credit: '', points: 5205, centres: 400, condition: 1.13e7, residual_mean: 0.00221, residual_max: 0.0134, normals: 'from_mesh', warnings: [] });
+const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
+  name: 'dragon.ply',
+  credit: '',
+  points: 5205,
+  centres: 400,
+  condition: 1.13e7,
+  residual_mean: 0.00221,
+  residual_max: 0.0134,
+  normals: 'from_mesh',
+  warnings: [],
+});
 
 describe('a file of points', () => {
   it('has its formats and its limit named', () => {
@@ -22,8 +32,19 @@ describe('a file of points', () => {
   });
 
   it('is refused in whole sentences, with the line once and what to do', () => {
-    const error = { id: FILE_SURFACE, name: 'a.xyz', kind: 'line', message: 'line 7: the second number is missing', line: 7 };
-    expect(describeLoadingError(error)).toEqual({ title: 'a.xyz could not be used', text: 'Line 7: the second number is missing.', line: '', advice: '' });
+    const error = {
+      id: FILE_SURFACE,
+      name: 'a.xyz',
+      kind: 'line',
+      message: 'line 7: the second number is missing',
+      line: 7,
+    };
+    expect(describeLoadingError(error)).toEqual({
+      title: 'a.xyz could not be used',
+      text: 'Line 7: the second number is missing.',
+      line: '',
+      advice: '',
+    });
     expect(describeLoadingError({ ...error, message: 'the second number is missing.' }).line).toBe('Line 7');
     expect(describeLoadingError({ ...error, kind: 'too_large', line: null }).advice).toContain(LIMIT);
   });
@@ -32,17 +53,27 @@ describe('a file of points', () => {
 describe('a model from points', () => {
   it('tells how many points it read and fitted, and how well', () => {
     expect(factsOf(info).map(({ label, value, unit }) => `${label} ${value}${unit}`)).toEqual([
-      'Points read 5,205', 'Points fitted 400', 'Normals from the mesh', 'Condition number 1.1·10⁷', 'Mean distance 0.22%', 'Largest distance 1.3%',
+      'Points read 5,205',
+      'Points fitted 400',
+      'Normals from the mesh',
+      'Condition number 1.1·10⁷',
+      'Mean distance 0.22%',
+      'Largest distance 1.3%',
     ]);
     expect(factsOf({ ...info, points: 200, centres: 200 })[0]).toMatchObject({ label: 'Points', value: '200' });
   });
 
-  it('has a story and a credit, a file its name, and a formula of one\'s own neither', () => {
+  it("has a story and a credit, a file its name, and a formula of one's own neither", () => {
     const description = /** @type {any} */ ({
       models: [{ id: 'bunny', name: 'Bunny', story: 'It hops.', credit: 'Stanford', points: 200 }],
       surfaces: [{ id: 'sphere', name: 'Sphere', story: 'Round.', degree: 2, genus: 0 }],
     });
-    expect(storyOf(description, 'bunny', null)).toEqual({ name: 'Bunny', facts: '200 points', text: 'It hops.', credit: 'Stanford' });
+    expect(storyOf(description, 'bunny', null)).toEqual({
+      name: 'Bunny',
+      facts: '200 points',
+      text: 'It hops.',
+      credit: 'Stanford',
+    });
     expect(storyOf(description, FILE_SURFACE, info)).toMatchObject({ name: 'dragon.ply', facts: '5,205 points' });
     expect(storyOf(description, 'sphere', null)).toMatchObject({ facts: 'Degree 2 · genus 0', credit: '' });
     expect(storyOf(description, null, null).name).toBe('Your own formula');

@@ -1,5 +1,18 @@
 import { beforeEach, describe, expect, it } from 'vitest';
-import { decimalsOf, formatCount, formatFixed, formatSeconds, formatShare, formatSignificant, formatStep, MISSING, plural, setLocale, validLocales, withCounts } from '../../src/ui/format.js';
+import {
+  decimalsOf,
+  formatCount,
+  formatFixed,
+  formatSeconds,
+  formatShare,
+  formatSignificant,
+  formatStep,
+  MISSING,
+  plural,
+  setLocale,
+  validLocales,
+  withCounts,
+} from '../../src/ui/format.js';
 
 describe('numbers', () => {
   beforeEach(() => setLocale('en'));
@@ -15,7 +28,9 @@ describe('numbers', () => {
   });
 
   it('groups the counts in a sentence, and nothing else', () => {
-    expect(withCounts('1382 children, near 0.12345 and 1000000. In 12 of 99999: 3.14159e-12, 2024.')).toBe('1,382 children, near 0.12345 and 1,000,000. In 12 of 99,999: 3.14159e-12, 2,024.');
+    expect(withCounts('1382 children, near 0.12345 and 1000000. In 12 of 99999: 3.14159e-12, 2024.')).toBe(
+      '1,382 children, near 0.12345 and 1,000,000. In 12 of 99,999: 3.14159e-12, 2,024.',
+    );
   });
 
   it('are written though the browser names a language that is none', () => {

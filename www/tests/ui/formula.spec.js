@@ -30,7 +30,7 @@ test('an error names its place, the last surface stays, and a press on the sugge
   const editor = page.getByRole('textbox', { name: 'Formula' });
   await expect(editor).toHaveAttribute('aria-invalid', 'true');
   await expect(page.locator('.cm-fault')).toHaveText('sqr');
-  expect((await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count))).toBe(before.count);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(before.count);
   await page.getByRole('button', { name: 'Change to sqrt' }).click();
   await expect(editor).toHaveAttribute('aria-invalid', 'false');
   await expect.poll(async () => (await state(page)).formula).toBe('x^2 + y^2 + sqrt(z) = 1');
@@ -38,7 +38,9 @@ test('an error names its place, the last surface stays, and a press on the sugge
 });
 
 for (const phase of ['relaxation', 'quality']) {
-  test(`a mistake typed during the ${phase === 'quality' ? 'measurement' : 'run'} leaves the surface whole, with its own figures, in the middle of the picture`, async ({ page }) => {
+  test(`a mistake typed during the ${phase === 'quality' ? 'measurement' : 'run'} leaves the surface whole, with its own figures, in the middle of the picture`, async ({
+    page,
+  }) => {
     const { clean } = await open(page, { width: 390, height: 844 });
     const before = await report(page);
     await page.evaluate(async (wanted) => {
@@ -58,7 +60,13 @@ for (const phase of ['relaxation', 'quality']) {
     expect(after.digest).not.toBe(before.digest);
     const { count, positions } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles());
     expect(after.count).toBe(count);
-    expect(Math.max(...Object.values(positions).filter((_, i) => i % 3 === 0).map(Math.abs))).toBeLessThan(1e-3);
+    expect(
+      Math.max(
+        ...Object.values(positions)
+          .filter((_, i) => i % 3 === 0)
+          .map(Math.abs),
+      ),
+    ).toBeLessThan(1e-3);
     await expect(page.locator('#report .figures, .figures').first()).toBeAttached();
     await expect(page.locator('.stale .figures')).toHaveCount(0);
     // The camera comes once the typing rests: where it then stands is where a fit would put it.
@@ -69,12 +77,17 @@ for (const phase of ['relaxation', 'quality']) {
     const { distance, target } = await camera();
     await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.fit());
     await atRest(page);
-    expect(await camera()).toMatchObject({ distance: expect.closeTo(distance, 2), target: target.map((/** @type {number} */ v) => expect.closeTo(v, 2)) });
+    expect(await camera()).toMatchObject({
+      distance: expect.closeTo(distance, 2),
+      target: target.map((/** @type {number} */ v) => expect.closeTo(v, 2)),
+    });
     await clean();
   });
 }
 
-test('where a formula on its way has no surface, the camera comes to the whole box, with the last surface in it', async ({ page }) => {
+test('where a formula on its way has no surface, the camera comes to the whole box, with the last surface in it', async ({
+  page,
+}) => {
   await open(page, { width: 390, height: 844 });
   await typeFormula(page, 'x^2');
   await settled(page);
@@ -84,13 +97,19 @@ test('where a formula on its way has no surface, the camera comes to the whole b
   await atRest(page);
   const { camera } = (await state(page)).view;
   // The box of the ellipsoid, as wide as its corners reach.
-  const { min, max } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.field.value.bounds);
+  const { min, max } = await page.evaluate(
+    () => /** @type {any} */ (window).marchingParticles.engine.field.value.bounds,
+  );
   const radius = Math.hypot(...max.map((/** @type {number} */ v, /** @type {number} */ k) => v - min[k])) / 2;
   expect(camera.distance).toBeGreaterThan(radius / Math.sin(Math.PI / 12));
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.count)).toBeGreaterThan(0);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.count)).toBeGreaterThan(
+    0,
+  );
 });
 
-test('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async ({ page }) => {
+test('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async ({
+  page,
+}) => {
   await open(page);
   await typeFormula(page, 'x^2 + y^2 + z^2 = ');
   await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
@@ -98,7 +117,9 @@ test('a function typed letter by letter makes no sliders of its beginnings, and 
   const seen = await page.evaluate(async () => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
     const names = /** @type {string[]} */ ([]);
-    const off = engine.field.subscribe((/** @type {any} */ field) => names.push(...field.parameters.map((/** @type {any} */ p) => p.name)));
+    const off = engine.field.subscribe((/** @type {any} */ field) =>
+      names.push(...field.parameters.map((/** @type {any} */ p) => p.name)),
+    );
     names.length = 0;
     for (const letter of 'sqr') {
       document.execCommand('insertText', false, letter);
@@ -108,7 +129,9 @@ test('a function typed letter by letter makes no sliders of its beginnings, and 
     const busy = engine.busy.value;
     document.execCommand('insertText', false, 't(1)');
     await new Promise((resolve) => {
-      const stop = engine.fieldError.subscribe((/** @type {any} */ error) => { if (!error) setTimeout(() => resolve(stop())); });
+      const stop = engine.fieldError.subscribe((/** @type {any} */ error) => {
+        if (!error) setTimeout(() => resolve(stop()));
+      });
     });
     off();
     return { names, formula, busy };
@@ -159,7 +182,9 @@ test('markup in a formula stays text', async ({ page }) => {
   await typeFormula(page, '<img src=x onerror=alert(1)>');
   await expect(page.getByRole('textbox', { name: 'Formula' })).toHaveAttribute('aria-invalid', 'true');
   expect(await page.evaluate(() => document.querySelectorAll('img[onerror], [onerror]').length)).toBe(0);
-  expect(await page.evaluate(() => document.querySelector('.code-host')?.shadowRoot?.querySelectorAll('img').length)).toBe(0);
+  expect(
+    await page.evaluate(() => document.querySelector('.code-host')?.shadowRoot?.querySelectorAll('img').length),
+  ).toBe(0);
   expect(faults).toEqual([]);
 });
 

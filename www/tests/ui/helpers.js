@@ -14,19 +14,26 @@ export async function open(page, { width = 1280, height = 800, hash = '' } = {})
   /** @type {string[]} */
   const faults = [];
   page.on('pageerror', (error) => faults.push(String(error)));
-  page.on('console', (message) => { if (message.type() === 'error') faults.push(message.text()); });
+  page.on('console', (message) => {
+    if (message.type() === 'error') faults.push(message.text());
+  });
   await page.addInitScript(() => {
     const seen = /** @type {string[]} */ ([]);
     /** @type {any} */ (window).violations = seen;
-    document.addEventListener('securitypolicyviolation', (event) => seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`));
+    document.addEventListener('securitypolicyviolation', (event) =>
+      seen.push(`${event.violatedDirective} ${event.blockedURI} ${event.sample}`),
+    );
   });
   await page.setViewportSize({ width, height });
   await page.goto(`${ADDRESS}${hash}`);
   await settled(page);
-  return { faults, clean: async () => {
-    expect(faults).toEqual([]);
-    expect(await page.evaluate(() => /** @type {any} */ (window).violations)).toEqual([]);
-  } };
+  return {
+    faults,
+    clean: async () => {
+      expect(faults).toEqual([]);
+      expect(await page.evaluate(() => /** @type {any} */ (window).violations)).toEqual([]);
+    },
+  };
 }
 
 /** Waits until nothing runs and the figures are there. @param {import('@playwright/test').Page} page */
@@ -34,7 +41,13 @@ export async function settled(page) {
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
   await page.waitForFunction(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
-    return !engine.busy.value && engine.loading.value === null && engine.reveal.value === null && engine.progress.value.phase === 'done' && (engine.report.value !== null || engine.empty.value);
+    return (
+      !engine.busy.value &&
+      engine.loading.value === null &&
+      engine.reveal.value === null &&
+      engine.progress.value.phase === 'done' &&
+      (engine.report.value !== null || engine.empty.value)
+    );
   });
 }
 
@@ -49,19 +62,25 @@ export async function atRest(page) {
   });
   await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
   // The state follows the camera with a delay: two looks further apart than that see the same.
-  await page.waitForFunction(() => {
-    const store = /** @type {any} */ (window);
-    const now = JSON.stringify(store.marchingParticles.state.view.camera);
-    const same = store.lastCamera === now;
-    store.lastCamera = now;
-    return same;
-  }, undefined, { polling: 300 });
+  await page.waitForFunction(
+    () => {
+      const store = /** @type {any} */ (window);
+      const now = JSON.stringify(store.marchingParticles.state.view.camera);
+      const same = store.lastCamera === now;
+      store.lastCamera = now;
+      return same;
+    },
+    undefined,
+    { polling: 300 },
+  );
 }
 
 /** What axe has to say; nothing is scanned half-way through a fade. @param {import('@playwright/test').Page} page */
 export async function scan(page) {
   await atRest(page);
-  return new AxeBuilder({ page }).withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice']).analyze();
+  return new AxeBuilder({ page })
+    .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'])
+    .analyze();
 }
 
 /** @param {import('@playwright/test').Page} page @returns {Promise<any>} */

@@ -1,8 +1,10 @@
 import { expect, test } from '@playwright/test';
 import { open, settled, state, typeFormula } from './helpers.js';
 
-const undo = (/** @type {import('@playwright/test').Page} */ page) => page.getByRole('button', { name: 'Undo', exact: true });
-const redo = (/** @type {import('@playwright/test').Page} */ page) => page.getByRole('button', { name: 'Redo', exact: true });
+const undo = (/** @type {import('@playwright/test').Page} */ page) =>
+  page.getByRole('button', { name: 'Undo', exact: true });
+const redo = (/** @type {import('@playwright/test').Page} */ page) =>
+  page.getByRole('button', { name: 'Redo', exact: true });
 
 test('surface, formula and settings are undone and redone, by buttons and by keys', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
@@ -51,7 +53,9 @@ test('in a text field the keys undo the typing, not the page', async ({ page }) 
   expect((await state(page)).surface).toBe('sphere');
 });
 
-test('five hundred steps back end at the first state and harm nothing; Back leaves the page as ever', async ({ page }) => {
+test('five hundred steps back end at the first state and harm nothing; Back leaves the page as ever', async ({
+  page,
+}) => {
   const { clean } = await open(page);
   const first = await state(page);
   await page.evaluate(async () => {
@@ -59,7 +63,10 @@ test('five hundred steps back end at the first state and harm nothing; Back leav
     for (let i = 1; i <= 30; i += 1) engine.setSetting(i % 2 ? 'relax_steps' : 'seed', i);
   });
   await page.evaluate(() => {
-    const press = (/** @type {boolean} */ shiftKey) => document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, shiftKey, bubbles: true, cancelable: true }));
+    const press = (/** @type {boolean} */ shiftKey) =>
+      document.body.dispatchEvent(
+        new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, shiftKey, bubbles: true, cancelable: true }),
+      );
     for (let i = 0; i < 500; i += 1) press(false);
     for (let i = 0; i < 500; i += 1) press(true);
     for (let i = 0; i < 500; i += 1) press(false);

@@ -2,7 +2,15 @@ import { describe, expect, it } from 'vitest';
 import { difference, History, MOST_ENTRIES } from '../../src/ui/history.js';
 
 /** @param {object} [change] @returns {any} */
-const shape = (change) => ({ surface: 'sphere', formula: 'x', parameters: {}, declared: [], bounds: null, settings: {}, ...change });
+const shape = (change) => ({
+  surface: 'sphere',
+  formula: 'x',
+  parameters: {},
+  declared: [],
+  bounds: null,
+  settings: {},
+  ...change,
+});
 
 describe('the history', () => {
   it('goes back and forth, and forgets what was undone when something else is done', () => {

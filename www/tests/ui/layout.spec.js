@@ -1,7 +1,16 @@
 import { expect, test } from '@playwright/test';
 import { atRest, open, scan, settled, state } from './helpers.js';
 
-const SIZES = /** @type {const} */ ([[3840, 2160], [1440, 900], [2560, 1440], [820, 1180], [390, 844], [320, 640], [844, 390], [600, 340]]);
+const SIZES = /** @type {const} */ ([
+  [3840, 2160],
+  [1440, 900],
+  [2560, 1440],
+  [820, 1180],
+  [390, 844],
+  [320, 640],
+  [844, 390],
+  [600, 340],
+]);
 
 for (const [width, height] of SIZES) {
   test(`nothing overflows at ${width} by ${height}`, async ({ page }) => {
@@ -11,14 +20,19 @@ for (const [width, height] of SIZES) {
       if (tab) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: tab }).click();
       const { scroll, outside, rows } = await page.evaluate(() => {
         const visible = (/** @type {Element} */ element) => element.checkVisibility();
-        const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')].filter(visible).filter((element) => {
-          const { left, right, top, bottom } = element.getBoundingClientRect();
-          return left < -0.5 || right > innerWidth + 0.5 || top < -2.5 || bottom > innerHeight + 0.5;
-        }).map((element) => element.className);
+        const outside = [...document.querySelectorAll('.panel, .toolbar, .legend, .tabs')]
+          .filter(visible)
+          .filter((element) => {
+            const { left, right, top, bottom } = element.getBoundingClientRect();
+            return left < -0.5 || right > innerWidth + 0.5 || top < -2.5 || bottom > innerHeight + 0.5;
+          })
+          .map((element) => element.className);
         for (const body of document.querySelectorAll('.panel-body')) {
-          if (visible(body) && body.scrollWidth > body.clientWidth + 1) outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
+          if (visible(body) && body.scrollWidth > body.clientWidth + 1)
+            outside.push(`${body.id} ${body.scrollWidth} > ${body.clientWidth}`);
         }
-        const middle = (/** @type {Element} */ element) => Math.round(element.getBoundingClientRect().top + element.clientHeight / 2);
+        const middle = (/** @type {Element} */ element) =>
+          Math.round(element.getBoundingClientRect().top + element.clientHeight / 2);
         const rows = new Set([...document.querySelectorAll('.tabs > *')].filter(visible).map(middle)).size;
         return { scroll: document.documentElement.scrollWidth, outside, rows };
       });
@@ -33,7 +47,10 @@ for (const [width, height] of SIZES) {
   });
 }
 
-for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) {
+for (const [width, height] of /** @type {const} */ ([
+  [1440, 900],
+  [390, 844],
+])) {
   for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
     test(`axe finds nothing at ${width} by ${height}, ${colorScheme}`, async ({ page }) => {
       await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
@@ -59,8 +76,14 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
   }
 }
 
-for (const [width, height] of /** @type {const} */ ([[390, 844], [320, 640], [320, 568]])) {
-  test(`on a phone of ${width} by ${height} the surface stands clear of tools, legend and caption`, async ({ page }) => {
+for (const [width, height] of /** @type {const} */ ([
+  [390, 844],
+  [320, 640],
+  [320, 568],
+])) {
+  test(`on a phone of ${width} by ${height} the surface stands clear of tools, legend and caption`, async ({
+    page,
+  }) => {
     await open(page, { width, height });
     await page.locator('.tile[data-surface="sphere"]').click();
     await page.getByRole('combobox', { name: 'Colour by' }).selectOption('curvature');
@@ -69,10 +92,12 @@ for (const [width, height] of /** @type {const} */ ([[390, 844], [320, 640], [32
     await atRest(page);
     const { under, between } = await page.evaluate(() => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
-      const box = (/** @type {string} */ part) => /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect();
+      const box = (/** @type {string} */ part) =>
+        /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect();
       // Small discs are picked from up to six pixels beside them.
       const hit = (/** @type {DOMRect} */ { left, right, top, bottom }) => {
-        for (let x = left + 6; x <= right - 6; x += 4) for (let y = top + 6; y <= bottom - 6; y += 4) if (engine.pick(x, y) !== null) return true;
+        for (let x = left + 6; x <= right - 6; x += 4)
+          for (let y = top + 6; y <= bottom - 6; y += 4) if (engine.pick(x, y) !== null) return true;
         return false;
       };
       const [tools, legend, caption] = ['.toolbar', '.legend', '.caption'].map(box);
@@ -88,11 +113,16 @@ for (const [width, height] of /** @type {const} */ ([[390, 844], [320, 640], [32
 
 test('targets are at least 24 pixels', async ({ page }) => {
   await open(page, { width: 1440, height: 900 });
-  const small = await page.evaluate(() => [...document.querySelectorAll('button, select, input:not(.visually-hidden), summary')]
-    .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest('label.check'))
-    .map((element) => ({ name: element.textContent || element.getAttribute('aria-label'), box: element.getBoundingClientRect() }))
-    .filter(({ box }) => box.width < 23.5 || box.height < 23.5)
-    .map(({ name, box }) => `${name} ${box.width} by ${box.height}`));
+  const small = await page.evaluate(() =>
+    [...document.querySelectorAll('button, select, input:not(.visually-hidden), summary')]
+      .filter((element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest('label.check'))
+      .map((element) => ({
+        name: element.textContent || element.getAttribute('aria-label'),
+        box: element.getBoundingClientRect(),
+      }))
+      .filter(({ box }) => box.width < 23.5 || box.height < 23.5)
+      .map(({ name, box }) => `${name} ${box.width} by ${box.height}`),
+  );
   expect(small).toEqual([]);
 });
 
@@ -108,7 +138,9 @@ test('a style sheet that comes after the script finds everything in its place', 
   await page.setViewportSize({ width: 1440, height: 900 });
   /** @type {(nothing: void) => void} */
   let send = () => {};
-  const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => { send = resolve; });
+  const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => {
+    send = resolve;
+  });
   await page.route('**/*.css', async (route) => {
     await sent;
     await route.continue();
@@ -116,14 +148,21 @@ test('a style sheet that comes after the script finds everything in its place', 
   // Chromium holds module scripts back until the style sheet is there, unless they are asynchronous; WebKit does not.
   await page.route(/\/$/, async (route) => {
     const response = await route.fetch();
-    await route.fulfill({ response, body: (await response.text()).replace('<script type="module"', '<script async type="module"') });
+    await route.fulfill({
+      response,
+      body: (await response.text()).replace('<script type="module"', '<script async type="module"'),
+    });
   });
   await page.goto('/', { waitUntil: 'commit' });
   // No frame is drawn before the style sheet is there.
-  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.description.value, undefined, { polling: 100 });
+  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.description.value, undefined, {
+    polling: 100,
+  });
   expect(await page.locator('#field-body').textContent()).toBe('');
   send();
-  await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts().frames)).toBeGreaterThan(0);
+  await expect
+    .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts().frames))
+    .toBeGreaterThan(0);
   await settled(page);
   const { width, height } = await page.evaluate(() => {
     const { width, height } = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
@@ -134,11 +173,21 @@ test('a style sheet that comes after the script finds everything in its place', 
   expect(ground).toBe(await page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor));
 });
 
-for (const [width, height] of /** @type {const} */ ([[1440, 900], [1280, 720], [390, 844]])) {
-  test(`the page settles without a jump and asks nobody else for anything at ${width} by ${height}`, async ({ page, baseURL }) => {
+for (const [width, height] of /** @type {const} */ ([
+  [1440, 900],
+  [1280, 720],
+  [390, 844],
+])) {
+  test(`the page settles without a jump and asks nobody else for anything at ${width} by ${height}`, async ({
+    page,
+    baseURL,
+  }) => {
     /** @type {string[]} */
     const foreign = [];
-    page.on('request', (request) => { if (!request.url().startsWith(new URL(baseURL ?? '').origin) && !/^(blob|data):/.test(request.url())) foreign.push(request.url()); });
+    page.on('request', (request) => {
+      if (!request.url().startsWith(new URL(baseURL ?? '').origin) && !/^(blob|data):/.test(request.url()))
+        foreign.push(request.url());
+    });
     await page.addInitScript(() => {
       /** @type {any} */ (window).shift = 0;
       new PerformanceObserver((list) => {
@@ -159,7 +208,8 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await expect(page.locator('.code-host')).toBeVisible();
   await page.keyboard.press('Escape');
   // Out of the editor by Tab, on to the first slider.
-  for (let i = 0; i < 4 && !(await page.evaluate(() => document.activeElement?.matches('.row .slider'))); i += 1) await page.keyboard.press('Tab');
+  for (let i = 0; i < 4 && !(await page.evaluate(() => document.activeElement?.matches('.row .slider'))); i += 1)
+    await page.keyboard.press('Tab');
   const name = await page.evaluate(() => document.activeElement?.closest('.row')?.getAttribute('data-parameter'));
   expect(name).toBeTruthy();
   await page.keyboard.press('ArrowRight');
@@ -185,7 +235,13 @@ test('a dark page is dark before the sampler has come', async ({ page }) => {
   await page.route('**/core_bg*.wasm', () => {});
   await page.goto('./?backend=canvas2d');
   await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.debug.counts().frames > 0);
-  const brightest = await page.evaluate(async () => Math.max(...(await /** @type {any} */ (window).marchingParticles.pixels(4, 4)).pixels.filter((/** @type {number} */ _, /** @type {number} */ i) => i % 4 < 3)));
+  const brightest = await page.evaluate(async () =>
+    Math.max(
+      ...(await /** @type {any} */ (window).marchingParticles.pixels(4, 4)).pixels.filter(
+        (/** @type {number} */ _, /** @type {number} */ i) => i % 4 < 3,
+      ),
+    ),
+  );
   expect(brightest).toBeLessThan(64);
 });
 

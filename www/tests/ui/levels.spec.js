@@ -9,19 +9,22 @@ const level = async (page) => (await state(page)).view.level;
 /** @param {Page} page */
 const slider = (page) => page.getByRole('slider', { name: 'Generation level' });
 /** @param {Page} page @param {string} name */
-const press = (page, name) => page.getByRole('group', { name: 'Step through the levels' }).getByRole('button', { name, exact: true }).click();
+const press = (page, name) =>
+  page.getByRole('group', { name: 'Step through the levels' }).getByRole('button', { name, exact: true }).click();
 /** The levels of the particles, counted. @param {Page} page @returns {Promise<number[]>} */
-const fresh = (page) => page.evaluate(() => {
-  const { count, levels } = /** @type {any} */ (window).marchingParticles.particles();
-  const n = new Array(Math.max(...levels) + 1).fill(0);
-  for (let i = 0; i < count; i += 1) n[levels[i]] += 1;
-  return n;
-});
+const fresh = (page) =>
+  page.evaluate(() => {
+    const { count, levels } = /** @type {any} */ (window).marchingParticles.particles();
+    const n = new Array(Math.max(...levels) + 1).fill(0);
+    for (let i = 0; i < count; i += 1) n[levels[i]] += 1;
+    return n;
+  });
 
 /** Long enough for some levels, if they were playing. @param {Page} page */
-const framesLater = (page) => page.evaluate(async () => {
-  for (let k = 0; k < 40; k += 1) await new Promise(requestAnimationFrame);
-});
+const framesLater = (page) =>
+  page.evaluate(async () => {
+    for (let k = 0; k < 40; k += 1) await new Promise(requestAnimationFrame);
+  });
 
 test('buttons and keys go through the levels, and the caption says how each came about', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
@@ -34,10 +37,15 @@ test('buttons and keys go through the levels, and the caption says how each came
   await press(page, 'Level forward');
   await page.keyboard.press('.');
   expect(await level(page)).toBe(2);
-  await expect(slider(page)).toHaveAttribute('aria-valuetext', `Level 2 of ${last}: ${made[2]} particles, ${made[0] + made[1] + made[2]} so far`);
+  await expect(slider(page)).toHaveAttribute(
+    'aria-valuetext',
+    `Level 2 of ${last}: ${made[2]} particles, ${made[0] + made[1] + made[2]} so far`,
+  );
   // On an ellipsoid the first levels are those of a plane: of 30 children of six particles 12 are new.
   await expect(page.locator('.caption')).toContainText('12 new (on a flat plane 12), 19 so far');
-  await expect(page.locator('.caption')).toContainText('Level 1 proposed 30 children: 12 added, 18 met existing particles. Drawn after 10 relaxation steps.');
+  await expect(page.locator('.caption')).toContainText(
+    'Level 1 proposed 30 children: 12 added, 18 met existing particles. Drawn after 10 relaxation steps.',
+  );
   await page.keyboard.press(',');
   expect(await level(page)).toBe(1);
   await page.keyboard.press('<');
@@ -149,18 +157,25 @@ test('without a surface there is nothing to step through', async ({ page }) => {
 test('the start of the front is turned to the eye', async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await open(page);
-  const facing = () => page.evaluate(() => {
-    const { state, particles } = /** @type {any} */ (window).marchingParticles;
-    const { yaw, pitch } = state.view.camera;
-    const [x, y, z] = particles().normals;
-    return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
-  });
+  const facing = () =>
+    page.evaluate(() => {
+      const { state, particles } = /** @type {any} */ (window).marchingParticles;
+      const { yaw, pitch } = state.view.camera;
+      const [x, y, z] = particles().normals;
+      return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
+    });
   expect(await facing()).toBeLessThan(0.3);
   await press(page, 'First level');
   await expect.poll(facing).toBeGreaterThan(0.8);
 });
 
-for (const [width, height] of /** @type {const} */ ([[1440, 900], [820, 1180], [390, 844], [320, 640], [844, 390]])) {
+for (const [width, height] of /** @type {const} */ ([
+  [1440, 900],
+  [820, 1180],
+  [390, 844],
+  [320, 640],
+  [844, 390],
+])) {
   test(`the timeline is whole and axe finds nothing at ${width} by ${height}`, async ({ page }) => {
     await page.emulateMedia({ reducedMotion: 'reduce' });
     const { clean } = await open(page, { width, height });
@@ -168,14 +183,19 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [820, 1180], [
     if (compact) await page.getByRole('navigation', { name: 'Panels' }).getByRole('button', { name: 'Levels' }).click();
     await press(page, 'First level');
     for (let k = 0; k < 5; k += 1) await press(page, 'Level forward');
-    const boxes = await page.locator('#levels-body').evaluate((body) => [...body.children].map((child) => {
-      const { left, right, top, bottom } = child.getBoundingClientRect();
-      return { left, right, top, bottom };
-    }));
+    const boxes = await page.locator('#levels-body').evaluate((body) =>
+      [...body.children].map((child) => {
+        const { left, right, top, bottom } = child.getBoundingClientRect();
+        return { left, right, top, bottom };
+      }),
+    );
     for (const [i, a] of boxes.entries()) {
       expect(a.left).toBeGreaterThanOrEqual(0);
       expect(a.right).toBeLessThanOrEqual(width);
-      for (const b of boxes.slice(i + 1)) expect(a.right <= b.left + 0.5 || b.right <= a.left + 0.5 || a.bottom <= b.top + 0.5 || b.bottom <= a.top + 0.5).toBe(true);
+      for (const b of boxes.slice(i + 1))
+        expect(
+          a.right <= b.left + 0.5 || b.right <= a.left + 0.5 || a.bottom <= b.top + 0.5 || b.bottom <= a.top + 0.5,
+        ).toBe(true);
     }
     expect((await scan(page)).violations).toEqual([]);
     await clean();

@@ -17,22 +17,31 @@ function particles(made, adaptive = false) {
   const n = made.length;
   columns.clear(adaptive);
   columns.write({
-    first: 0, total: n, positions: new Float32Array(3 * n), normals: new Float32Array(3 * n), radii: new Float32Array(n).fill(1),
-    levels: Uint32Array.from(made, ({ level }) => level), parents: Uint32Array.from(made, ({ parent }) => parent ?? NO_PARENT),
+    first: 0,
+    total: n,
+    positions: new Float32Array(3 * n),
+    normals: new Float32Array(3 * n),
+    radii: new Float32Array(n).fill(1),
+    levels: Uint32Array.from(made, ({ level }) => level),
+    parents: Uint32Array.from(made, ({ parent }) => parent ?? NO_PARENT),
   });
-  columns.writeSlots(0, Uint32Array.from(made, (m) => m.slots ?? 0));
+  columns.writeSlots(
+    0,
+    Uint32Array.from(made, (m) => m.slots ?? 0),
+  );
   return columns;
 }
 
 /** A seed, three children, and a particle that filled a gap at the end. */
-const front = () => particles([
-  { level: 0, slots: slots('added', 'added', 'added', 'outside', 'outside', 'notConverged') },
-  { level: 1, parent: 0, slots: slots('parent', 'matched', 'matched', 'matched', 'undefined', 'capped') },
-  { level: 1, parent: 0, slots: slots('parent', 'matched') },
-  { level: 1, parent: 0, slots: slots('parent', 'added', 'matched') },
-  { level: 2, parent: 3 },
-  { level: 2, parent: 3 },
-]);
+const front = () =>
+  particles([
+    { level: 0, slots: slots('added', 'added', 'added', 'outside', 'outside', 'notConverged') },
+    { level: 1, parent: 0, slots: slots('parent', 'matched', 'matched', 'matched', 'undefined', 'capped') },
+    { level: 1, parent: 0, slots: slots('parent', 'matched') },
+    { level: 1, parent: 0, slots: slots('parent', 'added', 'matched') },
+    { level: 2, parent: 3 },
+    { level: 2, parent: 3 },
+  ]);
 
 describe('the table of levels', () => {
   test('counts the particles of each level and of all up to it', () => {
@@ -54,7 +63,15 @@ describe('the table of levels', () => {
   });
 
   test('reads all ten slots of an adaptive particle', () => {
-    const ten = levelTable(particles([{ level: 0, slots: slots(...new Array(9).fill('matched'), 'added') }, { level: 1, parent: 0 }], true));
+    const ten = levelTable(
+      particles(
+        [
+          { level: 0, slots: slots(...new Array(9).fill('matched'), 'added') },
+          { level: 1, parent: 0 },
+        ],
+        true,
+      ),
+    );
     expect(ten.fates[8 + FATE.matched]).toBe(9);
     expect(ten.fates[8 + FATE.added]).toBe(1);
   });
@@ -75,9 +92,12 @@ describe('a level in words', () => {
 
   test('says where a front starts, and that relaxation has moved it since', () => {
     expect(describeLevel(levelTable(front()), 0, 10)).toEqual({
-      title: 'Level 0 of 2 · 1 new, 1 so far', text: 'The front starts at one point of the surface. Drawn after 10 relaxation steps.',
+      title: 'Level 0 of 2 · 1 new, 1 so far',
+      text: 'The front starts at one point of the surface. Drawn after 10 relaxation steps.',
     });
-    expect(describeLevel(levelTable(particles([{ level: 0 }, { level: 0 }])), 0, 0).text).toBe('2 points of the surface, a front from each.');
+    expect(describeLevel(levelTable(particles([{ level: 0 }, { level: 0 }])), 0, 0).text).toBe(
+      '2 points of the surface, a front from each.',
+    );
   });
 
   test('compares with a plane only where that means something: one front, one size', () => {

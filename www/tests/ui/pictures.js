@@ -23,7 +23,10 @@ const [base = 'http://localhost:4517/', ...wanted] = process.argv.slice(2);
 const folder = fileURLToPath(new URL('../../public/', import.meta.url));
 await mkdir(`${folder}gallery`, { recursive: true });
 
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium', args: ['--no-sandbox'] });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
+  args: ['--no-sandbox'],
+});
 const page = await browser.newPage({ viewport: { width: 480, height: 480 }, colorScheme: 'light' });
 await page.goto(base);
 await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
@@ -36,33 +39,44 @@ const ids = await page.evaluate(() => {
 });
 for (const id of ids) {
   if (wanted.length > 0 && !wanted.includes(id)) continue;
-  const bytes = await page.evaluate(async ({ id, drawn, size, view_rad, initial, rounds }) => {
-    const mp = /** @type {any} */ (window).marchingParticles;
-    await mp.set({ surface: id, settings: { radius_share: 0.0065 }, view: { colour: 'level', size: 1.02, points: false, camera: initial } });
-    mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-    // The fit leaves room to turn; a still picture can fill its frame.
-    const { positions, count } = mp.particles();
-    const { yaw, pitch, distance, target } = mp.state.view.camera;
-    const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
-    // What comes nearer grows: a few rounds find the distance at which the outermost particle is just inside.
-    let near = distance;
-    for (let round = 0; round < rounds; round += 1) {
-      let reach = 0;
-      for (let i = 0; i < count; i += 1) {
-        const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
-        const depth = near - (cy * cp * x + sy * cp * y + sp * z);
-        reach = Math.max(reach, Math.abs(cy * y - sy * x) / depth, Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth);
+  const bytes = await page.evaluate(
+    async ({ id, drawn, size, view_rad, initial, rounds }) => {
+      const mp = /** @type {any} */ (window).marchingParticles;
+      await mp.set({
+        surface: id,
+        settings: { radius_share: 0.0065 },
+        view: { colour: 'level', size: 1.02, points: false, camera: initial },
+      });
+      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+      // The fit leaves room to turn; a still picture can fill its frame.
+      const { positions, count } = mp.particles();
+      const { yaw, pitch, distance, target } = mp.state.view.camera;
+      const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
+      // What comes nearer grows: a few rounds find the distance at which the outermost particle is just inside.
+      let near = distance;
+      for (let round = 0; round < rounds; round += 1) {
+        let reach = 0;
+        for (let i = 0; i < count; i += 1) {
+          const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
+          const depth = near - (cy * cp * x + sy * cp * y + sp * z);
+          reach = Math.max(
+            reach,
+            Math.abs(cy * y - sy * x) / depth,
+            Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth,
+          );
+        }
+        near *= reach / (0.97 * Math.tan(view_rad / 2));
       }
-      near *= reach / (0.97 * Math.tan(view_rad / 2));
-    }
-    mp.engine.zoom(distance / near);
-    const png = await mp.engine.savePng({ width: drawn, height: drawn, transparent: true });
-    const bitmap = await createImageBitmap(png, { resizeWidth: size, resizeHeight: size, resizeQuality: 'high' });
-    const canvas = new OffscreenCanvas(size, size);
-    canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
-    const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.82 });
-    return [...new Uint8Array(await webp.arrayBuffer())];
-  }, { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS });
+      mp.engine.zoom(distance / near);
+      const png = await mp.engine.savePng({ width: drawn, height: drawn, transparent: true });
+      const bitmap = await createImageBitmap(png, { resizeWidth: size, resizeHeight: size, resizeQuality: 'high' });
+      const canvas = new OffscreenCanvas(size, size);
+      canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
+      const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.82 });
+      return [...new Uint8Array(await webp.arrayBuffer())];
+    },
+    { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS },
+  );
   await writeFile(`${folder}gallery/${id}.webp`, new Uint8Array(bytes));
   console.log(`${id} ${bytes.length} bytes`);
 }
@@ -72,28 +86,40 @@ if (wanted.length > 0) {
   process.exit();
 }
 
-const dots = await page.evaluate(async ({ share, size, view_rad, initial }) => {
-  const mp = /** @type {any} */ (window).marchingParticles;
-  await mp.set({ surface: mp.engine.description.value.default_surface, settings: { radius_share: share }, view: { camera: initial } });
-  const { count, positions, normals, radii } = mp.particles();
-  // The page's own camera at its fit, so that the first picture takes the poster's place without a jump.
-  const { yaw, pitch, distance, target } = mp.state.view.camera;
-  const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
-  const [right, up, back] = [[-sy, cy, 0], [-cy * sp, -sy * sp, cp], [cy * cp, sy * cp, sp]];
-  const along = (/** @type {number[]} */ v, /** @type {number[]} */ axis) => v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
-  const front = [];
-  for (let i = 0; i < count; i += 1) {
-    const position = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
-    const depth = distance - along(position, back);
-    const scale = size / (2 * Math.tan(view_rad / 2) * depth);
-    const [x, y] = [along(position, right) * scale, -along(position, up) * scale];
-    const normal = [...normals.slice(3 * i, 3 * i + 3)];
-    const toEye = [0, 1, 2].map((k) => back[k] * distance - position[k]);
-    const facing = along(normal, toEye) / Math.hypot(...toEye);
-    if (facing > 0.04) front.push({ x: x + size / 2, y: y + size / 2, facing, radius: radii[i] * scale });
-  }
-  return { front };
-}, { share: POSTER_SHARE, size: POSTER_PX, view_rad: FIELD_OF_VIEW_RAD, initial });
+const dots = await page.evaluate(
+  async ({ share, size, view_rad, initial }) => {
+    const mp = /** @type {any} */ (window).marchingParticles;
+    await mp.set({
+      surface: mp.engine.description.value.default_surface,
+      settings: { radius_share: share },
+      view: { camera: initial },
+    });
+    const { count, positions, normals, radii } = mp.particles();
+    // The page's own camera at its fit, so that the first picture takes the poster's place without a jump.
+    const { yaw, pitch, distance, target } = mp.state.view.camera;
+    const [cy, sy, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
+    const [right, up, back] = [
+      [-sy, cy, 0],
+      [-cy * sp, -sy * sp, cp],
+      [cy * cp, sy * cp, sp],
+    ];
+    const along = (/** @type {number[]} */ v, /** @type {number[]} */ axis) =>
+      v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
+    const front = [];
+    for (let i = 0; i < count; i += 1) {
+      const position = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
+      const depth = distance - along(position, back);
+      const scale = size / (2 * Math.tan(view_rad / 2) * depth);
+      const [x, y] = [along(position, right) * scale, -along(position, up) * scale];
+      const normal = [...normals.slice(3 * i, 3 * i + 3)];
+      const toEye = [0, 1, 2].map((k) => back[k] * distance - position[k]);
+      const facing = along(normal, toEye) / Math.hypot(...toEye);
+      if (facing > 0.04) front.push({ x: x + size / 2, y: y + size / 2, facing, radius: radii[i] * scale });
+    }
+    return { front };
+  },
+  { share: POSTER_SHARE, size: POSTER_PX, view_rad: FIELD_OF_VIEW_RAD, initial },
+);
 
 // One path per class of foreshortening: a dot is a line of no length with a round cap.
 const classes = 6;
@@ -101,12 +127,14 @@ const paths = Array.from({ length: classes }, (_, k) => {
   const members = dots.front.filter(({ facing }) => Math.min(classes - 1, Math.floor(facing * classes)) === k);
   const width = 2 * 0.88 * dots.front[0].radius * Math.sqrt((k + 0.5) / classes);
   let at = [0, 0];
-  const d = members.map(({ x, y }) => {
-    const [px, py] = [Math.round(x), Math.round(y)];
-    const step = `m${px - at[0]} ${py - at[1]}h0`.replace(' -', '-');
-    at = [px, py];
-    return step;
-  }).join('');
+  const d = members
+    .map(({ x, y }) => {
+      const [px, py] = [Math.round(x), Math.round(y)];
+      const step = `m${px - at[0]} ${py - at[1]}h0`.replace(' -', '-');
+      at = [px, py];
+      return step;
+    })
+    .join('');
   return `<path stroke-width="${width.toFixed(1)}" opacity="${(0.5 + (0.5 * (k + 1)) / classes).toFixed(2)}" d="${d}"/>`;
 }).join('');
 const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${POSTER_PX} ${POSTER_PX}"><style>g{stroke:#b9c1cc}@media(prefers-color-scheme:dark){g{stroke:#5c6470}}</style><g fill="none" stroke-linecap="round">${paths}</g></svg>`;

@@ -4,15 +4,19 @@ import { open, report, scan, settled, state } from './helpers.js';
 /** @typedef {import('@playwright/test').Page} Page */
 
 /** A drag with a file, or with text. @param {Page} page @param {string} type @param {{ name: string, text?: string, bytes?: number } | null} file */
-const drag = (page, type, file) => page.evaluate(({ type, file }) => {
-  const transfer = new DataTransfer();
-  if (file) transfer.items.add(new File([file.bytes ? new Uint8Array(file.bytes) : file.text ?? ''], file.name));
-  else transfer.items.add('words', 'text/plain');
-  const target = document.querySelector('.preview') ?? document.body;
-  const event = new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true });
-  target.dispatchEvent(event);
-  return event.defaultPrevented;
-}, { type, file });
+const drag = (page, type, file) =>
+  page.evaluate(
+    ({ type, file }) => {
+      const transfer = new DataTransfer();
+      if (file) transfer.items.add(new File([file.bytes ? new Uint8Array(file.bytes) : (file.text ?? '')], file.name));
+      else transfer.items.add('words', 'text/plain');
+      const target = document.querySelector('.preview') ?? document.body;
+      const event = new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true });
+      target.dispatchEvent(event);
+      return event.defaultPrevented;
+    },
+    { type, file },
+  );
 
 /** Points on a sphere, with their normals, as an ASCII PLY file. @param {number} count */
 function spherePly(count) {
@@ -27,12 +31,17 @@ function spherePly(count) {
   return `ply\nformat ascii 1.0\nelement vertex ${count}\n${properties}\nend_header\n${rows.join('\n')}\n`;
 }
 
-const dropped = async (/** @type {Page} */ page, /** @type {{ name: string, text?: string, bytes?: number }} */ file) => {
+const dropped = async (
+  /** @type {Page} */ page,
+  /** @type {{ name: string, text?: string, bytes?: number }} */ file,
+) => {
   await drag(page, 'dragover', file);
   await drag(page, 'drop', file);
 };
 
-test('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async ({ page }) => {
+test('a file dragged over the page is shown where it may be dropped, with the formats and the limit', async ({
+  page,
+}) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   const { clean } = await open(page, { width: 1440, height: 900 });
   const overlay = page.locator('.drop');
@@ -58,7 +67,11 @@ test('a file too large is refused at once, with the reason and what to do, and t
   const box = page.locator('.refused');
   await expect(box).toContainText('statue.ply could not be used');
   await expect(box).toContainText('50');
-  await expect(page.locator('.loading ~ [role=status], [role=status].visually-hidden', { hasText: 'statue.ply could not be used' })).toHaveCount(1);
+  await expect(
+    page.locator('.loading ~ [role=status], [role=status].visually-hidden', {
+      hasText: 'statue.ply could not be used',
+    }),
+  ).toHaveCount(1);
   await expect(page.locator('.toast')).toHaveCount(0);
   expect((await report(page)).digest).toBe(digest);
   expect((await scan(page)).violations).toEqual([]);
@@ -96,14 +109,21 @@ test('a model given up on its way leaves the surface as it was', async ({ page }
   const { clean } = await open(page);
   const before = await state(page);
   const { digest } = await report(page);
-  await page.evaluate(() => new Promise((/** @type {(done: void) => void} */ resolve) => {
-    const { engine } = /** @type {any} */ (window).marchingParticles;
-    // Pressed in the page itself: from here a press could come late.
-    engine.loading.subscribe((/** @type {any} */ loading) => {
-      if (loading) setTimeout(() => { /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click(); resolve(); });
-    });
-    /** @type {HTMLElement} */ (document.querySelector('.tile[data-surface="bunny"]')).click();
-  }));
+  await page.evaluate(
+    () =>
+      new Promise((/** @type {(done: void) => void} */ resolve) => {
+        const { engine } = /** @type {any} */ (window).marchingParticles;
+        // Pressed in the page itself: from here a press could come late.
+        engine.loading.subscribe((/** @type {any} */ loading) => {
+          if (loading)
+            setTimeout(() => {
+              /** @type {HTMLElement | null} */ (document.querySelector('.loading .button'))?.click();
+              resolve();
+            });
+        });
+        /** @type {HTMLElement} */ (document.querySelector('.tile[data-surface="bunny"]')).click();
+      }),
+  );
   await expect(page.locator('.loading')).toBeHidden();
   await settled(page);
   expect((await state(page)).surface).toBe(before.surface);
@@ -112,12 +132,19 @@ test('a model given up on its way leaves the surface as it was', async ({ page }
   await clean();
 });
 
-for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) {
-  test(`a model is sampled, tells of its points, and one press leads back to the formula, at ${width} by ${height}`, async ({ page }) => {
+for (const [width, height] of /** @type {const} */ ([
+  [1440, 900],
+  [390, 844],
+])) {
+  test(`a model is sampled, tells of its points, and one press leads back to the formula, at ${width} by ${height}`, async ({
+    page,
+  }) => {
     await page.emulateMedia({ reducedMotion: 'reduce', colorScheme: width < 720 ? 'dark' : 'light' });
     const { clean } = await open(page, { width, height });
     const { formula } = await state(page);
-    const [model] = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.models);
+    const [model] = await page.evaluate(
+      () => /** @type {any} */ (window).marchingParticles.engine.description.value.models,
+    );
     await page.locator(`.tile[data-surface="${model.id}"]`).click();
     await expect(page.locator('.story')).toContainText(model.name);
     await settled(page);
@@ -125,7 +152,8 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
     await expect(page.locator('.story')).toContainText(model.credit);
     await expect(page.locator('.story')).toContainText(`${model.points} points`);
     const facts = page.locator('.facts');
-    for (const word of ['Points', 'Normals', 'Condition number', 'Mean distance', 'Largest distance']) await expect(facts).toContainText(word);
+    for (const word of ['Points', 'Normals', 'Condition number', 'Mean distance', 'Largest distance'])
+      await expect(facts).toContainText(word);
     await expect(page.getByRole('textbox', { name: 'Formula' })).toBeHidden();
     const points = page.getByRole('button', { name: 'Show points' });
     await expect(points).toHaveAttribute('aria-pressed', 'true');
@@ -143,7 +171,9 @@ for (const [width, height] of /** @type {const} */ ([[1440, 900], [390, 844]])) 
   });
 }
 
-test('a dropped file becomes the surface, keeps a tile of its own, and is there again in one press', async ({ page }) => {
+test('a dropped file becomes the surface, keeps a tile of its own, and is there again in one press', async ({
+  page,
+}) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await dropped(page, { name: 'ball.ply', text: spherePly(300) });
   await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();

@@ -15,10 +15,25 @@ const PAGE_SURFACE = 'tanglecube';
 
 /** What the strip of sizes shows, from left to right; `zoom` fills the frame, for which the fit leaves room to turn. */
 const SIZES = [
-  { surface: 'ellipsoid', settings: { sampling: 'adaptive', chord_error: 1.5e-4 }, view: { colour: 'radius' }, zoom: 1.2 },
+  {
+    surface: 'ellipsoid',
+    settings: { sampling: 'adaptive', chord_error: 1.5e-4 },
+    view: { colour: 'radius' },
+    zoom: 1.2,
+  },
   { surface: 'bunny', settings: { radius_share: 0.009 }, view: { colour: 'level', points: true }, zoom: 1.1 },
-  { surface: 'bunny', settings: { sampling: 'adaptive', chord_error: 3e-4 }, view: { colour: 'radius', points: false }, zoom: 1.1 },
-  { surface: 'sack-and-hat', settings: { sampling: 'adaptive', chord_error: 3e-4 }, view: { colour: 'curvature', points: false }, zoom: 1 },
+  {
+    surface: 'bunny',
+    settings: { sampling: 'adaptive', chord_error: 3e-4 },
+    view: { colour: 'radius', points: false },
+    zoom: 1.1,
+  },
+  {
+    surface: 'sack-and-hat',
+    settings: { sampling: 'adaptive', chord_error: 3e-4 },
+    view: { colour: 'curvature', points: false },
+    zoom: 1,
+  },
 ];
 
 /** A frame of the strip, and device pixels per pixel of it. */
@@ -32,7 +47,10 @@ const LEVEL_CAMERA = { yaw: 0.62, pitch: 0.72, fit: true };
 const base = process.argv[2] ?? 'http://localhost:4517/';
 const folder = fileURLToPath(new URL('../../readme/', import.meta.url));
 await mkdir(folder, { recursive: true });
-const browser = await chromium.launch({ executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium', args: ['--no-sandbox'] });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
+  args: ['--no-sandbox'],
+});
 
 /** @param {string} name @param {Uint8Array} bytes */
 async function write(name, bytes) {
@@ -43,14 +61,19 @@ async function write(name, bytes) {
 /** Compresses pictures side by side, in a page without a content security policy. @param {Buffer[]} pngs @param {number} quality */
 async function webp(pngs, quality) {
   const page = await browser.newPage();
-  const bytes = await page.evaluate(async ({ datas, quality }) => {
-    const bitmaps = await Promise.all(datas.map(async (data) => createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())));
-    const { width, height } = bitmaps[0];
-    const canvas = new OffscreenCanvas(width * bitmaps.length, height);
-    const context = canvas.getContext('2d');
-    bitmaps.forEach((bitmap, k) => context?.drawImage(bitmap, k * width, 0));
-    return [...new Uint8Array(await (await canvas.convertToBlob({ type: 'image/webp', quality })).arrayBuffer())];
-  }, { datas: pngs.map((png) => png.toString('base64')), quality });
+  const bytes = await page.evaluate(
+    async ({ datas, quality }) => {
+      const bitmaps = await Promise.all(
+        datas.map(async (data) => createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob())),
+      );
+      const { width, height } = bitmaps[0];
+      const canvas = new OffscreenCanvas(width * bitmaps.length, height);
+      const context = canvas.getContext('2d');
+      for (const [k, bitmap] of bitmaps.entries()) context?.drawImage(bitmap, k * width, 0);
+      return [...new Uint8Array(await (await canvas.convertToBlob({ type: 'image/webp', quality })).arrayBuffer())];
+    },
+    { datas: pngs.map((png) => png.toString('base64')), quality },
+  );
   await page.close();
   return new Uint8Array(bytes);
 }
@@ -66,11 +89,17 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
 }
 
 /** Leaves nothing of the page but the picture. @param {import('@playwright/test').Page} page */
-const onlyThePicture = (page) => page.evaluate(() => {
-  for (let kept = /** @type {Element | null} */ (document.querySelector('canvas')); kept && kept !== document.body; kept = kept.parentElement) {
-    for (const other of kept.parentElement?.children ?? []) if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
-  }
-});
+const onlyThePicture = (page) =>
+  page.evaluate(() => {
+    for (
+      let kept = /** @type {Element | null} */ (document.querySelector('canvas'));
+      kept && kept !== document.body;
+      kept = kept.parentElement
+    ) {
+      for (const other of kept.parentElement?.children ?? [])
+        if (other !== kept && other instanceof HTMLElement) other.style.display = 'none';
+    }
+  });
 
 for (const theme of /** @type {const} */ (['light', 'dark'])) {
   const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
@@ -79,13 +108,16 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await onlyThePicture(page);
   const frames = [];
   for (const { zoom, ...state } of SIZES) {
-    await page.evaluate(async ({ wanted, zoom }) => {
-      const mp = /** @type {any} */ (window).marchingParticles;
-      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-      await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
-      mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-      mp.engine.zoom(zoom);
-    }, { wanted: state, zoom });
+    await page.evaluate(
+      async ({ wanted, zoom }) => {
+        const mp = /** @type {any} */ (window).marchingParticles;
+        mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+        await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
+        mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+        mp.engine.zoom(zoom);
+      },
+      { wanted: state, zoom },
+    );
     await page.waitForTimeout(1500);
     frames.push(await page.screenshot());
   }
@@ -100,16 +132,23 @@ for (const theme of /** @type {const} */ (['light', 'dark'])) {
   await onlyThePicture(page);
   const frames = [];
   for (const level of [...LEVELS, null]) {
-    await page.evaluate(async ({ surface, settings, camera, level }) => {
-      const mp = /** @type {any} */ (window).marchingParticles;
-      const insets = { left: 0, right: 0, top: 0, bottom: 0 };
-      mp.engine.setInsets(insets);
-      // The front as it was placed; at the end, as it was relaxed.
-      const relaxed = level === null ? {} : { relax_steps: 0 };
-      await mp.set({ surface, settings: { ...settings, ...relaxed }, view: { colour: 'level', level, camera: { ...mp.state.view.camera, ...camera } } });
-      mp.engine.setInsets(insets);
-      mp.engine.zoom(1.15);
-    }, { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA, level });
+    await page.evaluate(
+      async ({ surface, settings, camera, level }) => {
+        const mp = /** @type {any} */ (window).marchingParticles;
+        const insets = { left: 0, right: 0, top: 0, bottom: 0 };
+        mp.engine.setInsets(insets);
+        // The front as it was placed; at the end, as it was relaxed.
+        const relaxed = level === null ? {} : { relax_steps: 0 };
+        await mp.set({
+          surface,
+          settings: { ...settings, ...relaxed },
+          view: { colour: 'level', level, camera: { ...mp.state.view.camera, ...camera } },
+        });
+        mp.engine.setInsets(insets);
+        mp.engine.zoom(1.15);
+      },
+      { surface: LEVEL_SURFACE, settings: LEVEL_SETTINGS, camera: LEVEL_CAMERA, level },
+    );
     await page.waitForTimeout(500);
     frames.push(await page.screenshot());
   }

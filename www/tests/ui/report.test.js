@@ -2,12 +2,22 @@ import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, overDiameters, trim } from '../../src/ui/report/bins.js';
 import { compare, figuresOf, groupRows, isTold, valueAt, writeFigure, writeRange } from '../../src/ui/report/rows.js';
-import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 import { wantsSlider } from '../../src/ui/scale.js';
+import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 
 beforeAll(() => setLocale('en'));
 /** @param {Partial<import('../../src/engine/types.js').ReportRow>} [change] */
-const row = (change) => ({ key: 'quality.six', label: 'Valence six', group: 'Order', unit: '%', digits: 1, ideal: '100', better: /** @type {const} */ ('higher'), help: '', ...change });
+const row = (change) => ({
+  key: 'quality.six',
+  label: 'Valence six',
+  group: 'Order',
+  unit: '%',
+  digits: 1,
+  ideal: '100',
+  better: /** @type {const} */ ('higher'),
+  help: '',
+  ...change,
+});
 
 describe('the report', () => {
   it('finds figures by their path, and the same before relaxation', () => {
@@ -34,7 +44,9 @@ describe('the report', () => {
 
   it('writes a range as its ends, or as one figure', () => {
     const radius = row({ key: 'radius_min', to: 'radius_max', unit: '', digits: 4 });
-    expect(writeRange(radius, /** @type {any} */ ({ radius_min: 0.01234, radius_max: 0.1 }))).toBe('0.0123\u202f–\u202f0.1');
+    expect(writeRange(radius, /** @type {any} */ ({ radius_min: 0.01234, radius_max: 0.1 }))).toBe(
+      '0.0123\u202f–\u202f0.1',
+    );
     expect(writeRange(radius, /** @type {any} */ ({ radius_min: 0.02, radius_max: 0.02 }))).toBe('0.02');
   });
 
@@ -47,7 +59,12 @@ describe('the report', () => {
   });
 
   it('leaves out what a run says nothing of', () => {
-    const report = /** @type {any} */ ({ undecided_cells: null, count: 0, quality: { six: null }, quality_before: { six: 0.9 } });
+    const report = /** @type {any} */ ({
+      undecided_cells: null,
+      count: 0,
+      quality: { six: null },
+      quality_before: { six: 0.9 },
+    });
     expect(isTold(report, { key: 'count' })).toBe(true);
     expect(isTold(report, { key: 'undecided_cells' })).toBe(false);
     expect(isTold(report, { key: 'not_there' })).toBe(false);
@@ -59,15 +76,24 @@ describe('the report', () => {
 
   it('groups rows in the order of their first member', () => {
     const groups = groupRows([row({ group: 'B' }), row({ group: 'A' }), row({ group: 'B', key: 'x' })]);
-    expect([...groups].map(([name, rows]) => [name, rows.length])).toEqual([['B', 2], ['A', 1]]);
+    expect([...groups].map(([name, rows]) => [name, rows.length])).toEqual([
+      ['B', 2],
+      ['A', 1],
+    ]);
   });
 });
 
 describe('histogram bins', () => {
   it('measure every distance of an adaptive run by its own particle', () => {
     const { min, max, bins } = overDiameters([0.2, 1.99, 20, 500, NaN], [0.1, 1, 10, 10, 1]);
-    const found = bins.flatMap((count, i) => (count ? [[Math.round((min + (i * (max - min)) / bins.length) * 100) / 100, count]] : []));
-    expect(found).toEqual([[0.99, 1], [1, 2], [1.19, 1]]);
+    const found = bins.flatMap((count, i) =>
+      count ? [[Math.round((min + (i * (max - min)) / bins.length) * 100) / 100, count]] : [],
+    );
+    expect(found).toEqual([
+      [0.99, 1],
+      [1, 2],
+      [1.19, 1],
+    ]);
   });
 
   it('keep every particle when they are made wider', () => {
@@ -96,7 +122,14 @@ describe('histogram bins', () => {
 });
 
 describe('the caption', () => {
-  const progress = /** @type {any} */ ({ phase: 'generation', level: 12, particles: 1463, relax_step: 4, relax_steps: 10, stop_reason: null });
+  const progress = /** @type {any} */ ({
+    phase: 'generation',
+    level: 12,
+    particles: 1463,
+    relax_step: 4,
+    relax_steps: 10,
+    stop_reason: null,
+  });
   const facts = { partial: false, empty: false, busy: true, seconds: null };
 
   it('names the level and the count while the front grows', () => {
@@ -105,15 +138,23 @@ describe('the caption', () => {
   });
 
   it('tells how far a model on its way is', () => {
-    expect(loadingOf({ id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.416 })).toBe('Bunny · Solving · 42%');
+    expect(loadingOf({ id: 'bunny', name: 'Bunny', stage: 'solving', label: 'Solving', fraction: 0.416 })).toBe(
+      'Bunny · Solving · 42%',
+    );
   });
 
   it('says so when a run was stopped or met its limit', () => {
     const done = { ...progress, phase: 'done' };
-    expect(captionOf({ ...done, stop_reason: 'cancelled' }, { ...facts, busy: false, partial: true })).toBe('Stopped · 1,463 particles');
+    expect(captionOf({ ...done, stop_reason: 'cancelled' }, { ...facts, busy: false, partial: true })).toBe(
+      'Stopped · 1,463 particles',
+    );
     expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false })).toBe('');
-    expect(captionOf({ ...done, stop_reason: 'cap' }, { ...facts, busy: false, partial: true })).toBe('Stopped at the limit · 1,463 particles');
-    expect(captionOf({ ...done, stop_reason: 'complete' }, { ...facts, busy: false, seconds: 0.05 })).toBe('1,463 particles · 50\u202fms');
+    expect(captionOf({ ...done, stop_reason: 'cap' }, { ...facts, busy: false, partial: true })).toBe(
+      'Stopped at the limit · 1,463 particles',
+    );
+    expect(captionOf({ ...done, stop_reason: 'complete' }, { ...facts, busy: false, seconds: 0.05 })).toBe(
+      '1,463 particles · 50\u202fms',
+    );
     expect(captionOf({ ...done, particles: 0 }, { ...facts, busy: false, empty: true })).toBe('');
   });
 });

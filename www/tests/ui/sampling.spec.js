@@ -3,7 +3,9 @@ import { atRest, open, report, settled, state, typeFormula } from './helpers.js'
 
 test('the settings are those that the core describes, each with its help', async ({ page }) => {
   await open(page);
-  const settings = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.description.value.settings);
+  const settings = await page.evaluate(
+    () => /** @type {any} */ (window).marchingParticles.engine.description.value.settings,
+  );
   await expect(page.locator('.setting')).toHaveCount(settings.length);
   await page.getByRole('button', { name: 'Advanced' }).click();
   for (const { name, label, help } of settings) {
@@ -16,7 +18,8 @@ test('the settings are those that the core describes, each with its help', async
 });
 
 /** @param {import('@playwright/test').Page} page */
-const shownSettings = (page) => page.locator('.setting:visible').evaluateAll((all) => all.map((one) => one.getAttribute('data-setting')));
+const shownSettings = (page) =>
+  page.locator('.setting:visible').evaluateAll((all) => all.map((one) => one.getAttribute('data-setting')));
 
 test('Uniform and Adaptive each show their own settings, and the bar keeps its height', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
@@ -64,17 +67,27 @@ test('a slider that goes away under the hand keeps its value', async ({ page }) 
 });
 
 for (const device of ['desk', 'phone']) {
-  test(`more particles than the memory of a ${device} holds are refused in words, and fewer are sampled`, async ({ browser }) => {
-    const phone = device === 'phone' ? { userAgent: 'Mozilla/5.0 (Linux; Android 14) AppleWebKit/537.36 Chrome/140.0.0.0 Mobile Safari/537.36', isMobile: true, hasTouch: true } : {};
+  test(`more particles than the memory of a ${device} holds are refused in words, and fewer are sampled`, async ({
+    browser,
+  }) => {
+    const phone =
+      device === 'phone'
+        ? {
+            userAgent: 'Mozilla/5.0 (Linux; Android 14) AppleWebKit/537.36 Chrome/140.0.0.0 Mobile Safari/537.36',
+            isMobile: true,
+            hasTouch: true,
+          }
+        : {};
     const context = await browser.newContext(phone);
     const page = await context.newPage();
     const { clean } = await open(page);
-    const count = (/** @type {number} */ n) => page.evaluate((wanted) => {
-      const { engine } = /** @type {any} */ (window).marchingParticles;
-      engine.setSetting('max_particles', wanted);
-      engine.setSetting('size_mode', 'count');
-      engine.setSetting('count', wanted);
-    }, n);
+    const count = (/** @type {number} */ n) =>
+      page.evaluate((wanted) => {
+        const { engine } = /** @type {any} */ (window).marchingParticles;
+        engine.setSetting('max_particles', wanted);
+        engine.setSetting('size_mode', 'count');
+        engine.setSetting('count', wanted);
+      }, n);
     const toast = page.locator('.toast');
     // 512 MB on a desk, 256 MB on a phone: about 1.4 and 0.7 million.
     await count(1_000_000);
@@ -82,7 +95,9 @@ for (const device of ['desk', 'phone']) {
       await expect(toast).toContainText('There is not enough memory for about 1000000 particles');
       await count(5000);
     } else {
-      await expect.poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.progress.value.particles)).toBeGreaterThan(200_000);
+      await expect
+        .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.progress.value.particles))
+        .toBeGreaterThan(200_000);
       await count(2_000_000);
       await expect(toast).toContainText('There is not enough memory for about 2000000 particles');
       await count(5000);
@@ -139,7 +154,9 @@ test('a double click on Relax one step is one step', async ({ page }) => {
   const { relax_steps } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress);
   await page.getByRole('button', { name: 'Relax one step' }).dblclick();
   await settled(page);
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress.relax_step)).toBe(relax_steps + 1);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().progress.relax_step)).toBe(
+    relax_steps + 1,
+  );
 });
 
 test('typing a radius samples with it', async ({ page }) => {
@@ -177,12 +194,21 @@ test('the particles and the picture can be taken away', async ({ page }) => {
   await open(page);
   const count = (await report(page)).count;
   await page.getByRole('button', { name: 'Export', exact: true }).click();
-  const [csv] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: /Export CSV/ }).click()]);
+  const [csv] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: /Export CSV/ }).click(),
+  ]);
   expect(csv.suggestedFilename()).toMatch(/^ellipsoid-\d+\.csv$/);
   const { readFile } = await import('node:fs/promises');
-  const lines = (await readFile(await csv.path(), 'utf8')).trim().split('\n').filter((line) => !line.startsWith('#'));
+  const lines = (await readFile(await csv.path(), 'utf8'))
+    .trim()
+    .split('\n')
+    .filter((line) => !line.startsWith('#'));
   expect(lines.length).toBe(count + 1);
-  const [png] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save picture' }).click()]);
+  const [png] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Save picture' }).click(),
+  ]);
   expect((await readFile(await png.path())).subarray(1, 4).toString()).toBe('PNG');
 });
 
@@ -195,14 +221,16 @@ test('more particles than the limit are asked for first, and the answer is heede
   await limit.press('Enter');
   const notice = page.locator('.toast');
   await expect(notice).toContainText('limit is 2,000');
-  expect((await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count))).toBe(before.count);
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.particles().count)).toBe(before.count);
   await notice.getByRole('button', { name: 'Sample them anyway' }).click();
   await settled(page);
   expect((await report(page)).count).toBe(before.count);
   expect((await state(page)).settings.max_particles).toBeGreaterThan(before.count);
 });
 
-test('no surface in the box is said in words, with a way out; the last surface stays, dimmed, where it was', async ({ page }) => {
+test('no surface in the box is said in words, with a way out; the last surface stays, dimmed, where it was', async ({
+  page,
+}) => {
   await open(page);
   const before = (await state(page)).view.camera;
   await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
@@ -259,7 +287,8 @@ test('a stopped run is labelled and keeps what it has', async ({ page }) => {
   await page.waitForFunction(() => {
     const { busy, progress } = /** @type {any} */ (window).marchingParticles.status();
     if (!(busy && progress.radius > 0 && progress.radius < 0.002 && progress.particles > 100)) return false;
-    for (const button of document.querySelectorAll('.actions .button')) if (button.textContent === 'Stop') /** @type {HTMLElement} */ (button).click();
+    for (const button of document.querySelectorAll('.actions .button'))
+      if (button.textContent === 'Stop') /** @type {HTMLElement} */ (button).click();
     return true;
   });
   await expect(page.locator('.caption')).toContainText('Stopped');

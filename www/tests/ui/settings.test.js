@@ -2,11 +2,26 @@ import { describe, expect, it } from 'vitest';
 import { arrange, countChanged, isSegmented, isShown } from '../../src/ui/sampling/settings.js';
 
 /** @param {object} change */
-const setting = (change) => /** @type {any} */ ({ name: 'radius', label: 'Radius', group: 'Sampling', kind: 'number', default: 1, when: [], ...change });
+const setting = (change) =>
+  /** @type {any} */ ({
+    name: 'radius',
+    label: 'Radius',
+    group: 'Sampling',
+    kind: 'number',
+    default: 1,
+    when: [],
+    ...change,
+  });
 const choices = (/** @type {string[]} */ ...labels) => labels.map((label) => ({ value: label, label }));
 const kind = setting({ name: 'sampling', kind: 'choice', default: 'uniform', choices: choices('uniform', 'adaptive') });
 const law = setting({ name: 'law', kind: 'choice', default: 'chord', when: [{ name: 'sampling', value: 'adaptive' }] });
-const scale = setting({ name: 'scale', when: [{ name: 'sampling', value: 'adaptive' }, { name: 'law', value: 'chord', equal: false }] });
+const scale = setting({
+  name: 'scale',
+  when: [
+    { name: 'sampling', value: 'adaptive' },
+    { name: 'law', value: 'chord', equal: false },
+  ],
+});
 const seed = setting({ name: 'seed', group: 'Advanced', default: 0 });
 const all = [kind, law, scale, seed];
 
@@ -30,7 +45,11 @@ describe('the settings', () => {
 
   it('are chosen side by side where there are two or three short values', () => {
     expect(isSegmented(kind)).toBe(true);
-    expect(isSegmented(setting({ kind: 'choice', choices: choices('Chord error', 'Largest curvature', 'Sum of curvatures') }))).toBe(false);
+    expect(
+      isSegmented(
+        setting({ kind: 'choice', choices: choices('Chord error', 'Largest curvature', 'Sum of curvatures') }),
+      ),
+    ).toBe(false);
     expect(isSegmented(setting({ kind: 'choice', choices: choices('a', 'b', 'c', 'd') }))).toBe(false);
     expect(isSegmented(setting({ kind: 'choice', choices: choices('a') }))).toBe(false);
     expect(isSegmented(setting({ choices: choices('a', 'b') }))).toBe(false);

@@ -5,9 +5,13 @@ const sources = new URL('../../src/', import.meta.url);
 
 // What a script imports the development server would write into the page, whose policy forbids that.
 it('every style comes through the one sheet that the page links', () => {
-  const scripts = readdirSync(sources, { recursive: true, encoding: 'utf8' }).filter((name) => name.endsWith('.js') && !name.startsWith('wasm/'));
+  const scripts = readdirSync(sources, { recursive: true, encoding: 'utf8' }).filter(
+    (name) => name.endsWith('.js') && !name.startsWith('wasm/'),
+  );
   expect(scripts).toContain('main.js');
-  const importing = scripts.filter((name) => /import\s*\(?\s*['"`][^'"`]*\.css/.test(readFileSync(new URL(name, sources), 'utf8')));
+  const importing = scripts.filter((name) =>
+    /import\s*\(?\s*['"`][^'"`]*\.css/.test(readFileSync(new URL(name, sources), 'utf8')),
+  );
   expect(importing).toEqual([]);
 
   const linked = readFileSync(new URL('styles/index.css', sources), 'utf8');

@@ -8,7 +8,8 @@ test('a particle under the pointer tells what it is', async ({ page }) => {
   await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2 + 3, { steps: 3 });
   const card = page.locator('.hover-card');
   await expect(card).toBeVisible();
-  for (const row of ['Particle', 'Level', 'Parent', 'Position', 'Neighbours', 'Residual']) await expect(card).toContainText(row);
+  for (const row of ['Particle', 'Level', 'Parent', 'Position', 'Neighbours', 'Residual'])
+    await expect(card).toContainText(row);
   await page.mouse.move(view.x + 4, view.y + view.height / 2, { steps: 3 });
   await expect(card).toBeHidden();
   await clean();
@@ -32,7 +33,9 @@ for (const width of [1280, 320]) {
   test(`the name of every colouring can be read in full at ${width} pixels`, async ({ page }) => {
     await open(page, { width, height: 640 });
     const choose = page.getByRole('combobox', { name: 'Colour by' });
-    const ids = await choose.locator('option').evaluateAll((options) => options.map((option) => /** @type {HTMLOptionElement} */ (option).value));
+    const ids = await choose
+      .locator('option')
+      .evaluateAll((options) => options.map((option) => /** @type {HTMLOptionElement} */ (option).value));
     expect(ids.length).toBeGreaterThan(4);
     for (const id of ids) {
       await choose.selectOption(id);

@@ -33,7 +33,11 @@ export class PointsClient {
    * @param {(progress: Extract<FromPoints, {type: 'progress'}>) => void} options.onProgress
    * @param {{setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} [options.clock]
    */
-  constructor({ spawn, onProgress, clock = { setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) } }) {
+  constructor({
+    spawn,
+    onProgress,
+    clock = { setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout: (id) => clearTimeout(id) },
+  }) {
     this.spawn = spawn;
     this.onProgress = onProgress;
     this.clock = clock;
@@ -68,8 +72,12 @@ export class PointsClient {
         if ('solved' in outcome) this.solved.set(key, outcome.solved);
         resolve(outcome);
       };
-      const refuse = (/** @type {string} */ kind, /** @type {string} */ message, /** @type {string} */ details = '', /** @type {number | null} */ line = null) =>
-        end({ refusal: { kind, message, details, line } });
+      const refuse = (
+        /** @type {string} */ kind,
+        /** @type {string} */ message,
+        /** @type {string} */ details = '',
+        /** @type {number | null} */ line = null,
+      ) => end({ refusal: { kind, message, details, line } });
       const listen = () => {
         this.clock.clearTimeout(timer);
         timer = this.clock.setTimeout(() => refuse('silent', 'the solver fell silent and was stopped'), SILENCE_MS);
@@ -77,11 +85,21 @@ export class PointsClient {
       worker.onmessage = ({ data }) => {
         listen();
         switch (data.type) {
-          case 'progress': this.onProgress(data); break;
-          case 'solved': end({ solved: data.solved }); break;
-          case 'refused': refuse(data.kind, data.message, '', data.line); break;
-          case 'crashed': refuse('crashed', 'the solver stopped on an error', `${data.message}\n${data.stack}`); break;
-          case 'failed': refuse('bundle', data.message); break;
+          case 'progress':
+            this.onProgress(data);
+            break;
+          case 'solved':
+            end({ solved: data.solved });
+            break;
+          case 'refused':
+            refuse(data.kind, data.message, '', data.line);
+            break;
+          case 'crashed':
+            refuse('crashed', 'the solver stopped on an error', `${data.message}\n${data.stack}`);
+            break;
+          case 'failed':
+            refuse('bundle', data.message);
+            break;
           default:
         }
       };

@@ -104,7 +104,11 @@ export class ModelLoader {
   async openFile(file) {
     if (file.size > LARGEST_FILE_BYTES) {
       const mb = (/** @type {number} */ bytes) => Math.round(bytes / 1e6).toLocaleString();
-      this.refused(FILE_SURFACE, file.name, { kind: 'too_large', message: `the file has ${mb(file.size)} MB; up to ${mb(LARGEST_FILE_BYTES)} MB are read`, line: null });
+      this.refused(FILE_SURFACE, file.name, {
+        kind: 'too_large',
+        message: `the file has ${mb(file.size)} MB; up to ${mb(LARGEST_FILE_BYTES)} MB are read`,
+        line: null,
+      });
       return;
     }
     this.files += 1;

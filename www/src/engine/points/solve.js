@@ -50,7 +50,7 @@ export async function solve(points, order, env) {
     begun = JSON.parse(points.file(order.file.name, bytes, USUAL_CENTRES));
   }
   if (!begun.ok) return refuse(begun.error);
-  for (let budget = FIRST_BUDGET; ;) {
+  for (let budget = FIRST_BUDGET; ; ) {
     const before = env.now_ms();
     const step = JSON.parse(points.step(budget));
     if (!step.ok) return refuse(step.error);
@@ -62,5 +62,8 @@ export async function solve(points, order, env) {
   const info = JSON.parse(points.info());
   if (!info.ok) return refuse(info.error);
   const [field, centres] = [points.field(), points.centres()];
-  env.post({ type: 'solved', solved: { field, centres, info: { info: info.info, bounds: info.bounds } } }, [field.buffer, centres.buffer]);
+  env.post({ type: 'solved', solved: { field, centres, info: { info: info.info, bounds: info.bounds } } }, [
+    field.buffer,
+    centres.buffer,
+  ]);
 }

@@ -35,8 +35,16 @@ self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
     return;
   }
   try {
-    await solve(points, order, { now_ms: () => performance.now(), pause: () => new Promise((resolve) => setTimeout(resolve)), post });
+    await solve(points, order, {
+      now_ms: () => performance.now(),
+      pause: () => new Promise((resolve) => setTimeout(resolve)),
+      post,
+    });
   } catch (error) {
-    post({ type: 'crashed', message: last_words || words(error), stack: error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '' });
+    post({
+      type: 'crashed',
+      message: last_words || words(error),
+      stack: error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '',
+    });
   }
 };

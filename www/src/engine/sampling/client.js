@@ -52,7 +52,8 @@ import { Supervisor } from './supervisor.js';
  */
 
 /** The id under which a run's input is compared with another's. @param {RunRequest} request */
-const inputOf = (request) => JSON.stringify(request.kind === 'sample' ? [request.field, request.settings] : ['relax', request.steps]);
+const inputOf = (request) =>
+  JSON.stringify(request.kind === 'sample' ? [request.field, request.settings] : ['relax', request.steps]);
 
 export class SamplingClient {
   /**
@@ -125,8 +126,8 @@ export class SamplingClient {
   /** @param {SampleRequest} request */
   costOf({ field, settings }) {
     const key = costKey(field, settings);
-    let cost = this.costs.get(key);
-    if (!cost) this.costs.set(key, (cost = new CostModel()));
+    const cost = this.costs.get(key) ?? new CostModel();
+    this.costs.set(key, cost);
     return cost;
   }
 
@@ -137,7 +138,12 @@ export class SamplingClient {
     const { running } = this.scheduler;
     // A second Run with the same input while the first is under way would only begin again. After a fault it says that there is none
     // any more, and of a surface that was only restored that it is the one asked for.
-    const same = running && running.id > this.stopping && !running.request.live && !running.request.restoring && inputOf(running.request) === inputOf(request);
+    const same =
+      running &&
+      running.id > this.stopping &&
+      !running.request.live &&
+      !running.request.restoring &&
+      inputOf(running.request) === inputOf(request);
     if (!same || request.live || this.store.fieldError.value) this.scheduler.submit(request);
   }
 
@@ -147,12 +153,15 @@ export class SamplingClient {
    */
   sampleLive(request, diagonal) {
     const now = this.now_ms();
-    if (!this.drag || now - this.drag.quiet_ms > 1000) this.drag = { requested: 0, latencies: [], coarse: false, particles: 0, quiet_ms: now };
+    if (!this.drag || now - this.drag.quiet_ms > 1000)
+      this.drag = { requested: 0, latencies: [], coarse: false, particles: 0, quiet_ms: now };
     this.drag.requested += 1;
     this.drag.quiet_ms = now;
     const plan = planLive(request.settings, diagonal, this.costOf(request));
     this.drag.coarse ||= plan.coarse;
-    const settings = this.store.description.value ? clampSettings(this.store.description.value, plan.settings) : plan.settings;
+    const settings = this.store.description.value
+      ? clampSettings(this.store.description.value, plan.settings)
+      : plan.settings;
     this.scheduler.submit({ ...request, settings, coarse: plan.coarse, live: true, grow: false });
   }
 
@@ -183,16 +192,34 @@ export class SamplingClient {
       return;
     }
     /** @type {Run} */
-    const run = { id, request, bounds: null, begun: false, ended: false, over: false, predicted: 0, since_ms: this.now_ms() };
+    const run = {
+      id,
+      request,
+      bounds: null,
+      begun: false,
+      ended: false,
+      over: false,
+      predicted: 0,
+      since_ms: this.now_ms(),
+    };
     /** @type {Job} */
-    const job = request.kind === 'relax'
-      ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
-      : {
-        kind: 'sample', id, field: request.field, settings: request.settings, grow: request.grow, live: request.live,
-        points: (request.field.points !== undefined && this.solved(request.field.points)) || null,
-        // A drag is never asked about: it stops at the limit.
-        ask_above: request.confirmed || request.live || request.restoring ? Number.MAX_SAFE_INTEGER : Number(request.settings.max_particles),
-      };
+    const job =
+      request.kind === 'relax'
+        ? { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true }
+        : {
+            kind: 'sample',
+            id,
+            field: request.field,
+            settings: request.settings,
+            grow: request.grow,
+            live: request.live,
+            points: (request.field.points !== undefined && this.solved(request.field.points)) || null,
+            // A drag is never asked about: it stops at the limit.
+            ask_above:
+              request.confirmed || request.live || request.restoring
+                ? Number.MAX_SAFE_INTEGER
+                : Number(request.settings.max_particles),
+          };
     this.supervisor.post({ type: 'job', job });
     if (request.kind === 'relax') {
       this.begin(run);
@@ -212,7 +239,12 @@ export class SamplingClient {
       // Too many particles were asked for before: no longer.
       if (!request.restoring && store.notice.value?.id === 'size') store.notice.value = null;
     }
-    store.progress.value = { ...idleProgress(), run: id, live: request.live, phase: request.kind === 'relax' ? 'relaxation' : 'seeding' };
+    store.progress.value = {
+      ...idleProgress(),
+      run: id,
+      live: request.live,
+      phase: request.kind === 'relax' ? 'relaxation' : 'seeding',
+    };
     this.attend();
   }
 
@@ -287,7 +319,7 @@ export class SamplingClient {
   fieldAnswered(id, answer) {
     const { store, current } = this;
     const run = this.answered(id);
-    if (!run || run.request.kind !== 'sample') return;
+    if (run?.request.kind !== 'sample') return;
     const { request } = run;
     batch(() => {
       if (answer.ok) {
@@ -296,14 +328,16 @@ export class SamplingClient {
         this.accepted = request;
         if (request.restoring) return;
         this.astray = false;
-        store.field.value = request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
+        store.field.value =
+          request.field.points !== undefined ? { ...answer, surface: request.field.surface ?? null } : answer;
         store.model.value = answer.model ?? null;
         store.fieldError.value = null;
         store.fieldPreview.value = answer.mathml;
       } else {
         store.fieldError.value = answer.error;
         store.fieldPreview.value = answer.mathml ?? null;
-        if (!current) store.progress.value = { ...idleProgress(), run: id, phase: 'done', particles: this.columns.count };
+        if (!current)
+          store.progress.value = { ...idleProgress(), run: id, phase: 'done', particles: this.columns.count };
         this.dim();
         this.attend();
         this.scheduler.ended(id, current && !current.ended ? current : null);
@@ -327,7 +361,13 @@ export class SamplingClient {
     const { request } = /** @type {NonNullable<SamplingClient['shown']>} */ (this.shown);
     const settings = { ...request.settings, relax_steps: Number(request.settings.relax_steps) + steps };
     const { value: description } = this.store.description;
-    return { ...request, live: false, grow: false, fit: false, settings: description ? clampSettings(description, settings) : settings };
+    return {
+      ...request,
+      live: false,
+      grow: false,
+      fit: false,
+      settings: description ? clampSettings(description, settings) : settings,
+    };
   }
 
   /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
@@ -412,14 +452,29 @@ export class SamplingClient {
         store.empty.value = none;
         store.revision.value += 1;
         store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
-        if (progress) store.progress.value = { ...progress, run: current.id, live: request.live, phase: message.report_follows ? 'quality' : 'done' };
+        if (progress)
+          store.progress.value = {
+            ...progress,
+            run: current.id,
+            live: request.live,
+            phase: message.report_follows ? 'quality' : 'done',
+          };
         this.note(seconds, particles, progress?.relax_step ?? 0, progress?.radius ?? 0, current);
         if (request.fit && particles > 0) picture.fit();
       } else {
         // The surface before stays; a run of the same that was stopped at once leaves it what it was.
         const wanted = request.kind === 'sample' ? request : this.accepted;
-        this.astray = request.restoring || outcome !== 'stopped' || JSON.stringify(this.shown?.request.field) !== JSON.stringify(wanted?.field);
-        store.progress.value = { ...idleProgress(), run: current.id, phase: 'done', particles: columns.count, message: message.message || null };
+        this.astray =
+          request.restoring ||
+          outcome !== 'stopped' ||
+          JSON.stringify(this.shown?.request.field) !== JSON.stringify(wanted?.field);
+        store.progress.value = {
+          ...idleProgress(),
+          run: current.id,
+          phase: 'done',
+          particles: columns.count,
+          message: message.message || null,
+        };
         this.dim();
         if (outcome === 'refused') {
           const { message: text } = message;
@@ -442,8 +497,15 @@ export class SamplingClient {
   note(seconds, particles, relax_steps, radius, { request, since_ms }) {
     const total = seconds.seeding + seconds.generation + seconds.relaxation;
     const cost = this.costOf(request.kind === 'sample' ? request : (this.accepted ?? this.whole()));
-    if (request.kind === 'sample') cost.record({ seconds, particles, relax_steps, size: this.sizeOf(request.settings, radius) });
-    this.store.timing.value = { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live: request.live };
+    if (request.kind === 'sample')
+      cost.record({ seconds, particles, relax_steps, size: this.sizeOf(request.settings, radius) });
+    this.store.timing.value = {
+      total,
+      seconds,
+      us_per_particle: particles > 0 ? (total * 1e6) / particles : 0,
+      particles,
+      live: request.live,
+    };
     const { drag } = this;
     if (request.live && drag) {
       const latency = this.now_ms() - since_ms;
@@ -453,7 +515,11 @@ export class SamplingClient {
       drag.particles = particles;
       const sorted = [...drag.latencies].sort((a, b) => a - b);
       this.store.lastDrag.value = {
-        requested: drag.requested, shown: drag.latencies.length, latency_ms: sorted[sorted.length >> 1], particles, coarse: drag.coarse,
+        requested: drag.requested,
+        shown: drag.latencies.length,
+        latency_ms: sorted[sorted.length >> 1],
+        particles,
+        coarse: drag.coarse,
       };
     }
   }
@@ -480,7 +546,13 @@ export class SamplingClient {
       store.report.value = message.report;
       store.revision.value += 1;
       store.progress.value = { ...store.progress.value, phase: 'done' };
-      store.timing.value = { total, seconds, us_per_particle: ((total - seconds.quality) * 1e6) / Math.max(1, count), particles: count, live: false };
+      store.timing.value = {
+        total,
+        seconds,
+        us_per_particle: ((total - seconds.quality) * 1e6) / Math.max(1, count),
+        particles: count,
+        live: false,
+      };
     });
     picture.recolour(0, columns.count);
     current.over = true;
@@ -499,7 +571,9 @@ export class SamplingClient {
       `job: ${lost ? JSON.stringify(lost) : 'none'}`,
       `restarts in the last minute: ${crash.restarts}`,
       typeof navigator === 'undefined' ? '' : navigator.userAgent,
-    ].filter(Boolean).join('\n');
+    ]
+      .filter(Boolean)
+      .join('\n');
   }
 
   /**
@@ -510,7 +584,8 @@ export class SamplingClient {
     const { shown, current } = this;
     const dropped = this.scheduler.drop();
     let lost = dropped?.kind === 'sample' ? dropped : null;
-    if (!lost && shown && (dropped || !shown.reported)) lost = this.relaxed(dropped?.kind === 'relax' && !current?.begun ? dropped.steps : 0);
+    if (!lost && shown && (dropped || !shown.reported))
+      lost = this.relaxed(dropped?.kind === 'relax' && !current?.begun ? dropped.steps : 0);
     this.current = null;
     this.asked.clear();
     this.held = 0;
@@ -527,11 +602,17 @@ export class SamplingClient {
     const input = lost ? inputOf(lost) : '';
     const again = lost !== null && input !== this.crashed_input;
     this.crashed_input = input;
-    const what = crash.cause === 'hang' ? 'The sampler fell silent and was restarted.' : 'The sampler stopped on an error and was restarted.';
+    const what =
+      crash.cause === 'hang'
+        ? 'The sampler fell silent and was restarted.'
+        : 'The sampler stopped on an error and was restarted.';
     this.store.notice.value = {
       id: crash.cause,
       kind: again || !lost ? 'warn' : 'error',
-      text: again || !lost ? `${what} Nothing was lost.` : `${what} The same input stopped it twice: change the formula or a setting.`,
+      text:
+        again || !lost
+          ? `${what} Nothing was lost.`
+          : `${what} The same input stopped it twice: change the formula or a setting.`,
       details: this.describeCrash(crash, lost),
     };
     if (!again) {
@@ -557,7 +638,13 @@ export class SamplingClient {
   /** @param {string} text */
   loadFailed(text) {
     this.forget();
-    this.store.notice.value = { id: 'load', kind: 'error', text, details: text, action: { label: 'Try again', run: () => this.revive() } };
+    this.store.notice.value = {
+      id: 'load',
+      kind: 'error',
+      text,
+      details: text,
+      action: { label: 'Try again', run: () => this.revive() },
+    };
   }
 
   revive() {

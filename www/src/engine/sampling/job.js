@@ -73,7 +73,11 @@ export function nextBudget(/** @type {number} */ budget, /** @type {number} */ t
 
 /** Columns of no particle. */
 const none = () => ({
-  positions: new Float32Array(0), normals: new Float32Array(0), radii: new Float32Array(0), levels: new Uint32Array(0), parents: new Uint32Array(0),
+  positions: new Float32Array(0),
+  normals: new Float32Array(0),
+  radii: new Float32Array(0),
+  levels: new Uint32Array(0),
+  parents: new Uint32Array(0),
 });
 
 /**
@@ -85,7 +89,18 @@ export function curvatureColumn(core, id) {
   const curvature = core.curvature(0);
   const total = core.count();
   return [
-    { type: 'columns', id, first: total, total, ...none(), slots_from: total, slots: new Uint32Array(0), curvature_from: 0, curvature, progress: null },
+    {
+      type: 'columns',
+      id,
+      first: total,
+      total,
+      ...none(),
+      slots_from: total,
+      slots: new Uint32Array(0),
+      curvature_from: 0,
+      curvature,
+      progress: null,
+    },
     [curvature.buffer],
   ];
 }
@@ -130,7 +145,14 @@ export async function runJob(core, job, env, memory) {
   memory.held = id;
 
   // What the page has: columns of `count` particles, and whether the fates of all their slots are the latest.
-  const sent = { count: job.kind === 'sample' ? 0 : core.count(), stale: false, slots_from: 0, settled: false, curved: 0, picture_ms: -Infinity };
+  const sent = {
+    count: job.kind === 'sample' ? 0 : core.count(),
+    stale: false,
+    slots_from: 0,
+    settled: false,
+    curved: 0,
+    picture_ms: -Infinity,
+  };
   let beat_ms = env.now_ms();
   /** @type {Record<string, number>} */
   const budgets = {};
@@ -155,10 +177,18 @@ export async function runJob(core, job, env, memory) {
     const curvature = env.curvature() ? core.curvature(curvature_from) : new Float32Array(0);
     sent.curved += curvature.length / 2;
     const columns = {
-      positions: core.positions(first), normals: core.normals(first), radii: core.radii(first),
-      levels: core.levels(first), parents: core.parents(first), slots: core.slots(slots_from), curvature,
+      positions: core.positions(first),
+      normals: core.normals(first),
+      radii: core.radii(first),
+      levels: core.levels(first),
+      parents: core.parents(first),
+      slots: core.slots(slots_from),
+      curvature,
     };
-    env.post({ type: 'columns', id, first, total, slots_from, curvature_from, ...columns, progress: last }, Object.values(columns).map((c) => c.buffer));
+    env.post(
+      { type: 'columns', id, first, total, slots_from, curvature_from, ...columns, progress: last },
+      Object.values(columns).map((c) => c.buffer),
+    );
     // The fates of a particle's slots are decided after it was sent: they go along with the next piece.
     sent.slots_from = first;
     sent.settled = slots_from === 0;
@@ -211,9 +241,21 @@ export async function runJob(core, job, env, memory) {
   if (!sent.settled) {
     const slots = core.slots(0);
     const total = core.count();
-    env.post({
-      type: 'columns', id, first: total, total, ...none(), slots_from: 0, slots, curvature_from: 0, curvature: new Float32Array(0), progress: last,
-    }, [slots.buffer]);
+    env.post(
+      {
+        type: 'columns',
+        id,
+        first: total,
+        total,
+        ...none(),
+        slots_from: 0,
+        slots,
+        curvature_from: 0,
+        curvature: new Float32Array(0),
+        progress: last,
+      },
+      [slots.buffer],
+    );
   }
   const tellCurvature = () => {
     if (!env.curvature() || sent.curved === core.count()) return;
@@ -248,6 +290,14 @@ export async function runJob(core, job, env, memory) {
       beat_ms = env.now_ms();
     }
   } while (report === undefined);
-  const figures = { valence: core.valence(), nearest: core.nearest(), residual: core.residual(), component: core.component() };
-  env.post({ type: 'report', id, report: { ...JSON.parse(report), seconds: { ...seconds } }, ...figures }, Object.values(figures).map((c) => c.buffer));
+  const figures = {
+    valence: core.valence(),
+    nearest: core.nearest(),
+    residual: core.residual(),
+    component: core.component(),
+  };
+  env.post(
+    { type: 'report', id, report: { ...JSON.parse(report), seconds: { ...seconds } }, ...figures },
+    Object.values(figures).map((c) => c.buffer),
+  );
 }

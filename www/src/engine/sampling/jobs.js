@@ -31,7 +31,10 @@ export class Jobs {
    */
   constructor(post, { functions, surfaces } = { functions: [], surfaces: [] }) {
     this.post = post;
-    this.later = { surfaces: new Set(surfaces), call: new RegExp(`(?<![a-z])(?:${functions.join('|') || '(?!)'})(?![a-z0-9])`) };
+    this.later = {
+      surfaces: new Set(surfaces),
+      call: new RegExp(`(?<![a-z])(?:${functions.join('|') || '(?!)'})(?![a-z0-9])`),
+    };
     /** The core has not been asked about it. @type {Pending | null} */
     this.waiting = null;
     /** Its field is the core's: it runs as soon as the one under way has given way. @type {Pending | null} */
@@ -85,7 +88,16 @@ export class Jobs {
     if (!pending?.stopped) return false;
     this[place] = null;
     const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
-    this.post({ type: 'done', id: pending.job.id, outcome: 'stopped', progress: null, seconds, predicted: 0, message: '', report_follows: false });
+    this.post({
+      type: 'done',
+      id: pending.job.id,
+      outcome: 'stopped',
+      progress: null,
+      seconds,
+      predicted: 0,
+      message: '',
+      report_follows: false,
+    });
     return true;
   }
 
@@ -94,8 +106,8 @@ export class Jobs {
     this.ask(core);
     const next = this.accepted;
     this.accepted = null;
-    this.stopped = next !== null && next.stopped;
-    return next && next.job;
+    this.stopped = next?.stopped ?? false;
+    return next?.job ?? null;
   }
 
   /**

@@ -7,7 +7,9 @@
 /** @typedef {import('./protocol.js').LoadFault} LoadFault */
 
 /** A module with one 128-bit constant: valid exactly where SIMD is. */
-const SIMD_PROBE = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
+const SIMD_PROBE = new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
+]);
 
 /** A load that failed, with its cause by name. */
 export class LoadError extends Error {
@@ -26,19 +28,30 @@ export class LoadError extends Error {
  * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
  * @returns {Promise<WebAssembly.Module>}
  */
-export async function loadModule(url, what = 'sampler', env = { fetch: (...request) => globalThis.fetch(...request), wasm: globalThis.WebAssembly }) {
+export async function loadModule(
+  url,
+  what = 'sampler',
+  env = { fetch: (...request) => globalThis.fetch(...request), wasm: globalThis.WebAssembly },
+) {
   const { wasm } = env;
   if (!wasm) throw new LoadError('no_wasm', `This browser has WebAssembly switched off. The ${what} needs it.`);
-  if (!wasm.validate(SIMD_PROBE)) throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
+  if (!wasm.validate(SIMD_PROBE))
+    throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
   const name = new URL(url, 'http://localhost').pathname.split('/').pop();
   let response;
   try {
     response = await env.fetch(url);
   } catch (error) {
-    throw new LoadError('blocked', `The ${what} (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`);
+    throw new LoadError(
+      'blocked',
+      `The ${what} (${name}) could not be fetched: ${words(error)}. Is the connection up, or an extension blocking it?`,
+    );
   }
   if (!response.ok) {
-    throw new LoadError('missing', `The ${what} (${name}) is not on the server: it answers ${response.status}. The site is incomplete; build it again.`);
+    throw new LoadError(
+      'missing',
+      `The ${what} (${name}) is not on the server: it answers ${response.status}. The site is incomplete; build it again.`,
+    );
   }
   const type = response.headers.get('content-type') ?? '';
   try {
@@ -46,7 +59,10 @@ export async function loadModule(url, what = 'sampler', env = { fetch: (...reque
     return await wasm.compile(await response.arrayBuffer());
   } catch (error) {
     const hint = type.startsWith('text/html') ? 'The server sends a page in its place' : 'The file is damaged';
-    throw new LoadError('corrupt', `The ${what} (${name}) is no WebAssembly: ${words(error)}. ${hint}; reload, or build the site again.`);
+    throw new LoadError(
+      'corrupt',
+      `The ${what} (${name}) is no WebAssembly: ${words(error)}. ${hint}; reload, or build the site again.`,
+    );
   }
 }
 
@@ -60,7 +76,8 @@ export function moduleNow(url) {
   request.open('GET', url, false);
   request.responseType = 'arraybuffer';
   request.send();
-  if (request.status !== 200) throw new LoadError('missing', `A part of the sampler is not on the server: it answers ${request.status}.`);
+  if (request.status !== 200)
+    throw new LoadError('missing', `A part of the sampler is not on the server: it answers ${request.status}.`);
   return new WebAssembly.Module(request.response);
 }
 

@@ -116,5 +116,3 @@ export const BEAT_MS = 250;
 export const SILENCE_MS = 2000;
 /** The same after it has said that it waits for the server, within a call that cannot be left. */
 export const WAIT_MS = 30_000;
-
-export {};

@@ -39,7 +39,7 @@ export class Scheduler {
   /** @param {T} request */
   submit(request) {
     const { running } = this;
-    if (running && running.request.live && request.live && this.now_ms() - running.since_ms < PATIENCE_MS) {
+    if (running?.request.live && request.live && this.now_ms() - running.since_ms < PATIENCE_MS) {
       this.waiting = request;
       return;
     }
@@ -84,7 +84,11 @@ export class Scheduler {
  * @param {import('../types.js').FieldRequest} field @param {Settings} settings
  */
 export const costKey = (field, settings) =>
-  [field.points === undefined ? 'formula' : 'points', settings.sampling, settings.sampling === 'adaptive' ? settings.radius_law : ''].join(' ');
+  [
+    field.points === undefined ? 'formula' : 'points',
+    settings.sampling,
+    settings.sampling === 'adaptive' ? settings.radius_law : '',
+  ].join(' ');
 
 /**
  * The quantity to whose square the number of particles is inversely proportional: the radius, or what every radius of an
@@ -95,7 +99,9 @@ export function sizeOf(settings, diagonal) {
   if (settings.size_mode === 'count') return NaN;
   if (settings.sampling !== 'adaptive') return Number(settings.radius_share) * diagonal;
   // h = √(6εR − 3ε²) ≈ √(6εR): the chord error ε is a share of the diagonal.
-  return settings.radius_law === 'chord_error' ? Math.sqrt(Number(settings.chord_error) * diagonal) : Number(settings.curvature_scale);
+  return settings.radius_law === 'chord_error'
+    ? Math.sqrt(Number(settings.chord_error) * diagonal)
+    : Number(settings.curvature_scale);
 }
 
 /**
@@ -163,13 +169,21 @@ export class CostModel {
 export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
   const relax_steps = Number(settings.relax_steps);
   const expected = cost.expected(settings, diagonal);
-  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms) return { settings, coarse: false };
+  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms)
+    return { settings, coarse: false };
   const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
   const per_particle_ms = cost.perParticle(coarse_relax) / 1e3;
   // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
   const affordable = Math.max(FEWEST, Math.max(budget_ms - cost.fixed_ms, budget_ms / 2) / per_particle_ms);
   const particles = Math.min(expected, affordable);
-  return { settings: { ...settings, relax_steps: coarse_relax, ...coarser(settings, diagonal, cost, particles, expected / particles) }, coarse: true };
+  return {
+    settings: {
+      ...settings,
+      relax_steps: coarse_relax,
+      ...coarser(settings, diagonal, cost, particles, expected / particles),
+    },
+    coarse: true,
+  };
 }
 
 /**

@@ -14,7 +14,7 @@ import restUrl from '../../wasm/core/core_rest.wasm?url';
 import description from '../../wasm/core/description.json';
 import { curvatureColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
-import { loadModule, LoadError, moduleNow, words } from './load.js';
+import { LoadError, loadModule, moduleNow, words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -27,7 +27,8 @@ import { BEAT_MS } from './protocol.js';
 const MEMORY_MB = { desk: 512, phone: 256 };
 
 /** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
-const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) => (userAgentData?.mobile ?? /Mobi/.test(userAgent)) || deviceMemory < 4;
+const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
+  (userAgentData?.mobile ?? /Mobi/.test(userAgent)) || deviceMemory < 4;
 
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
@@ -61,10 +62,11 @@ self_channel.port1.onmessage = () => {
   go?.();
 };
 /** @returns {Promise<void>} */
-const pause = () => new Promise((resolve) => {
-  resume = resolve;
-  self_channel.port2.postMessage(null);
-});
+const pause = () =>
+  new Promise((resolve) => {
+    resume = resolve;
+    self_channel.port2.postMessage(null);
+  });
 
 /** @type {Core | null} */
 let core = null;
@@ -80,7 +82,9 @@ let wake = null;
 function restOrMessage() {
   if (!rest) return null;
   const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
-  const message = new Promise((/** @type {(nothing: void) => void} */ resolve) => { wake = () => resolve(); });
+  const message = new Promise((/** @type {(nothing: void) => void} */ resolve) => {
+    wake = () => resolve();
+  });
   return Promise.race([rest, message]).finally(() => {
     clearInterval(beat);
     wake = null;
@@ -115,21 +119,26 @@ async function pump() {
       running = jobs.take(ours);
       if (!running) break;
       undrawn = 0;
-      await runJob(ours, running, {
-        now_ms: () => performance.now(),
-        pause,
-        post: (message, transfer) => {
-          if (message.type === 'columns') undrawn += 1;
-          post(message, transfer);
+      await runJob(
+        ours,
+        running,
+        {
+          now_ms: () => performance.now(),
+          pause,
+          post: (message, transfer) => {
+            if (message.type === 'columns') undrawn += 1;
+            post(message, transfer);
+          },
+          interrupt: () => {
+            if (provoked) provoke();
+            return jobs.interrupt(ours, rest === null);
+          },
+          curvature: () => curvature,
+          room: () => undrawn < 2,
+          rest: restOrMessage,
         },
-        interrupt: () => {
-          if (provoked) provoke();
-          return jobs.interrupt(ours, rest === null);
-        },
-        curvature: () => curvature,
-        room: () => undrawn < 2,
-        rest: restOrMessage,
-      }, memory);
+        memory,
+      );
     } catch (error) {
       crashed(running?.id ?? 0, error);
     }
@@ -213,7 +222,10 @@ async function boot() {
       core = new Core();
       core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
       rest = loadRest();
-      post({ type: 'ready', description: /** @type {import('../types.js').Description} */ (/** @type {unknown} */ (description)) });
+      post({
+        type: 'ready',
+        description: /** @type {import('../types.js').Description} */ (/** @type {unknown} */ (description)),
+      });
     } catch (error) {
       throw new LoadError('init', `The sampler did not start: ${last_words || words(error)}`);
     }

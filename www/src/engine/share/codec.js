@@ -40,17 +40,25 @@ export function difference(state, description) {
   if (state.declared.length) out.declared = state.declared;
   if (state.bounds) out.bounds = state.bounds;
   const defaults = completeSettings(description, {});
-  const settings = Object.fromEntries(Object.entries(state.settings).filter(([name, value]) => value !== defaults[name]));
+  const settings = Object.fromEntries(
+    Object.entries(state.settings).filter(([name, value]) => value !== defaults[name]),
+  );
   if (Object.keys(settings).length) out.settings = settings;
   /** @type {Record<string, unknown>} */
   const look = {};
-  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box', 'points', 'level'])) if (view[key] !== home.view[key]) look[key] = view[key];
+  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box', 'points', 'level']))
+    if (view[key] !== home.view[key]) look[key] = view[key];
   const { camera } = view;
   const rounded = {
-    target: camera.target.map((v) => short(v)), distance: short(camera.distance), yaw: short(camera.yaw, 5), pitch: short(camera.pitch, 5), fit: camera.fit,
+    target: camera.target.map((v) => short(v)),
+    distance: short(camera.distance),
+    yaw: short(camera.yaw, 5),
+    pitch: short(camera.pitch, 5),
+    fit: camera.fit,
   };
   // A camera that fits the surface by itself is written only where it was turned.
-  const turned = Math.abs(camera.yaw - home.view.camera.yaw) > 1e-3 || Math.abs(camera.pitch - home.view.camera.pitch) > 1e-3;
+  const turned =
+    Math.abs(camera.yaw - home.view.camera.yaw) > 1e-3 || Math.abs(camera.pitch - home.view.camera.pitch) > 1e-3;
   if (!camera.fit || turned) look.camera = rounded;
   if (Object.keys(look).length) out.view = look;
   return out;
@@ -132,6 +140,9 @@ export async function decode(fragment, description, has_file = false) {
     const raw = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(plain));
     return { ...sanitize(raw, description, has_file), problem: null };
   } catch (error) {
-    return { ...home, problem: error instanceof RangeError ? 'The link holds too much to be one of this page.' : 'The link is damaged.' };
+    return {
+      ...home,
+      problem: error instanceof RangeError ? 'The link holds too much to be one of this page.' : 'The link is damaged.',
+    };
   }
 }

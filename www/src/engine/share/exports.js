@@ -21,10 +21,17 @@ const ROWS = 8192;
 export function ply(columns, { comment }) {
   const { count, valence } = columns;
   const header = [
-    'ply', 'format binary_little_endian 1.0', `comment ${comment.replace(/[\r\n]+/g, ' ')}`, `element vertex ${count}`,
+    'ply',
+    'format binary_little_endian 1.0',
+    `comment ${comment.replace(/[\r\n]+/g, ' ')}`,
+    `element vertex ${count}`,
     ...['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius'].map((name) => `property float ${name}`),
-    'property uint level', 'property int parent', ...(valence ? ['property uchar valence'] : []),
-    'property uchar singular', 'end_header', '',
+    'property uint level',
+    'property int parent',
+    ...(valence ? ['property uchar valence'] : []),
+    'property uchar singular',
+    'end_header',
+    '',
   ].join('\n');
   const stride = 7 * 4 + 4 + 4 + (valence ? 2 : 1);
   const body = new DataView(new ArrayBuffer(count * stride));
@@ -86,7 +93,11 @@ export const LARGEST_PICTURE_PX = 8192;
  * @returns {Promise<Blob>}
  */
 export async function png(width, height, pixels) {
-  const image = new ImageData(new Uint8ClampedArray(pixels.buffer, pixels.byteOffset, pixels.byteLength), width, height);
+  const image = new ImageData(
+    new Uint8ClampedArray(pixels.buffer, pixels.byteOffset, pixels.byteLength),
+    width,
+    height,
+  );
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext('2d');
   if (!context) throw new Error('The browser gives no 2-D canvas to encode the picture with.');

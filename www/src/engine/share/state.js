@@ -28,15 +28,40 @@ const LAST_LEVEL = 1e6;
 const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
-export const COLOUR_MODES = ['level', 'fate', 'valence', 'nearest', 'radius', 'curvature', 'component', 'normal', 'plain'];
+export const COLOUR_MODES = [
+  'level',
+  'fate',
+  'valence',
+  'nearest',
+  'radius',
+  'curvature',
+  'component',
+  'normal',
+  'plain',
+];
 export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
 /** @returns {import('../types.js').ViewState} */
-const homeView = () => ({ colour: 'level', size: DISC_SIZE.default, theme: 'auto', box: false, points: true, level: null, camera: homeCamera() });
+const homeView = () => ({
+  colour: 'level',
+  size: DISC_SIZE.default,
+  theme: 'auto',
+  box: false,
+  points: true,
+  level: null,
+  camera: homeCamera(),
+});
 
 /** The state before the core has told which surfaces there are. @returns {State} */
 export const emptyState = () => ({
-  v: 1, surface: '', formula: '', parameters: {}, declared: [], bounds: null, settings: {}, view: homeView(),
+  v: 1,
+  surface: '',
+  formula: '',
+  parameters: {},
+  declared: [],
+  bounds: null,
+  settings: {},
+  view: homeView(),
 });
 
 /** @param {Description} description @returns {State} */
@@ -58,7 +83,9 @@ export function completeSettings(description, settings) {
 
 /** Every number within the range of its setting. @param {Description} description @param {Settings} settings @returns {Settings} */
 export function clampSettings(description, settings) {
-  return Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, validSetting(description, name, value) ?? value]));
+  return Object.fromEntries(
+    Object.entries(settings).map(([name, value]) => [name, validSetting(description, name, value) ?? value]),
+  );
 }
 
 /** @param {Description | null} description @param {string} id */
@@ -74,7 +101,8 @@ export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(de
  * @returns {FieldRequest}
  */
 export function fieldRequest(state, description, points) {
-  if (points !== undefined) return { points, surface: state.surface, ...(state.bounds ? { bounds: state.bounds } : {}) };
+  if (points !== undefined)
+    return { points, surface: state.surface, ...(state.bounds ? { bounds: state.bounds } : {}) };
   const surface = surfaceOf(description, state.surface);
   /** @type {FieldRequest} */
   const request = { surface: state.surface, parameters: { ...state.parameters } };
@@ -85,7 +113,8 @@ export function fieldRequest(state, description, points) {
 }
 
 /** A number within its range, or undefined for what is none. @param {unknown} v @param {number} min @param {number} max */
-const within = (v, min, max) => (typeof v === 'number' && Number.isFinite(v) ? Math.min(max, Math.max(min, v)) : undefined);
+const within = (v, min, max) =>
+  typeof v === 'number' && Number.isFinite(v) ? Math.min(max, Math.max(min, v)) : undefined;
 
 /** @param {unknown} v @returns {v is Record<string, unknown>} */
 const isRecord = (v) => typeof v === 'object' && v !== null && !Array.isArray(v);
@@ -151,7 +180,8 @@ export function sanitize(raw, description, has_file = false) {
     } else reset.push('surface');
   }
   if (raw.formula !== undefined && !(points && raw.formula === '')) {
-    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA && !points) state.formula = raw.formula;
+    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA && !points)
+      state.formula = raw.formula;
     else reset.push('formula');
   }
   if (raw.parameters !== undefined) {
@@ -202,7 +232,8 @@ export function sanitize(raw, description, has_file = false) {
 export function validSetting(description, name, value) {
   const info = description.settings.find((s) => s.name === name);
   if (!info) return undefined;
-  if (info.kind === 'choice') return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
+  if (info.kind === 'choice')
+    return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
   const v = within(value, info.min, info.max);
   return v !== undefined && info.kind === 'integer' ? Math.round(v) : v;
 }
@@ -227,7 +258,10 @@ export function validView(raw, view, reset = []) {
     if (raw.theme === 'auto' || raw.theme === 'light' || raw.theme === 'dark') out.theme = raw.theme;
     else reset.push('theme');
   }
-  for (const [key, name] of /** @type {const} */ ([['box', 'box'], ['points', 'points of the model']])) {
+  for (const [key, name] of /** @type {const} */ ([
+    ['box', 'box'],
+    ['points', 'points of the model'],
+  ])) {
     if (raw[key] === undefined) continue;
     if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);
     else reset.push(name);

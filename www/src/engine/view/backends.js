@@ -42,7 +42,8 @@ async function available(kind) {
 }
 
 /** @param {'webgpu' | 'webgl2'} kind */
-const bundle = (kind) => (kind === 'webgpu' ? import('../../wasm/render-webgpu/render.js') : import('../../wasm/render-webgl/render.js'));
+const bundle = (kind) =>
+  kind === 'webgpu' ? import('../../wasm/render-webgpu/render.js') : import('../../wasm/render-webgl/render.js');
 
 /**
  * Makes a device of this kind on a new canvas in `host`.
@@ -55,7 +56,14 @@ const bundle = (kind) => (kind === 'webgpu' ? import('../../wasm/render-webgpu/r
 export async function openDevice(kind, host, events) {
   if (!(await available(kind))) throw new Error(`${kind} is not available`);
   const canvas = document.createElement('canvas');
-  Object.assign(canvas.style, { position: 'absolute', inset: '0', width: '100%', height: '100%', display: 'block', touchAction: 'none' });
+  Object.assign(canvas.style, {
+    position: 'absolute',
+    inset: '0',
+    width: '100%',
+    height: '100%',
+    display: 'block',
+    touchAction: 'none',
+  });
   canvas.setAttribute('aria-hidden', 'true');
   let closed = false;
   const lost = (/** @type {string} */ reason, /** @type {string} */ message) => {

@@ -130,7 +130,10 @@ export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_
 /** The ball around a box. @param {Bounds} bounds @returns {{centre: Vec3, radius: number}} */
 export function ballOf({ min, max }) {
   const half = [0, 1, 2].map((k) => (max[k] - min[k]) / 2);
-  return { centre: /** @type {Vec3} */ ([0, 1, 2].map((k) => (max[k] + min[k]) / 2)), radius: Math.hypot(half[0], half[1], half[2]) || 1 };
+  return {
+    centre: /** @type {Vec3} */ ([0, 1, 2].map((k) => (max[k] + min[k]) / 2)),
+    radius: Math.hypot(half[0], half[1], half[2]) || 1,
+  };
 }
 
 /** The moving camera: a state, a speed, and perhaps a place to glide to. */
@@ -212,7 +215,9 @@ export class Camera {
     const scale = view.world_per_px * this.state.distance;
     this.state = {
       ...this.state,
-      target: /** @type {Vec3} */ (this.state.target.map((t, k) => t + scale * (-dx_px * view.right[k] + dy_px * view.up[k]))),
+      target: /** @type {Vec3} */ (
+        this.state.target.map((t, k) => t + scale * (-dx_px * view.right[k] + dy_px * view.up[k]))
+      ),
       fit: false,
     };
     this.glide = null;
@@ -255,7 +260,9 @@ export class Camera {
       const state = this.state;
       const log = Math.log(distance) + (Math.log(state.distance) - Math.log(distance)) * keep;
       const next = /** @type {Vec3} */ (state.target.map((t, k) => target[k] + (t - target[k]) * keep));
-      const left = Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance + Math.abs(log - Math.log(distance));
+      const left =
+        Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance +
+        Math.abs(log - Math.log(distance));
       // A thousandth of the distance is under a pixel.
       if (left < 1e-3) {
         this.state = { ...state, target, distance };

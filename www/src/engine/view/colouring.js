@@ -31,7 +31,7 @@ export function classOfSlots(slots, adaptive) {
   let seen = 0;
   for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << ((slots >>> (3 * k)) & 7);
   // How many children an adaptive particle has room for shows only when the front has come to it: what it leaves is unused.
-  if (adaptive && (slots >>> 3) !== 0) seen &= ~(1 << FATE.open);
+  if (adaptive && slots >>> 3 !== 0) seen &= ~(1 << FATE.open);
   if (seen & ((1 << FATE.notConverged) | (1 << FATE.undefined))) return 'trouble';
   if (seen & (1 << FATE.capped)) return 'capped';
   if (seen & (1 << FATE.outside)) return 'border';
@@ -126,7 +126,8 @@ export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mod
       return out;
     case 'nearest':
       if (!nearest) break;
-      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, nearest[i] / (2 * radii[i]), ...NEAREST_SHARE);
+      for (let i = first; i < last; i += 1)
+        out[i - first] = onRamp(palette.sequential, nearest[i] / (2 * radii[i]), ...NEAREST_SHARE);
       return out;
     case 'radius':
       if (!range) break;
@@ -141,7 +142,8 @@ export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mod
       return out;
     case 'component':
       if (!component) break;
-      for (let i = first; i < last; i += 1) out[i - first] = component[i] === NO_PIECE ? palette.plain : palette.components[component[i] % PIECES];
+      for (let i = first; i < last; i += 1)
+        out[i - first] = component[i] === NO_PIECE ? palette.plain : palette.components[component[i] % PIECES];
       return out;
     case 'normal':
       for (let i = first; i < last; i += 1) {
@@ -204,36 +206,89 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
   switch (mode) {
     case 'level':
-      return { title: 'Generation level', unit: '', kind: 'cyclic', range: [0, columns.last_level], colours: [...palette.levels].map(hexFromPacked) };
+      return {
+        title: 'Generation level',
+        unit: '',
+        kind: 'cyclic',
+        range: [0, columns.last_level],
+        colours: [...palette.levels].map(hexFromPacked),
+      };
     case 'fate': {
-      const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) => classOfSlots(columns.slots[i], columns.adaptive));
+      const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) =>
+        classOfSlots(columns.slots[i], columns.adaptive),
+      );
       return { title: 'Slots', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
     case 'valence': {
       const { valence } = columns;
-      if (!valence) return { title: 'Neighbours', unit: '', kind: 'categories', entries: [], colours: [hexFromPacked(palette.plain)], pending: true };
+      if (!valence)
+        return {
+          title: 'Neighbours',
+          unit: '',
+          kind: 'categories',
+          entries: [],
+          colours: [hexFromPacked(palette.plain)],
+          pending: true,
+        };
       const entries = categories(VALENCE_LABELS, palette.valence, columns.count, (i) => classOfValence(valence[i]));
       return { title: 'Neighbours', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
     case 'nearest':
       return {
-        title: 'Nearest distance', unit: '× 2r', kind: 'sequential', range: [...NEAREST_SHARE], mark: 1,
-        colours: [...palette.sequential].map(hexFromPacked), pending: columns.nearest === null,
+        title: 'Nearest distance',
+        unit: '× 2r',
+        kind: 'sequential',
+        range: [...NEAREST_SHARE],
+        mark: 1,
+        colours: [...palette.sequential].map(hexFromPacked),
+        pending: columns.nearest === null,
       };
     case 'radius':
-      return { title: 'Radius', unit: '', kind: 'sequential', range: range ?? undefined, colours: [...palette.sequential].map(hexFromPacked), pending: range === null };
+      return {
+        title: 'Radius',
+        unit: '',
+        kind: 'sequential',
+        range: range ?? undefined,
+        colours: [...palette.sequential].map(hexFromPacked),
+        pending: range === null,
+      };
     case 'curvature':
       return {
-        title: 'Mean curvature', unit: '1/length', kind: 'diverging', range: range ?? undefined, mark: 0,
-        colours: [...palette.diverging].map(hexFromPacked), pending: range === null || columns.curved < columns.count,
+        title: 'Mean curvature',
+        unit: '1/length',
+        kind: 'diverging',
+        range: range ?? undefined,
+        mark: 0,
+        colours: [...palette.diverging].map(hexFromPacked),
+        pending: range === null || columns.curved < columns.count,
       };
     case 'component': {
-      if (!columns.component) return { title: 'Connected pieces', unit: '', kind: 'categories', entries: [], colours: [hexFromPacked(palette.plain)], pending: true };
+      if (!columns.component)
+        return {
+          title: 'Connected pieces',
+          unit: '',
+          kind: 'categories',
+          entries: [],
+          colours: [hexFromPacked(palette.plain)],
+          pending: true,
+        };
       const entries = pieces(columns.component, palette);
-      return { title: 'Connected pieces', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
+      return {
+        title: 'Connected pieces',
+        unit: '',
+        kind: 'categories',
+        entries,
+        colours: entries.map((e) => e.colour),
+      };
     }
     case 'normal':
-      return { title: 'Normal', unit: '', kind: 'normal', entries: normalAxes(), colours: normalAxes().map((e) => e.colour) };
+      return {
+        title: 'Normal',
+        unit: '',
+        kind: 'normal',
+        entries: normalAxes(),
+        colours: normalAxes().map((e) => e.colour),
+      };
     default:
       return { title: 'Plain', unit: '', kind: 'plain', colours: [hexFromPacked(palette.plain)] };
   }
@@ -249,10 +304,16 @@ function pieces(component, palette) {
   const counts = [];
   for (const k of component) if (k !== NO_PIECE) counts[k] = (counts[k] ?? 0) + 1;
   const named = Math.min(PIECES, counts.length);
-  const entries = counts.slice(0, named).map((count, k) => ({ label: `piece ${k + 1}`, colour: hexFromPacked(palette.components[k]), count: count ?? 0 }));
+  const entries = counts
+    .slice(0, named)
+    .map((count, k) => ({ label: `piece ${k + 1}`, colour: hexFromPacked(palette.components[k]), count: count ?? 0 }));
   if (counts.length > named) {
     const rest = counts.slice(named);
-    entries.push({ label: `${rest.length} more, in the same colours`, colour: hexFromPacked(palette.plain), count: rest.reduce((sum, n) => sum + (n ?? 0), 0) });
+    entries.push({
+      label: `${rest.length} more, in the same colours`,
+      colour: hexFromPacked(palette.plain),
+      count: rest.reduce((sum, n) => sum + (n ?? 0), 0),
+    });
   }
   return entries;
 }
@@ -261,6 +322,14 @@ function pieces(component, palette) {
 function normalAxes() {
   const byte = (/** @type {number} */ v) => Math.round(255 * (0.525 + 0.375 * v));
   return /** @type {[string, number, number, number][]} */ ([
-    ['+x', 1, 0, 0], ['−x', -1, 0, 0], ['+y', 0, 1, 0], ['−y', 0, -1, 0], ['+z', 0, 0, 1], ['−z', 0, 0, -1],
-  ]).map(([label, x, y, z]) => ({ label, colour: hexFromPacked(((255 << 24) | (byte(z) << 16) | (byte(y) << 8) | byte(x)) >>> 0) }));
+    ['+x', 1, 0, 0],
+    ['−x', -1, 0, 0],
+    ['+y', 0, 1, 0],
+    ['−y', 0, -1, 0],
+    ['+z', 0, 0, 1],
+    ['−z', 0, 0, -1],
+  ]).map(([label, x, y, z]) => ({
+    label,
+    colour: hexFromPacked(((255 << 24) | (byte(z) << 16) | (byte(y) << 8) | byte(x)) >>> 0),
+  }));
 }

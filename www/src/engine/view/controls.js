@@ -37,7 +37,8 @@ const KEY_ZOOM = 1.15;
 const KEY_PAN_PX = 40;
 
 /** Pixels of a wheel event, whatever unit it came in. @param {{deltaY: number, deltaMode: number}} event @param {number} page_px */
-export const wheelPixels = ({ deltaY, deltaMode }, page_px) => deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? page_px : 1);
+export const wheelPixels = ({ deltaY, deltaMode }, page_px) =>
+  deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? page_px : 1);
 
 /**
  * @param {Stage} stage
@@ -64,61 +65,76 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
   const rad_per_px = () => TURN_PER_SIDE_RAD / Math.max(1, Math.min(host.clientWidth, host.clientHeight));
   /** @param {number} factor @param {{x: number, y: number}} at */
   const zoomAt = (factor, at) => {
-    camera.zoom(factor, { view: currentView(), x_px: at.x, y_px: at.y, width_px: host.clientWidth, height_px: host.clientHeight });
+    camera.zoom(factor, {
+      view: currentView(),
+      x_px: at.x,
+      y_px: at.y,
+      width_px: host.clientWidth,
+      height_px: host.clientHeight,
+    });
   };
 
-  host.addEventListener('pointerdown', (event) => {
-    if (event.pointerType === 'mouse' && event.button > 2) return;
-    camera.rest();
-    const at = place(event);
-    held.set(event.pointerId, at);
-    try {
-      host.setPointerCapture(event.pointerId);
-    } catch {
-      // The pointer is gone already; its end will still be heard.
-    }
-    panning = event.button !== 0 || event.shiftKey;
-    trail = [];
-    press = held.size === 1 ? { ...at, at_ms: event.timeStamp, still: true } : null;
-    leave();
-  }, { signal });
+  host.addEventListener(
+    'pointerdown',
+    (event) => {
+      if (event.pointerType === 'mouse' && event.button > 2) return;
+      camera.rest();
+      const at = place(event);
+      held.set(event.pointerId, at);
+      try {
+        host.setPointerCapture(event.pointerId);
+      } catch {
+        // The pointer is gone already; its end will still be heard.
+      }
+      panning = event.button !== 0 || event.shiftKey;
+      trail = [];
+      press = held.size === 1 ? { ...at, at_ms: event.timeStamp, still: true } : null;
+      leave();
+    },
+    { signal },
+  );
 
-  host.addEventListener('pointermove', (event) => {
-    const before = held.get(event.pointerId);
-    const at = place(event);
-    if (!before) {
-      if (held.size > 0 || event.pointerType === 'touch') return;
-      // One look per frame: the pointer may report a thousand times a second.
-      if (hover_frame === 0) {
-        hover_frame = requestAnimationFrame(() => {
-          hover_frame = 0;
-          point(last_hover.x, last_hover.y, false);
-        });
+  host.addEventListener(
+    'pointermove',
+    (event) => {
+      const before = held.get(event.pointerId);
+      const at = place(event);
+      if (!before) {
+        if (held.size > 0 || event.pointerType === 'touch') return;
+        // One look per frame: the pointer may report a thousand times a second.
+        if (hover_frame === 0) {
+          hover_frame = requestAnimationFrame(() => {
+            hover_frame = 0;
+            point(last_hover.x, last_hover.y, false);
+          });
+        }
+        last_hover = at;
+        return;
       }
-      last_hover = at;
-      return;
-    }
-    if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
-    const dx = at.x - before.x;
-    const dy = at.y - before.y;
-    if (held.size === 1) {
-      if (press?.still) return;
-      if (panning) camera.pan(dx, dy, currentView());
-      else {
-        camera.orbit(dx * rad_per_px(), dy * rad_per_px());
-        trail.push({ dx, dy, at_ms: event.timeStamp });
-        if (trail.length > 64) trail.shift();
+      if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
+      const dx = at.x - before.x;
+      const dy = at.y - before.y;
+      if (held.size === 1) {
+        if (press?.still) return;
+        if (panning) camera.pan(dx, dy, currentView());
+        else {
+          camera.orbit(dx * rad_per_px(), dy * rad_per_px());
+          trail.push({ dx, dy, at_ms: event.timeStamp });
+          if (trail.length > 64) trail.shift();
+        }
+      } else if (held.size === 2) {
+        const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
+        const span_before = Math.hypot(before.x - other.x, before.y - other.y);
+        const span = Math.hypot(at.x - other.x, at.y - other.y);
+        camera.pan(dx / 2, dy / 2, currentView());
+        if (span_before > 8 && span > 8)
+          zoomAt(span / span_before, { x: (at.x + other.x) / 2, y: (at.y + other.y) / 2 });
       }
-    } else if (held.size === 2) {
-      const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
-      const span_before = Math.hypot(before.x - other.x, before.y - other.y);
-      const span = Math.hypot(at.x - other.x, at.y - other.y);
-      camera.pan(dx / 2, dy / 2, currentView());
-      if (span_before > 8 && span > 8) zoomAt(span / span_before, { x: (at.x + other.x) / 2, y: (at.y + other.y) / 2 });
-    }
-    held.set(event.pointerId, at);
-    moved();
-  }, { signal });
+      held.set(event.pointerId, at);
+      moved();
+    },
+    { signal },
+  );
 
   /** @param {PointerEvent} event @param {boolean} released  by the hand, not taken away */
   const end = (event, released) => {
@@ -138,7 +154,10 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
       const since = recent.length ? event.timeStamp - recent[0].at_ms : 0;
       if (since > 8) {
         const per_s = (rad_per_px() * 1000) / since;
-        camera.fling(recent.reduce((sum, s) => sum + s.dx, 0) * per_s, recent.reduce((sum, s) => sum + s.dy, 0) * per_s);
+        camera.fling(
+          recent.reduce((sum, s) => sum + s.dx, 0) * per_s,
+          recent.reduce((sum, s) => sum + s.dy, 0) * per_s,
+        );
       }
     }
     press = null;
@@ -148,46 +167,79 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
   host.addEventListener('pointerup', (event) => end(event, true), { signal });
   host.addEventListener('pointercancel', (event) => end(event, false), { signal });
   host.addEventListener('lostpointercapture', (event) => end(event, false), { signal });
-  host.addEventListener('pointerleave', (event) => {
-    // A finger leaves whenever it is lifted: what it tapped stays chosen.
-    if (event.pointerType === 'touch') return;
-    cancelAnimationFrame(hover_frame);
-    hover_frame = 0;
-    leave();
-  }, { signal });
+  host.addEventListener(
+    'pointerleave',
+    (event) => {
+      // A finger leaves whenever it is lifted: what it tapped stays chosen.
+      if (event.pointerType === 'touch') return;
+      cancelAnimationFrame(hover_frame);
+      hover_frame = 0;
+      leave();
+    },
+    { signal },
+  );
   // The right button pans; its menu would swallow the release.
   host.addEventListener('contextmenu', (event) => event.preventDefault(), { signal });
 
-  host.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    const pixels = wheelPixels(event, host.clientHeight);
-    // A trackpad pinch arrives as a wheel with ctrl, in finer units.
-    const log = event.ctrlKey ? Math.min(60, Math.max(-60, pixels)) * PINCH_LOG : Math.min(400, Math.max(-400, pixels)) * WHEEL_LOG;
-    zoomAt(Math.exp(-log), place(event));
-    moved();
-  }, { signal, passive: false });
+  host.addEventListener(
+    'wheel',
+    (event) => {
+      event.preventDefault();
+      const pixels = wheelPixels(event, host.clientHeight);
+      // A trackpad pinch arrives as a wheel with ctrl, in finer units.
+      const log = event.ctrlKey
+        ? Math.min(60, Math.max(-60, pixels)) * PINCH_LOG
+        : Math.min(400, Math.max(-400, pixels)) * WHEEL_LOG;
+      zoomAt(Math.exp(-log), place(event));
+      moved();
+    },
+    { signal, passive: false },
+  );
 
-  host.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const view = currentView();
-    const turn = (/** @type {number} */ x, /** @type {number} */ y) => {
-      if (event.shiftKey) camera.pan(x * KEY_PAN_PX, -y * KEY_PAN_PX, view);
-      else camera.orbit(x * KEY_TURN_RAD, -y * KEY_TURN_RAD);
-    };
-    camera.rest();
-    switch (event.key) {
-      case 'ArrowLeft': turn(-1, 0); break;
-      case 'ArrowRight': turn(1, 0); break;
-      case 'ArrowUp': turn(0, 1); break;
-      case 'ArrowDown': turn(0, -1); break;
-      case '+': case '=': camera.zoom(KEY_ZOOM); break;
-      case '-': case '_': camera.zoom(1 / KEY_ZOOM); break;
-      case 'f': case 'F': case '0': fit(); break;
-      default: return;
-    }
-    event.preventDefault();
-    moved();
-  }, { signal });
+  host.addEventListener(
+    'keydown',
+    (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const view = currentView();
+      const turn = (/** @type {number} */ x, /** @type {number} */ y) => {
+        if (event.shiftKey) camera.pan(x * KEY_PAN_PX, -y * KEY_PAN_PX, view);
+        else camera.orbit(x * KEY_TURN_RAD, -y * KEY_TURN_RAD);
+      };
+      camera.rest();
+      switch (event.key) {
+        case 'ArrowLeft':
+          turn(-1, 0);
+          break;
+        case 'ArrowRight':
+          turn(1, 0);
+          break;
+        case 'ArrowUp':
+          turn(0, 1);
+          break;
+        case 'ArrowDown':
+          turn(0, -1);
+          break;
+        case '+':
+        case '=':
+          camera.zoom(KEY_ZOOM);
+          break;
+        case '-':
+        case '_':
+          camera.zoom(1 / KEY_ZOOM);
+          break;
+        case 'f':
+        case 'F':
+        case '0':
+          fit();
+          break;
+        default:
+          return;
+      }
+      event.preventDefault();
+      moved();
+    },
+    { signal },
+  );
 
   return () => {
     off.abort();

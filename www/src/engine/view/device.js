@@ -34,7 +34,10 @@ export class DeviceKeeper {
     this.onLost = onLost;
     this.onFallback = onFallback;
     this.open = open;
-    this.clock = clock ?? { now: () => performance.now(), wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)) };
+    this.clock = clock ?? {
+      now: () => performance.now(),
+      wait: (ms) => new Promise((resolve) => setTimeout(resolve, ms)),
+    };
     this.rank = first ? BACKENDS.indexOf(first) : 0;
     /** @type {Device | null} */
     this.device = null;
@@ -72,7 +75,11 @@ export class DeviceKeeper {
         return;
       } catch (error) {
         if (this.epoch !== epoch) return;
-        if (kind !== 'canvas2d') this.onFallback(kind, error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error));
+        if (kind !== 'canvas2d')
+          this.onFallback(
+            kind,
+            error instanceof Error ? error.message : String(/** @type {any} */ (error)?.message ?? error),
+          );
       }
     }
   }

@@ -37,7 +37,10 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
     const distance = Math.hypot(to_eye[0], to_eye[1], to_eye[2]) || 1;
     const depth = -(to_eye[0] * forward[0] + to_eye[1] * forward[1] + to_eye[2] * forward[2]);
     const world_per_px = view.world_per_px * Math.max(depth, 0);
-    for (const [j, radius_px, colour] of [[2 * i, ink_px + CASING_PX, palette.casing], [2 * i + 1, ink_px, palette.ink]]) {
+    for (const [j, radius_px, colour] of [
+      [2 * i, ink_px + CASING_PX, palette.casing],
+      [2 * i + 1, ink_px, palette.ink],
+    ]) {
       const radius = radius_px * world_per_px;
       // The ink lies before its casing by more than the depth buffer's step.
       const forth = Math.min(lift + (j & 1 ? radius : 0), 0.5 * distance) / distance;

@@ -74,7 +74,11 @@ export function oklch(L, C, h_deg) {
 }
 
 /** sRGB 0 … 1 of `0xAABBGGRR`. @param {number} packed @returns {Triple} */
-export const rgbFromPacked = (packed) => [(packed & 255) / 255, ((packed >> 8) & 255) / 255, ((packed >> 16) & 255) / 255];
+export const rgbFromPacked = (packed) => [
+  (packed & 255) / 255,
+  ((packed >> 8) & 255) / 255,
+  ((packed >> 16) & 255) / 255,
+];
 
 /** `#rrggbb` of `0xAABBGGRR`. @param {number} packed */
 export const hexFromPacked = (packed) =>

@@ -56,7 +56,15 @@ export class Painter {
     this.births = new Float64Array(0);
     this.view = new Float32Array(23);
     /** @type {Style} */
-    this.style = { background: [1, 1, 1, 1], disc_scale: 0.92, key_light_view: [-0.45, 0.65, 0.62], dim: 0, dim_backfaces: 0, outline: -1, box: null };
+    this.style = {
+      background: [1, 1, 1, 1],
+      disc_scale: 0.92,
+      key_light_view: [-0.45, 0.65, 0.62],
+      dim: 0,
+      dim_backfaces: 0,
+      outline: -1,
+      box: null,
+    };
     this.image = new ImageData(1, 1);
     this.depth = new Float32Array(1);
     this.width = 0;
@@ -198,7 +206,9 @@ export class Painter {
     };
     const { unit: right, length: clip_x_per_world } = axis(0);
     const { unit: up } = axis(1);
-    const key = [0, 1, 2].map((k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light);
+    const key = [0, 1, 2].map(
+      (k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light,
+    );
     const { positions, normals, radii, levels, colours, births } = this;
     for (let i = 0; i < this.count; i += 1) {
       if (births[i] > time_s) continue;
@@ -231,14 +241,19 @@ export class Painter {
       const key_wrapped = Math.max(0, (nx * key[0] + ny * key[1] + nz * key[2] + 0.25) / 1.25);
       const skyward = nx * up[0] + ny * up[1] + nz * up[2];
       const edge_on = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
-      const shade = (0.56 + 0.1 * skyward + 0.52 * key_wrapped * key_wrapped) * (1 - 0.3 * edge_on ** 3) * (back ? 0.72 : 1);
+      const shade =
+        (0.56 + 0.1 * skyward + 0.52 * key_wrapped * key_wrapped) * (1 - 0.3 * edge_on ** 3) * (back ? 0.72 : 1);
       const faded = older ? Math.max(dim, MUTE) : dim;
       const away = back ? 1 - (1 - dim_backfaces) * (1 - faded) : faded;
       const colour = colours[i];
       const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ light_here) =>
         Math.min(1, LINEAR[byte] * light_here) * (1 - away) + ground[k] * away;
       const lit = (/** @type {number} */ light_here) =>
-        packed(mix(colour & 255, 0, light_here), mix((colour >> 8) & 255, 1, light_here), mix((colour >> 16) & 255, 2, light_here));
+        packed(
+          mix(colour & 255, 0, light_here),
+          mix((colour >> 8) & 255, 1, light_here),
+          mix((colour >> 16) & 255, 2, light_here),
+        );
       const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
       const rim = i === outline ? value : lit(shade * 0.78);
       // A rim of a tenth of the radius shows the order; on small discs it would only be noise.
@@ -293,7 +308,12 @@ export class Painter {
    */
   paintBox(out, depth, width, height, box) {
     const m = this.view;
-    const value = ((255 << 24) | (Math.round(box.colour[2] * 255) << 16) | (Math.round(box.colour[1] * 255) << 8) | Math.round(box.colour[0] * 255)) >>> 0;
+    const value =
+      ((255 << 24) |
+        (Math.round(box.colour[2] * 255) << 16) |
+        (Math.round(box.colour[1] * 255) << 8) |
+        Math.round(box.colour[0] * 255)) >>>
+      0;
     const corner = (/** @type {number} */ k) => {
       const p = [k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1], k & 4 ? box.max[2] : box.min[2]];
       return [0, 1, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);

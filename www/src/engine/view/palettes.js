@@ -60,11 +60,15 @@ export const DIVERGING = 65;
 function diverging(theme) {
   const light = theme === 'light';
   const middle = oklch(light ? 0.83 : 0.9, 0, 0);
-  const [low, high] = light ? [oklch(0.47, 0.13, 255), oklch(0.52, 0.15, 45)] : [oklch(0.56, 0.14, 255), oklch(0.6, 0.16, 45)];
+  const [low, high] = light
+    ? [oklch(0.47, 0.13, 255), oklch(0.52, 0.15, 45)]
+    : [oklch(0.56, 0.14, 255), oklch(0.6, 0.16, 45)];
   return Uint32Array.from({ length: DIVERGING }, (_, i) => {
     const t = (2 * i) / (DIVERGING - 1) - 1;
     const end = t < 0 ? low : high;
-    return packedFromOklab(/** @type {[number, number, number]} */ (middle.map((v, k) => v + (end[k] - v) * Math.abs(t))));
+    return packedFromOklab(
+      /** @type {[number, number, number]} */ (middle.map((v, k) => v + (end[k] - v) * Math.abs(t))),
+    );
   });
 }
 
@@ -78,12 +82,32 @@ export const PIECES = 12;
  */
 const PIECE_COLOURS = {
   light: [
-    [0.56, 0.15, 250], [0.74, 0.15, 60], [0.44, 0.15, 30], [0.79, 0.15, 220], [0.44, 0.15, 300], [0.62, 0.04, 90],
-    [0.79, 0.04, 130], [0.44, 0.08, 190], [0.68, 0.15, 280], [0.56, 0.15, 50], [0.68, 0.115, 340], [0.56, 0.115, 330],
+    [0.56, 0.15, 250],
+    [0.74, 0.15, 60],
+    [0.44, 0.15, 30],
+    [0.79, 0.15, 220],
+    [0.44, 0.15, 300],
+    [0.62, 0.04, 90],
+    [0.79, 0.04, 130],
+    [0.44, 0.08, 190],
+    [0.68, 0.15, 280],
+    [0.56, 0.15, 50],
+    [0.68, 0.115, 340],
+    [0.56, 0.115, 330],
   ],
   dark: [
-    [0.64, 0.15, 250], [0.76, 0.15, 60], [0.52, 0.115, 20], [0.86, 0.15, 200], [0.52, 0.15, 300], [0.86, 0.115, 130],
-    [0.76, 0.115, 270], [0.76, 0.04, 10], [0.58, 0.115, 90], [0.64, 0.04, 290], [0.52, 0.08, 210], [0.64, 0.115, 30],
+    [0.64, 0.15, 250],
+    [0.76, 0.15, 60],
+    [0.52, 0.115, 20],
+    [0.86, 0.15, 200],
+    [0.52, 0.15, 300],
+    [0.86, 0.115, 130],
+    [0.76, 0.115, 270],
+    [0.76, 0.04, 10],
+    [0.58, 0.115, 90],
+    [0.64, 0.04, 290],
+    [0.52, 0.08, 210],
+    [0.64, 0.115, 30],
   ],
 };
 
@@ -94,7 +118,16 @@ function palette(theme) {
     levels: levelCycle(theme),
     // Too close is dark violet, the ideal distance green-blue, too far bright yellow: lightness rises all the way, so that
     // the order survives any colour deficiency and a grey print.
-    sequential: ramp([[0.36, 0.14, 300], [0.5, 0.12, 255], [0.64, 0.11, 195], [0.78, 0.15, 140], [0.9, 0.16, 100]], RAMP),
+    sequential: ramp(
+      [
+        [0.36, 0.14, 300],
+        [0.5, 0.12, 255],
+        [0.64, 0.11, 195],
+        [0.78, 0.15, 140],
+        [0.9, 0.16, 100],
+      ],
+      RAMP,
+    ),
     diverging: diverging(theme),
     components: Uint32Array.from(PIECE_COLOURS[theme], ([L, C, h]) => packedFromOklab(oklch(L, C, h))),
     valence: {

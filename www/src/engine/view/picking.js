@@ -48,7 +48,7 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
     const r = radii[i] * disc_scale;
     const r_gap = radii[i] * reach_scale;
     const slack = tolerance_rad * along;
-    const reach = r_gap > slack ? r_gap : slack;
+    const reach = Math.max(r_gap, slack);
     if (off_sq > reach * reach || levels[i] > last_level) continue;
     const nx = normals[j];
     const ny = normals[j + 1];

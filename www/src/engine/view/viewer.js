@@ -4,7 +4,7 @@
  *
  * @module
  */
-import { Camera, ballOf, rayThrough, viewOf } from './camera.js';
+import { ballOf, Camera, rayThrough, viewOf } from './camera.js';
 import { coloursOf, legendOf, rangeOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
 import { dotsOf } from './dots.js';
@@ -207,7 +207,10 @@ export class Viewer {
    * @param {{colour?: ViewState['colour'], size?: number, theme?: 'light' | 'dark', box?: Bounds | null, points?: Float32Array | null, level?: number | null, highlight?: number, insets?: Insets}} look
    */
   set(look) {
-    if ((look.colour !== undefined && look.colour !== this.colour) || (look.theme !== undefined && look.theme !== this.theme)) {
+    if (
+      (look.colour !== undefined && look.colour !== this.colour) ||
+      (look.theme !== undefined && look.theme !== this.theme)
+    ) {
       this.recolour(0, this.columns.count);
     }
     this.colour = look.colour ?? this.colour;
@@ -384,15 +387,26 @@ export class Viewer {
     const count = Math.min(columns.count, most);
     const { dirty, recoloured, glide } = this;
     if (dirty.first < dirty.last || recoloured.first < recoloured.last) this.follow();
-    if (dirty.first < Math.min(glide.count, count) && count <= MOST_GLIDING && !this.reveal.active && !this.calm.matches) glide.begin(now_s);
+    if (
+      dirty.first < Math.min(glide.count, count) &&
+      count <= MOST_GLIDING &&
+      !this.reveal.active &&
+      !this.calm.matches
+    )
+      glide.begin(now_s);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
       const positions = glide.active ? glide.between(columns.positions, count, now_s) : columns.positions;
       const colours = coloursOf(this.colour, this.theme, columns, first, last, this.range);
       for (const [from, end, birth] of this.pieces(first, last, now_s)) {
         renderer.write(
-          from, positions.subarray(3 * from, 3 * end), columns.normals.subarray(3 * from, 3 * end),
-          columns.radii.subarray(from, end), columns.levels.subarray(from, end), colours.subarray(from - first, end - first), birth,
+          from,
+          positions.subarray(3 * from, 3 * end),
+          columns.normals.subarray(3 * from, 3 * end),
+          columns.radii.subarray(from, end),
+          columns.levels.subarray(from, end),
+          colours.subarray(from - first, end - first),
+          birth,
         );
         this.uploads += 1;
       }
@@ -402,7 +416,10 @@ export class Viewer {
     }
     const recolour_last = Math.min(recoloured.last, count);
     if (recoloured.first < recolour_last) {
-      renderer.write_colours(recoloured.first, coloursOf(this.colour, this.theme, columns, recoloured.first, recolour_last, this.range));
+      renderer.write_colours(
+        recoloured.first,
+        coloursOf(this.colour, this.theme, columns, recoloured.first, recolour_last, this.range),
+      );
       this.uploads += 1;
     }
     this.dirty = { first: Infinity, last: 0 };
@@ -433,7 +450,12 @@ export class Viewer {
    */
   tellPoints(renderer, view, count) {
     if (!this.points) return 0;
-    const dots = dotsOf(this.points, view, { px: this.ratio, size: this.size, lift: this.lift(), palette: PALETTES[this.theme] });
+    const dots = dotsOf(this.points, view, {
+      px: this.ratio,
+      size: this.size,
+      lift: this.lift(),
+      palette: PALETTES[this.theme],
+    });
     if (count + dots.radii.length > renderer.max_particles()) return 0;
     renderer.write(count, dots.positions, dots.normals, dots.radii, dots.levels, dots.colours, -Infinity);
     return dots.radii.length;
@@ -455,7 +477,7 @@ export class Viewer {
     /** @type {[number, number, number][]} */
     const out = [];
     const { levels } = this.columns;
-    for (let i = first; i < last;) {
+    for (let i = first; i < last; ) {
       const level = levels[i];
       let end = i + 1;
       while (end < last && levels[end] === level) end += 1;
@@ -519,7 +541,14 @@ export class Viewer {
     const { columns, css_width, css_height } = this;
     if (columns.count === 0 || columns.stale || css_width === 0 || css_height === 0) return null;
     const view = this.currentView();
-    return pick(columns, view.eye, rayThrough(view, x, y, css_width, css_height), this.size, PICK_PX * view.world_per_px, this.shownLevel() ?? Infinity);
+    return pick(
+      columns,
+      view.eye,
+      rayThrough(view, x, y, css_width, css_height),
+      this.size,
+      PICK_PX * view.world_per_px,
+      this.shownLevel() ?? Infinity,
+    );
   }
 
   /**

@@ -17,33 +17,41 @@ export function createClipBox(engine) {
   const own = computed(() => engine.state.value.bounds !== null);
 
   const summary = h('span', { class: 'quiet range' });
-  const inputs = AXES.map((axis, i) => /** @type {const} */ (['min', 'max']).map((end) => {
-    const input = h('input', {
-      type: 'number', class: 'box', step: 'any', inputmode: 'decimal', 'aria-label': `${axis} ${end === 'min' ? 'from' : 'to'}`,
-      on: {
-        change: () => commit(input.valueAsNumber),
-        keydown: (/** @type {KeyboardEvent} */ event) => {
-          if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
-          event.preventDefault();
-          const now = bounds.peek();
-          if (!now) return;
-          const step = 10 ** Math.round(Math.log10(Math.max(1e-6, (now.max[i] - now.min[i]) * STEP_SHARE))) / (event.shiftKey ? 10 : 1);
-          commit(Number((now[end][i] + (event.key === 'ArrowUp' ? step : -step)).toPrecision(12)));
+  const inputs = AXES.map((axis, i) =>
+    /** @type {const} */ (['min', 'max']).map((end) => {
+      const input = h('input', {
+        type: 'number',
+        class: 'box',
+        step: 'any',
+        inputmode: 'decimal',
+        'aria-label': `${axis} ${end === 'min' ? 'from' : 'to'}`,
+        on: {
+          change: () => commit(input.valueAsNumber),
+          keydown: (/** @type {KeyboardEvent} */ event) => {
+            if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
+            event.preventDefault();
+            const now = bounds.peek();
+            if (!now) return;
+            const step =
+              10 ** Math.round(Math.log10(Math.max(1e-6, (now.max[i] - now.min[i]) * STEP_SHARE))) /
+              (event.shiftKey ? 10 : 1);
+            commit(Number((now[end][i] + (event.key === 'ArrowUp' ? step : -step)).toPrecision(12)));
+          },
         },
-      },
-    });
-    /** @param {number} value */
-    function commit(value) {
-      const now = bounds.peek();
-      if (!now) return;
-      /** @type {Bounds} */
-      const next = { min: [...now.min], max: [...now.max] };
-      next[end][i] = value;
-      if (Number.isFinite(value) && next.min[i] < next.max[i]) engine.setBounds(next);
-      else write(now);
-    }
-    return input;
-  }));
+      });
+      /** @param {number} value */
+      function commit(value) {
+        const now = bounds.peek();
+        if (!now) return;
+        /** @type {Bounds} */
+        const next = { min: [...now.min], max: [...now.max] };
+        next[end][i] = value;
+        if (Number.isFinite(value) && next.min[i] < next.max[i]) engine.setBounds(next);
+        else write(now);
+      }
+      return input;
+    }),
+  );
 
   /** @param {Bounds} now */
   function write(now) {
@@ -54,12 +62,25 @@ export function createClipBox(engine) {
   }
 
   const show = h('input', { type: 'checkbox', on: { change: () => engine.setView({ box: show.checked }) } });
-  const reset = h('button', { type: 'button', class: 'button plain small', on: { click: () => engine.setBounds(null) } }, 'Reset');
+  const reset = h(
+    'button',
+    { type: 'button', class: 'button plain small', on: { click: () => engine.setBounds(null) } },
+    'Reset',
+  );
   const details = h(
     'details',
     { class: 'section clip' },
     h('summary', { class: 'section-head' }, h('h2', null, 'Clip box'), summary),
-    h('div', { class: 'clip-grid' }, AXES.map((axis, i) => [h('var', null, axis), inputs[i][0], h('span', { class: 'quiet', 'aria-hidden': 'true' }, 'to'), inputs[i][1]]).flat()),
+    h(
+      'div',
+      { class: 'clip-grid' },
+      AXES.flatMap((axis, i) => [
+        h('var', null, axis),
+        inputs[i][0],
+        h('span', { class: 'quiet', 'aria-hidden': 'true' }, 'to'),
+        inputs[i][1],
+      ]),
+    ),
     h('div', { class: 'section-head clip-foot' }, h('label', { class: 'check' }, show, 'Draw the box'), reset),
   );
   effect(() => {
@@ -68,7 +89,11 @@ export function createClipBox(engine) {
     write(now);
     summary.textContent = now.max.map((high, i) => formatSignificant(high - now.min[i], 3)).join(' × ');
   });
-  effect(() => { show.checked = drawn.value; });
-  effect(() => { reset.classList.toggle('invisible', !own.value); });
+  effect(() => {
+    show.checked = drawn.value;
+  });
+  effect(() => {
+    reset.classList.toggle('invisible', !own.value);
+  });
   return details;
 }

@@ -43,9 +43,11 @@ const faultField = StateField.define({
       else {
         const start = Math.min(effect.value.fault.start, length);
         const end = Math.min(Math.max(start, effect.value.fault.end), length);
-        marks = Decoration.set(end > start
-          ? Decoration.mark({ class: 'cm-fault' }).range(start, end)
-          : Decoration.widget({ widget: new CaretWidget(), side: 1 }).range(start));
+        marks = Decoration.set(
+          end > start
+            ? Decoration.mark({ class: 'cm-fault' }).range(start, end)
+            : Decoration.widget({ widget: new CaretWidget(), side: 1 }).range(start),
+        );
       }
     }
     return fault === value.fault && marks === value.marks ? value : { fault, marks };
@@ -53,7 +55,12 @@ const faultField = StateField.define({
   provide: (field) => [
     EditorView.decorations.from(field, ({ marks }) => marks),
     EditorView.contentAttributes.from(field, ({ fault }) => ({
-      'aria-label': 'Formula', 'aria-invalid': String(fault), 'aria-describedby': 'message', spellcheck: 'false', autocapitalize: 'off', autocorrect: 'off',
+      'aria-label': 'Formula',
+      'aria-invalid': String(fault),
+      'aria-describedby': 'message',
+      spellcheck: 'false',
+      autocapitalize: 'off',
+      autocorrect: 'off',
     })),
   ],
 });
@@ -61,7 +68,9 @@ const faultField = StateField.define({
 /** Colours for numbers, functions, coordinates and parameters. @param {Functions} functions */
 function tokens(functions) {
   const known = new Set(functions.map(({ name }) => name));
-  const marks = Object.fromEntries(['number', 'function', 'axis', 'name'].map((name) => [name, Decoration.mark({ class: `cm-${name}` })]));
+  const marks = Object.fromEntries(
+    ['number', 'function', 'axis', 'name'].map((name) => [name, Decoration.mark({ class: `cm-${name}` })]),
+  );
   const decorator = new MatchDecorator({
     regexp: /(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|([\p{L}_][\p{L}\p{N}_]*)/gu,
     decoration: ([, number, name]) => {
@@ -70,17 +79,20 @@ function tokens(functions) {
       return /^[xyz]$/.test(name) ? marks.axis : marks.name;
     },
   });
-  return ViewPlugin.fromClass(class {
-    /** @param {EditorView} view */
-    constructor(view) {
-      this.decorations = decorator.createDeco(view);
-    }
+  return ViewPlugin.fromClass(
+    class {
+      /** @param {EditorView} view */
+      constructor(view) {
+        this.decorations = decorator.createDeco(view);
+      }
 
-    /** @param {import('@codemirror/view').ViewUpdate} update */
-    update(update) {
-      this.decorations = decorator.updateDeco(update, this.decorations);
-    }
-  }, { decorations: (plugin) => plugin.decorations });
+      /** @param {import('@codemirror/view').ViewUpdate} update */
+      update(update) {
+        this.decorations = decorator.updateDeco(update, this.decorations);
+      }
+    },
+    { decorations: (plugin) => plugin.decorations },
+  );
 }
 
 /**
@@ -91,24 +103,34 @@ function completion(functions, names) {
   return autocompletion({
     icons: false,
     activateOnTypingDelay: 150,
-    override: [(context) => {
-      const word = context.matchBefore(/[\p{L}_][\p{L}\p{N}_]*/u);
-      if (!word || (word.text.length < 2 && !context.explicit)) return null;
-      return {
-        from: word.from,
-        options: [
-          ...functions.map(({ name, signature, help }) => ({
-            label: name, detail: signature.startsWith(name) ? signature.slice(name.length) : signature, info: help, apply: signature.includes('(') ? `${name}(` : name,
-          })),
-          ...names().map((name) => ({ label: name, detail: ' parameter' })),
-        ],
-      };
-    }],
+    override: [
+      (context) => {
+        const word = context.matchBefore(/[\p{L}_][\p{L}\p{N}_]*/u);
+        if (!word || (word.text.length < 2 && !context.explicit)) return null;
+        return {
+          from: word.from,
+          options: [
+            ...functions.map(({ name, signature, help }) => ({
+              label: name,
+              detail: signature.startsWith(name) ? signature.slice(name.length) : signature,
+              info: help,
+              apply: signature.includes('(') ? `${name}(` : name,
+            })),
+            ...names().map((name) => ({ label: name, detail: ' parameter' })),
+          ],
+        };
+      },
+    ],
   });
 }
 
 const theme = EditorView.theme({
-  '&': { font: 'var(--code-size)/1.25rem var(--mono)', fontVariantLigatures: 'none', color: 'var(--ink)', maxHeight: '12rem' },
+  '&': {
+    font: 'var(--code-size)/1.25rem var(--mono)',
+    fontVariantLigatures: 'none',
+    color: 'var(--ink)',
+    maxHeight: '12rem',
+  },
   '&.cm-focused': { outline: 'none' },
   '.cm-scroller': { font: 'inherit', lineHeight: '1.25rem', overflow: 'auto' },
   '.cm-content': { padding: '0.4375rem 0', minHeight: '2.125rem', caretColor: 'var(--ink)' },
@@ -117,12 +139,31 @@ const theme = EditorView.theme({
   '.cm-axis': { color: 'var(--ink)' },
   '.cm-function': { color: 'var(--accent-strong)' },
   '.cm-name': { color: 'var(--accent-strong)', fontStyle: 'italic' },
-  '.cm-fault': { backgroundColor: 'var(--fault-soft)', textDecoration: 'underline wavy var(--fault) 1px', textUnderlineOffset: '3px' },
-  '.cm-fault-caret': { display: 'inline-block', width: '2px', height: '1.1em', verticalAlign: 'text-bottom', backgroundColor: 'var(--fault)' },
-  '.cm-tooltip': { border: '1px solid var(--line)', borderRadius: '0.375rem', backgroundColor: 'var(--panel)', color: 'var(--ink)', overflow: 'hidden' },
+  '.cm-fault': {
+    backgroundColor: 'var(--fault-soft)',
+    textDecoration: 'underline wavy var(--fault) 1px',
+    textUnderlineOffset: '3px',
+  },
+  '.cm-fault-caret': {
+    display: 'inline-block',
+    width: '2px',
+    height: '1.1em',
+    verticalAlign: 'text-bottom',
+    backgroundColor: 'var(--fault)',
+  },
+  '.cm-tooltip': {
+    border: '1px solid var(--line)',
+    borderRadius: '0.375rem',
+    backgroundColor: 'var(--panel)',
+    color: 'var(--ink)',
+    overflow: 'hidden',
+  },
   '.cm-tooltip.cm-tooltip-autocomplete > ul': { font: '0.75rem/1.25rem var(--mono)', maxHeight: '11rem' },
   '.cm-tooltip.cm-tooltip-autocomplete > ul > li': { padding: '0.125rem 0.5rem' },
-  '.cm-tooltip.cm-tooltip-autocomplete > ul > li[aria-selected]': { backgroundColor: 'var(--accent-soft)', color: 'var(--ink)' },
+  '.cm-tooltip.cm-tooltip-autocomplete > ul > li[aria-selected]': {
+    backgroundColor: 'var(--accent-soft)',
+    color: 'var(--ink)',
+  },
   '.cm-completionMatchedText': { textDecoration: 'none', color: 'var(--accent-strong)' },
   '.cm-completionDetail': { color: 'var(--ink-3)', fontStyle: 'normal', marginLeft: '0' },
   '.cm-completionInfo': { padding: '0.25rem 0.5rem', font: '0.75rem/1.0625rem var(--font)', maxWidth: '14rem' },
@@ -133,7 +174,9 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
   const element = h('div', { class: 'code-host' });
   const root = element.attachShadow({ mode: 'open', delegatesFocus: true });
   const sheet = new CSSStyleSheet();
-  sheet.replaceSync('#message { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }');
+  sheet.replaceSync(
+    '#message { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }',
+  );
   const message = h('span', { id: 'message' });
   let own = false;
   const view = new EditorView({
@@ -143,9 +186,17 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
       doc: text,
       selection: { anchor: Math.min(selection.anchor, text.length), head: Math.min(selection.head, text.length) },
       extensions: [
-        history(), closeBrackets(), faultField, tokens(functions), completion(functions, names), theme, EditorView.lineWrapping,
+        history(),
+        closeBrackets(),
+        faultField,
+        tokens(functions),
+        completion(functions, names),
+        theme,
+        EditorView.lineWrapping,
         keymap.of([...closeBracketsKeymap, ...completionKeymap, ...historyKeymap, ...defaultKeymap]),
-        EditorView.updateListener.of((update) => { if (update.docChanged && !own) change(update.state.doc.toString()); }),
+        EditorView.updateListener.of((update) => {
+          if (update.docChanged && !own) change(update.state.doc.toString());
+        }),
       ],
     }),
   });
@@ -162,7 +213,10 @@ export function createCodeEditor({ text, selection, functions, names, change }) 
     },
     replace(start, end, inserted) {
       const length = view.state.doc.length;
-      view.dispatch({ changes: { from: Math.min(start, length), to: Math.min(end, length), insert: inserted }, selection: { anchor: Math.min(start, length) + inserted.length } });
+      view.dispatch({
+        changes: { from: Math.min(start, length), to: Math.min(end, length), insert: inserted },
+        selection: { anchor: Math.min(start, length) + inserted.length },
+      });
     },
     setFault(fault, words) {
       message.textContent = words;

@@ -20,7 +20,12 @@ const CONTEXT = 22;
  */
 export function describeFault(formula, fault) {
   if (formula.trim() === '') {
-    return { tone: 'hint', message: 'Type a formula in x, y and z, such as x^2 + y^2 + z^2 = 1. The last surface stays until then.', excerpt: null, repairs: [] };
+    return {
+      tone: 'hint',
+      message: 'Type a formula in x, y and z, such as x^2 + y^2 + z^2 = 1. The last surface stays until then.',
+      excerpt: null,
+      repairs: [],
+    };
   }
   if (!fault) return null;
   const start = Math.min(Math.max(0, fault.start), formula.length);
@@ -30,7 +35,12 @@ export function describeFault(formula, fault) {
   const mending = fault.suggestion;
   if (mending !== null) {
     const marked = formula.slice(start, end);
-    const label = marked === '' ? `Insert ${shorten(mending)}` : mending === '' ? `Remove ${shorten(marked)}` : `Change to ${shorten(mending)}`;
+    const label =
+      marked === ''
+        ? `Insert ${shorten(mending)}`
+        : mending === ''
+          ? `Remove ${shorten(marked)}`
+          : `Change to ${shorten(mending)}`;
     // An ellipsis stands for what the reader has to fill in.
     repairs.unshift({ label, replace: { start, end, text: mending.replace('…', '') } });
   }

@@ -2,15 +2,18 @@
 import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/types.js';
 
 /** PLY, OBJ … in words for a person; `.txt` is only another name for XYZ. */
-export const FORMATS = FILE_TYPES.split(',').filter((type) => type !== '.txt').map((type) => type.slice(1).toUpperCase());
+export const FORMATS = FILE_TYPES.split(',')
+  .filter((type) => type !== '.txt')
+  .map((type) => type.slice(1).toUpperCase());
 
 /** @param {string[]} words */
-export const listOf = (words) => (words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`);
+export const listOf = (words) =>
+  words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} or ${words.at(-1)}`;
 
 export const LIMIT = `${Math.round(LARGEST_FILE_BYTES / 1e6)}\u202fMB`;
 
 /** Whether a drag carries files, and not text or a picture of the page. @param {{ types: readonly string[] } | null} transfer */
-export const carriesFiles = (transfer) => transfer !== null && transfer.types.includes('Files');
+export const carriesFiles = (transfer) => transfer?.types.includes('Files') ?? false;
 
 /** What can be done about a refused file or model, by the core's word for the reason. @type {Record<string, string>} */
 const ADVICE = {

@@ -3,8 +3,8 @@ import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { mathElement, mathPieces } from '../mathml.js';
 import { beginsFunction, describeFault, piecesOf } from './fault.js';
-import { createTextarea } from './textarea.js';
 import { openFunctions } from './functions.js';
+import { createTextarea } from './textarea.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -28,7 +28,12 @@ import { openFunctions } from './functions.js';
  */
 export function createFormula(engine, description) {
   const error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
-  const preview = h('div', { class: 'preview', role: 'group', 'aria-label': 'The formula as mathematics', tabindex: 0 });
+  const preview = h('div', {
+    class: 'preview',
+    role: 'group',
+    'aria-label': 'The formula as mathematics',
+    tabindex: 0,
+  });
   const holder = h('div', { class: 'editor', id: 'formula' });
   const shown = computed(() => engine.state.value.formula);
   const fault = computed(() => engine.fieldError.value);
@@ -54,10 +59,15 @@ export function createFormula(engine, description) {
     try {
       const { createCodeEditor } = await import('./code-editor.js');
       const plain = editor;
-      if (plain.element.matches('[data-composing]')) await new Promise((done) => plain.element.addEventListener('compositionend', done, { once: true }));
+      if (plain.element.matches('[data-composing]'))
+        await new Promise((done) => plain.element.addEventListener('compositionend', done, { once: true }));
       const focused = plain.element === document.activeElement;
       const next = createCodeEditor({
-        text: plain.text(), functions: description.functions, change, names, selection: plain.selection(),
+        text: plain.text(),
+        functions: description.functions,
+        change,
+        names,
+        selection: plain.selection(),
       });
       editor = next;
       plain.element.replaceWith(next.element);
@@ -79,11 +89,27 @@ export function createFormula(engine, description) {
     fill(
       error,
       excerpt && !editor.marks
-        ? h('code', { class: 'excerpt' }, excerpt.before, h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked), excerpt.after)
+        ? h(
+            'code',
+            { class: 'excerpt' },
+            excerpt.before,
+            h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked),
+            excerpt.after,
+          )
         : null,
-      h('p', null, piecesOf(view.message).map(({ text: piece, code }) => (code ? h('code', null, piece) : piece))),
+      h(
+        'p',
+        null,
+        piecesOf(view.message).map(({ text: piece, code }) => (code ? h('code', null, piece) : piece)),
+      ),
       view.repairs.length
-        ? h('div', { class: 'repairs' }, view.repairs.map((repair) => h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label)))
+        ? h(
+            'div',
+            { class: 'repairs' },
+            view.repairs.map((repair) =>
+              h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label),
+            ),
+          )
         : null,
     );
     // On a phone there is room for little below the editor.
@@ -124,7 +150,10 @@ export function createFormula(engine, description) {
     fill(preview, math);
     if (preview.scrollWidth <= preview.clientWidth + 1) return;
     preview.classList.add('long');
-    fill(preview, mathPieces(source).flatMap((piece) => [piece, h('wbr')]));
+    fill(
+      preview,
+      mathPieces(source).flatMap((piece) => [piece, h('wbr')]),
+    );
   }
   let width = 0;
   new ResizeObserver(() => {
@@ -137,7 +166,15 @@ export function createFormula(engine, description) {
     else editor.focus();
   });
 
-  const help = h('button', { type: 'button', class: 'button plain small', on: { click: () => openFunctions(description, (name) => insert(name)) } }, 'Functions');
+  const help = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain small',
+      on: { click: () => openFunctions(description, (name) => insert(name)) },
+    },
+    'Functions',
+  );
   /** @param {string} name */
   function insert(name) {
     const { anchor, head } = editor.selection();
@@ -152,6 +189,8 @@ export function createFormula(engine, description) {
     error,
     preview,
   );
-  effect(() => { section.hidden = engine.field.value?.kind === 'points'; });
+  effect(() => {
+    section.hidden = engine.field.value?.kind === 'points';
+  });
   return section;
 }

@@ -1,6 +1,7 @@
 /** The list of functions that a formula may use, generated from the core's description. */
-import { h } from '../dom.js';
+
 import { createDialog } from '../dialog.js';
+import { h } from '../dom.js';
 
 /** @type {ReturnType<typeof createDialog> | null} */
 let dialog = null;
@@ -12,13 +13,36 @@ let dialog = null;
 export function openFunctions(description, insert) {
   dialog ??= createDialog(
     'What a formula may hold',
-    h('p', { class: 'quiet' }, 'Write f(x, y, z), or an equation. Products may be left out: 2x y. Powers: x^2 or x². Names that are not known become sliders.'),
-    h('ul', { class: 'functions' }, description.functions.map(({ name, signature, help }) => h(
-      'li',
-      null,
-      h('button', { type: 'button', class: 'button plain small', on: { click: () => { dialog?.close(); insert(name); } } }, h('code', null, signature)),
-      h('span', { class: 'quiet' }, help),
-    ))),
+    h(
+      'p',
+      { class: 'quiet' },
+      'Write f(x, y, z), or an equation. Products may be left out: 2x y. Powers: x^2 or x². Names that are not known become sliders.',
+    ),
+    h(
+      'ul',
+      { class: 'functions' },
+      description.functions.map(({ name, signature, help }) =>
+        h(
+          'li',
+          null,
+          h(
+            'button',
+            {
+              type: 'button',
+              class: 'button plain small',
+              on: {
+                click: () => {
+                  dialog?.close();
+                  insert(name);
+                },
+              },
+            },
+            h('code', null, signature),
+          ),
+          h('span', { class: 'quiet' }, help),
+        ),
+      ),
+    ),
   );
   dialog.open();
 }

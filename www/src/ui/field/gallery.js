@@ -21,7 +21,11 @@ export function createGallery(engine, description) {
   /** @param {string} id @param {string} name @param {Node} face @param {() => import('../explain.js').Explanation} help */
   function createTile(id, name, face, help) {
     const input = h('input', {
-      type: 'radio', name: 'surface', value: id, class: 'visually-hidden', 'aria-label': name,
+      type: 'radio',
+      name: 'surface',
+      value: id,
+      class: 'visually-hidden',
+      'aria-label': name,
       on: { change: () => engine.setSurface(id), click: () => again(id) },
     });
     inputs.set(id, input);
@@ -32,8 +36,18 @@ export function createGallery(engine, description) {
 
   /** @param {{ id: string, name: string, story: string, credit?: string }} entry */
   function pictured({ id, name, story, credit }) {
-    const picture = h('img', { alt: '', width: PICTURE_PX, height: PICTURE_PX, decoding: 'async', src: `./gallery/${id}.webp` });
-    picture.addEventListener('error', () => picture.replaceWith(h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name)), { once: true });
+    const picture = h('img', {
+      alt: '',
+      width: PICTURE_PX,
+      height: PICTURE_PX,
+      decoding: 'async',
+      src: `./gallery/${id}.webp`,
+    });
+    picture.addEventListener(
+      'error',
+      () => picture.replaceWith(h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name)),
+      { once: true },
+    );
     return createTile(id, name, picture, () => ({ title: name, text: story, ideal: credit }));
   }
 
@@ -42,11 +56,17 @@ export function createGallery(engine, description) {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
   }
 
-  const models = h('div', { class: 'tiles', role: 'group', 'aria-label': 'From points' }, description.models.map(pictured));
+  const models = h(
+    'div',
+    { class: 'tiles', role: 'group', 'aria-label': 'From points' },
+    description.models.map(pictured),
+  );
   const open = createOpen(engine);
   models.append(...open);
   // The file opened last gets a tile of its own: one press leads back to it.
-  const file = computed(() => (engine.field.value?.surface === FILE_SURFACE ? engine.field.value.model?.name ?? 'File' : null));
+  const file = computed(() =>
+    engine.field.value?.surface === FILE_SURFACE ? (engine.field.value.model?.name ?? 'File') : null,
+  );
   let file_name = '';
   effect(() => {
     const name = file.value;
@@ -58,7 +78,9 @@ export function createGallery(engine, description) {
     check();
   });
 
-  const chosen = computed(() => (engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface));
+  const chosen = computed(() =>
+    engine.field.value && engine.field.value.surface === null ? null : engine.state.value.surface,
+  );
   function check() {
     for (const [id, input] of inputs) input.checked = id === chosen.peek();
   }
@@ -66,7 +88,8 @@ export function createGallery(engine, description) {
     void chosen.value;
     check();
     // In a strip the chosen one may stand outside: bring it in.
-    if (chosen.value) inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    if (chosen.value)
+      inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   });
   return h(
     'fieldset',
@@ -83,13 +106,27 @@ const extensionOf = (name) => /\.([a-z0-9]{1,4})$/i.exec(name)?.[1].toUpperCase(
 
 /** The button that opens a file, and the chooser behind it. @param {Engine} engine @returns {HTMLElement[]} */
 function createOpen(engine) {
-  const chooser = h('input', { type: 'file', accept: FILE_TYPES, hidden: true, on: { change: () => {
-    const file = chooser.files?.[0];
-    // The same file may be chosen again after it was changed.
-    chooser.value = '';
-    if (file) void engine.openFile(file);
-  } } });
-  const button = h('button', { type: 'button', class: 'button open-file', on: { click: () => chooser.click() } }, 'Open file…');
-  explain(button, () => ({ title: 'A file of points', text: `${listOf(FORMATS)}, up to ${LIMIT}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.` }));
+  const chooser = h('input', {
+    type: 'file',
+    accept: FILE_TYPES,
+    hidden: true,
+    on: {
+      change: () => {
+        const file = chooser.files?.[0];
+        // The same file may be chosen again after it was changed.
+        chooser.value = '';
+        if (file) void engine.openFile(file);
+      },
+    },
+  });
+  const button = h(
+    'button',
+    { type: 'button', class: 'button open-file', on: { click: () => chooser.click() } },
+    'Open file…',
+  );
+  explain(button, () => ({
+    title: 'A file of points',
+    text: `${listOf(FORMATS)}, up to ${LIMIT}: points with normals, points alone, or a mesh. It stays on this device. It can also be dropped anywhere on the page.`,
+  }));
   return [button, chooser];
 }

@@ -15,15 +15,26 @@ export function createLoading(engine) {
   const stage = h('p', { class: 'quiet load-stage', 'aria-hidden': 'true' });
   const bar = h('div', { class: 'load-bar', role: 'progressbar', 'aria-valuemin': 0, 'aria-valuemax': 100 });
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
-  const cancel = h('button', { type: 'button', class: 'button small', on: { click: () => engine.cancelLoading() } }, 'Cancel');
-  const working = h('div', { class: 'section loading' }, h('div', { class: 'section-head' }, title, cancel), bar, stage);
+  const cancel = h(
+    'button',
+    { type: 'button', class: 'button small', on: { click: () => engine.cancelLoading() } },
+    'Cancel',
+  );
+  const working = h(
+    'div',
+    { class: 'section loading' },
+    h('div', { class: 'section-head' }, title, cancel),
+    bar,
+    stage,
+  );
   const refused = h('div', { class: 'section refused', role: 'group' });
 
   const name = computed(() => engine.loading.value?.name ?? null);
   effect(() => {
     const present = name.value;
     // Who pressed Cancel keeps a place on the page.
-    if (present === null && document.activeElement === cancel) /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.focus();
+    if (present === null && document.activeElement === cancel)
+      /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.focus();
     working.hidden = present === null;
     title.textContent = present ?? '';
     bar.setAttribute('aria-label', `Loading ${present ?? ''}`);
@@ -37,13 +48,19 @@ export function createLoading(engine) {
     fill(stage, h('span', null, loading.label), h('span', { class: 'unit' }, formatShare(loading.fraction, 0)));
   });
   const heard = computed(() => {
-    const { loading: { value: loading }, loadingError: { value: error } } = engine;
-    if (loading) return `${loading.name}: ${loading.label}, ${formatShare(Math.floor(loading.fraction / SPOKEN_SHARE) * SPOKEN_SHARE, 0)}`;
+    const {
+      loading: { value: loading },
+      loadingError: { value: error },
+    } = engine;
+    if (loading)
+      return `${loading.name}: ${loading.label}, ${formatShare(Math.floor(loading.fraction / SPOKEN_SHARE) * SPOKEN_SHARE, 0)}`;
     if (!error) return '';
     const { title: what, line, text } = describeLoadingError(error);
     return [what, line, text].filter(Boolean).join('. ');
   });
-  effect(() => { spoken.textContent = heard.value; });
+  effect(() => {
+    spoken.textContent = heard.value;
+  });
   effect(() => {
     const error = engine.loadingError.value;
     refused.hidden = error === null;
@@ -55,7 +72,19 @@ export function createLoading(engine) {
       h('h2', null, what),
       h('p', null, line ? h('strong', null, `${line}: `) : null, text),
       h('p', { class: 'quiet' }, advice, advice ? ' ' : '', 'The surface before it stays.'),
-      h('div', { class: 'repairs' }, h('button', { type: 'button', class: 'button small', on: { click: () => /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.click() } }, 'Choose another file')),
+      h(
+        'div',
+        { class: 'repairs' },
+        h(
+          'button',
+          {
+            type: 'button',
+            class: 'button small',
+            on: { click: () => /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.click() },
+          },
+          'Choose another file',
+        ),
+      ),
     );
   });
   return [working, refused, spoken];

@@ -1,12 +1,12 @@
 /** The field panel: which surface, its formula, its parameters, its box. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { createGallery } from './gallery.js';
+import { createClipBox } from './clip-box.js';
 import { createFormula } from './formula.js';
+import { createGallery } from './gallery.js';
 import { createLoading } from './loading.js';
 import { createModel } from './model.js';
 import { createParameters } from './parameters.js';
-import { createClipBox } from './clip-box.js';
 import { storyOf } from './story.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */

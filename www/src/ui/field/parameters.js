@@ -11,9 +11,18 @@ import { createSlider } from '../slider.js';
 /** @param {Engine} engine */
 export function createParameters(engine) {
   const rows = h('div', { class: 'rows' });
-  const section = h('div', { class: 'section parameters' }, h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), resetAll(engine)), rows);
+  const section = h(
+    'div',
+    { class: 'section parameters' },
+    h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), resetAll(engine)),
+    rows,
+  );
   // The controls are rebuilt only when the parameters themselves change, not with their values.
-  const shape = computed(() => JSON.stringify((engine.field.value?.parameters ?? []).map(({ name, label, min, max, step }) => [name, label, min, max, step])));
+  const shape = computed(() =>
+    JSON.stringify(
+      (engine.field.value?.parameters ?? []).map(({ name, label, min, max, step }) => [name, label, min, max, step]),
+    ),
+  );
   const values = computed(() => engine.state.value.parameters);
   const scope = createScope();
   effect(() => {
@@ -21,18 +30,33 @@ export function createParameters(engine) {
     const parameters = engine.field.peek()?.parameters ?? [];
     section.hidden = parameters.length === 0;
     scope.end();
-    fill(rows, parameters.map((parameter) => createRow(engine, parameter, values, scope)));
+    fill(
+      rows,
+      parameters.map((parameter) => createRow(engine, parameter, values, scope)),
+    );
   });
   return section;
 }
 
 /** @param {Engine} engine */
 function resetAll(engine) {
-  const button = h('button', { type: 'button', class: 'button plain small', on: {
-    click: () => { for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name); },
-  } }, 'Reset');
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain small',
+      on: {
+        click: () => {
+          for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
+        },
+      },
+    },
+    'Reset',
+  );
   const changed = computed(() => Object.keys(engine.state.value.parameters).length > 0);
-  effect(() => { button.classList.toggle('invisible', !changed.value); });
+  effect(() => {
+    button.classList.toggle('invisible', !changed.value);
+  });
   return button;
 }
 
@@ -52,13 +76,18 @@ function createRow(engine, { name, label, value, min, max, step }, values, scope
     change: (now, live) => engine.setParameter(name, now, { live }),
     reset: () => engine.resetParameter(name),
   });
-  scope.add(effect(() => {
-    const held = values.value[name];
-    const answered = engine.field.value?.parameters.find((parameter) => parameter.name === name)?.value;
-    slider.set(held ?? answered ?? value);
-  }));
+  scope.add(
+    effect(() => {
+      const held = values.value[name];
+      const answered = engine.field.value?.parameters.find((parameter) => parameter.name === name)?.value;
+      slider.set(held ?? answered ?? value);
+    }),
+  );
   const caption = h('span', { class: 'name' }, h('var', null, name));
   const row = h('div', { class: 'row', data: { parameter: name } }, caption, slider.range, slider.box);
-  explain(caption, () => ({ title, text: `From ${formatStep(min, step)} to ${formatStep(max, step)}. Shift drags ten times finer, a double click resets.` }));
+  explain(caption, () => ({
+    title,
+    text: `From ${formatStep(min, step)} to ${formatStep(max, step)}. Shift drags ten times finer, a double click resets.`,
+  }));
   return row;
 }

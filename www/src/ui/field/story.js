@@ -12,10 +12,26 @@ export function storyOf(description, id, info) {
   const model = description.models.find((entry) => entry.id === id);
   if (model) return { name: model.name, facts: plural(model.points, 'point'), text: model.story, credit: model.credit };
   if (id === FILE_SURFACE) {
-    return { name: info?.name ?? 'File', facts: info ? plural(info.points, 'point') : '', text: 'The surface through the points of this file.', credit: info?.credit ?? '' };
+    return {
+      name: info?.name ?? 'File',
+      facts: info ? plural(info.points, 'point') : '',
+      text: 'The surface through the points of this file.',
+      credit: info?.credit ?? '',
+    };
   }
   const entry = description.surfaces.find((surface) => surface.id === id);
-  if (!entry) return { name: 'Your own formula', facts: '', text: 'The surface where the formula below is zero. Names other than x, y and z become sliders.', credit: '' };
-  const facts = [entry.degree === null ? '' : `Degree ${entry.degree}`, entry.genus === null ? '' : `genus ${entry.genus}`].filter(Boolean).join(' · ');
+  if (!entry)
+    return {
+      name: 'Your own formula',
+      facts: '',
+      text: 'The surface where the formula below is zero. Names other than x, y and z become sliders.',
+      credit: '',
+    };
+  const facts = [
+    entry.degree === null ? '' : `Degree ${entry.degree}`,
+    entry.genus === null ? '' : `genus ${entry.genus}`,
+  ]
+    .filter(Boolean)
+    .join(' · ');
   return { name: entry.name, facts, text: entry.story, credit: '' };
 }

@@ -7,7 +7,14 @@ import { h } from '../dom.js';
  */
 export function createTextarea({ text, change, focused }) {
   const area = h('textarea', {
-    class: 'code', rows: 1, spellcheck: 'false', autocapitalize: 'off', autocomplete: 'off', autocorrect: 'off', 'aria-label': 'Formula', 'aria-describedby': 'formula-fault',
+    class: 'code',
+    rows: 1,
+    spellcheck: 'false',
+    autocapitalize: 'off',
+    autocomplete: 'off',
+    autocorrect: 'off',
+    'aria-label': 'Formula',
+    'aria-describedby': 'formula-fault',
     prop: { value: text },
     on: {
       input: () => {
@@ -15,8 +22,12 @@ export function createTextarea({ text, change, focused }) {
         change(area.value);
       },
       focus: focused,
-      compositionstart: () => { area.dataset.composing = ''; },
-      compositionend: () => { delete area.dataset.composing; },
+      compositionstart: () => {
+        area.dataset.composing = '';
+      },
+      compositionend: () => {
+        delete area.dataset.composing;
+      },
     },
   });
   function grow() {

@@ -16,5 +16,8 @@ export function facing({ yaw, pitch }, [x, y, z]) {
   if (!(seen < FACING)) return null;
   // The short way round.
   const way = Math.hypot(x, y) > 1e-3 ? Math.atan2(y, x) - yaw : 0;
-  return { yaw: yaw + Math.atan2(Math.sin(way), Math.cos(way)), pitch: clamp(Math.asin(clamp(z, -1, 1)), -STEEPEST_RAD, STEEPEST_RAD) };
+  return {
+    yaw: yaw + Math.atan2(Math.sin(way), Math.cos(way)),
+    pitch: clamp(Math.asin(clamp(z, -1, 1)), -STEEPEST_RAD, STEEPEST_RAD),
+  };
 }

@@ -31,7 +31,8 @@ export function levelTable({ count, levels, parents, slots, adaptive, last_level
     const level = levels[i];
     fresh[level] += 1;
     if (parents[i] === NO_PARENT) seeds[level] += 1;
-    for (let k = 0, bits = slots[i]; k < MOST_SLOTS && bits !== 0; k += 1, bits >>>= 3) fates[FATES * (level + 1) + (bits & 7)] += 1;
+    for (let k = 0, bits = slots[i]; k < MOST_SLOTS && bits !== 0; k += 1, bits >>>= 3)
+      fates[FATES * (level + 1) + (bits & 7)] += 1;
   }
   const total = new Uint32Array(last + 1);
   for (let k = 0, sum = 0; k <= last; k += 1) total[k] = sum += fresh[k];
@@ -53,7 +54,8 @@ export function flatCount({ adaptive, seeds }, level) {
 }
 
 /** For the slider. @param {LevelTable} table @param {number} level */
-export const shortOf = ({ last, fresh, total }, level) => `Level ${formatCount(level)} of ${formatCount(last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
+export const shortOf = ({ last, fresh, total }, level) =>
+  `Level ${formatCount(level)} of ${formatCount(last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
 
 /**
  * The level in words: what there is, and how it came about.
@@ -67,11 +69,16 @@ export function describeLevel(table, level, relax_steps) {
   const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
   const moved = relax_steps > 0 ? ` Drawn after ${plural(relax_steps, 'relaxation step')}.` : '';
   if (level === 0) {
-    return { title, text: `${seeds[0] === 1 ? 'The front starts at one point of the surface.' : `${plural(seeds[0], 'point')} of the surface, a front from each.`}${moved}` };
+    return {
+      title,
+      text: `${seeds[0] === 1 ? 'The front starts at one point of the surface.' : `${plural(seeds[0], 'point')} of the surface, a front from each.`}${moved}`,
+    };
   }
   const fateOf = (/** @type {keyof typeof FATE} */ name) => fates[FATES * level + FATE[name]];
   const added = fateOf('added');
-  const rest = REST.filter(([name]) => fateOf(name) > 0).map(([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`);
+  const rest = REST.filter(([name]) => fateOf(name) > 0).map(
+    ([name, one, many]) => `${formatCount(fateOf(name))} ${fateOf(name) === 1 ? one : many}`,
+  );
   const proposed = REST.reduce((sum, [name]) => sum + fateOf(name), added);
   const fillers = fresh[level] - added - seeds[level];
   return {

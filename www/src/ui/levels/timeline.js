@@ -41,16 +41,21 @@ export function createTimeline(body, engine, told) {
   const at = computed(() => Math.min(chosen.value ?? Infinity, table.value.last));
 
   // However many pieces a run comes in, the table is made once a frame.
-  let asked = 0;
+  let asked = false;
   effect(() => {
     void engine.revision.value;
-    asked ||= requestAnimationFrame(() => {
-      asked = 0;
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
       table.value = levelTable(engine.columns);
     });
   });
   effect(() => {
-    told.value = chosen.value !== null && some.value ? describeLevel(table.value, at.value, engine.progress.value.relax_step) : null;
+    told.value =
+      chosen.value !== null && some.value
+        ? describeLevel(table.value, at.value, engine.progress.value.relax_step)
+        : null;
   });
 
   /** @param {number | null} level */
@@ -73,7 +78,9 @@ export function createTimeline(body, engine, told) {
     clearTimeout(timer);
     playing.value = false;
   };
-  const wait = () => { timer = window.setTimeout(next, 1000 / Number(speed.value)); };
+  const wait = () => {
+    timer = window.setTimeout(next, 1000 / Number(speed.value));
+  };
   function next() {
     const level = chosen.peek();
     // Another run may have begun meanwhile; after the last level all of them are shown alike.
@@ -127,7 +134,9 @@ export function createTimeline(body, engine, told) {
     range.setPointerCapture(event.pointerId);
     seek(levelUnder(event));
   });
-  range.addEventListener('pointermove', (event) => { if (range.hasPointerCapture(event.pointerId)) seek(levelUnder(event)); });
+  range.addEventListener('pointermove', (event) => {
+    if (range.hasPointerCapture(event.pointerId)) seek(levelUnder(event));
+  });
   range.addEventListener('mousedown', (event) => {
     event.preventDefault();
     range.focus({ preventScroll: true });
@@ -149,7 +158,14 @@ export function createTimeline(body, engine, told) {
     const { last } = table.value;
     range.disabled = !some.value;
     range.valueAsNumber = at.value;
-    range.setAttribute('aria-valuetext', !some.value ? 'No levels yet' : chosen.value === null ? `All ${plural(last + 1, 'level')}: ${plural(table.value.count, 'particle')}` : shortOf(table.value, at.value));
+    range.setAttribute(
+      'aria-valuetext',
+      !some.value
+        ? 'No levels yet'
+        : chosen.value === null
+          ? `All ${plural(last + 1, 'level')}: ${plural(table.value.count, 'particle')}`
+          : shortOf(table.value, at.value),
+    );
     track.style.setProperty('--done', String((at.value + 1) / (last + 1)));
     track.toggleAttribute('data-chosen', chosen.value !== null);
   });
@@ -177,14 +193,35 @@ export function createTimeline(body, engine, told) {
       button('first', 'First level', 'The seed.', '<', commands.first, ends),
       button('back', 'Level back', 'One generation level less.', ',', commands.back, ends),
       toggle,
-      button('forward', 'Level forward', 'One generation level more.', '.', commands.forward, computed(() => some.value && chosen.value !== null)),
-      button('all', 'All levels', 'Every particle, all alike.', '>', commands.all, computed(() => some.value && chosen.value !== null)),
+      button(
+        'forward',
+        'Level forward',
+        'One generation level more.',
+        '.',
+        commands.forward,
+        computed(() => some.value && chosen.value !== null),
+      ),
+      button(
+        'all',
+        'All levels',
+        'Every particle, all alike.',
+        '>',
+        commands.all,
+        computed(() => some.value && chosen.value !== null),
+      ),
     ),
     track,
     now,
     speed,
   );
-  explain(track, () => ({ title: 'Generation levels', text: 'New particles per level. Press or drag to see the front as far as that level.' }), { side: 'above' });
+  explain(
+    track,
+    () => ({
+      title: 'Generation levels',
+      text: 'New particles per level. Press or drag to see the front as far as that level.',
+    }),
+    { side: 'above' },
+  );
   return commands;
 }
 
@@ -197,9 +234,24 @@ export function createTimeline(body, engine, told) {
  * @param {import('@preact/signals-core').ReadonlySignal<boolean>} enabled
  */
 function button(name, label, text, key, act, enabled) {
-  const element = h('button', { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: () => { if (enabled.peek()) act(); } } }, drawIcon(ICONS[name]));
+  const element = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain square',
+      'aria-label': label,
+      on: {
+        click: () => {
+          if (enabled.peek()) act();
+        },
+      },
+    },
+    drawIcon(ICONS[name]),
+  );
   effect(() => element.setAttribute('aria-disabled', String(!enabled.value)));
-  explain(element, () => ({ title: element.getAttribute('aria-label') ?? label, text: `${text} Key ${key}` }), { side: 'above' });
+  explain(element, () => ({ title: element.getAttribute('aria-label') ?? label, text: `${text} Key ${key}` }), {
+    side: 'above',
+  });
   return element;
 }
 
@@ -211,7 +263,12 @@ function bars(fresh) {
   svg.setAttribute('viewBox', `0 0 ${fresh.length} 1`);
   svg.setAttribute('preserveAspectRatio', 'none');
   // A level with one particle among hundreds is still to be seen.
-  path.setAttribute('d', Array.from(fresh, (n, k) => `M${k + GAP} 1V${(1 - Math.max(n / most, LEAST)).toFixed(3)}h${1 - 2 * GAP}V1z`).join(''));
+  path.setAttribute(
+    'd',
+    Array.from(fresh, (n, k) => `M${k + GAP} 1V${(1 - Math.max(n / most, LEAST)).toFixed(3)}h${1 - 2 * GAP}V1z`).join(
+      '',
+    ),
+  );
   svg.append(path);
   return svg;
 }

@@ -17,7 +17,13 @@ export function turnToSeed(engine) {
   let done = 0;
   let held = false;
   // The hand has the last word.
-  addEventListener('pointerdown', () => { held = true; }, { once: true, capture: true });
+  addEventListener(
+    'pointerdown',
+    () => {
+      held = true;
+    },
+    { once: true, capture: true },
+  );
   const turn = () => {
     if (held) return;
     const t = reducedMotion() ? 1 : clamp((performance.now() - start) / TURN_MS, 0, 1);

@@ -16,7 +16,11 @@ export function coarsen({ min, max, bins }, rows) {
   const result = [];
   for (let start = first; start <= last; start += group) {
     const stop = Math.min(last + 1, start + group);
-    result.push({ from: min + start * width, to: min + stop * width, count: bins.slice(start, stop).reduce((sum, count) => sum + count, 0) });
+    result.push({
+      from: min + start * width,
+      to: min + stop * width,
+      count: bins.slice(start, stop).reduce((sum, count) => sum + count, 0),
+    });
   }
   return result;
 }

@@ -42,16 +42,30 @@ export function drawHistogram(host, { min, max, bins }) {
       cursor: { show: false },
       scales: { x: { time: false }, y: { range: (_, __, high) => [0, Math.max(1, high) * 1.05] } },
       axes: [
-        { stroke: ink, font, size: 22, gap: 3, space: 44, grid: { show: false }, ticks: { stroke: line, width: 1, size: 4 }, values: (_, splits) => splits.map((value) => formatSignificant(value, 3)) },
+        {
+          stroke: ink,
+          font,
+          size: 22,
+          gap: 3,
+          space: 44,
+          grid: { show: false },
+          ticks: { stroke: line, width: 1, size: 4 },
+          values: (_, splits) => splits.map((value) => formatSignificant(value, 3)),
+        },
         { show: false },
       ],
-      series: [{}, { paths: uPlot.paths.bars?.({ size: [1, Infinity], gap: 1 }), fill: accent, width: 0, points: { show: false } }],
+      series: [
+        {},
+        { paths: uPlot.paths.bars?.({ size: [1, Infinity], gap: 1 }), fill: accent, width: 0, points: { show: false } },
+      ],
       hooks: { drawAxes: [(u) => drawIdeal(u, ink)] },
     },
     [xs, bins],
     host,
   );
-  const observer = new ResizeObserver(() => { if (host.clientWidth > 0) plot.setSize({ width: host.clientWidth, height: host.clientHeight }); });
+  const observer = new ResizeObserver(() => {
+    if (host.clientWidth > 0) plot.setSize({ width: host.clientWidth, height: host.clientHeight });
+  });
   observer.observe(host);
   plots.set(host, { plot, colours, observer });
 }

@@ -27,19 +27,46 @@ export function createHistogram(report, { theme, columns }) {
       'details',
       null,
       h('summary', { class: 'quiet' }, 'As a table'),
-      h('table', null, h('thead', null, h('tr', null, h('th', { scope: 'col' }, 'From'), h('th', { scope: 'col' }, 'To'), h('th', { scope: 'col' }, 'Particles'))), table),
+      h(
+        'table',
+        null,
+        h(
+          'thead',
+          null,
+          h(
+            'tr',
+            null,
+            h('th', { scope: 'col' }, 'From'),
+            h('th', { scope: 'col' }, 'To'),
+            h('th', { scope: 'col' }, 'Particles'),
+          ),
+        ),
+        table,
+      ),
     ),
   );
   effect(() => {
     const current = report.value;
     // Where every particle has a size of its own, so has its distance.
-    const bins = columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
+    const bins =
+      columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
     unit.textContent = columns.adaptive ? 'own diameter 1' : 'perfect lattice 1';
-    const usable = Boolean(bins && bins.bins.length && bins.max > bins.min);
+    const usable = Boolean(bins?.bins.length && bins.max > bins.min);
     section.hidden = !usable;
     if (!bins || !usable) return;
     const shown = trim(bins, IDEAL);
-    fill(table, coarsen(shown, TABLE_ROWS).map(({ from, to, count }) => h('tr', null, h('td', null, formatFixed(from, 2)), h('td', null, formatFixed(to, 2)), h('td', null, formatCount(count)))));
+    fill(
+      table,
+      coarsen(shown, TABLE_ROWS).map(({ from, to, count }) =>
+        h(
+          'tr',
+          null,
+          h('td', null, formatFixed(from, 2)),
+          h('td', null, formatFixed(to, 2)),
+          h('td', null, formatCount(count)),
+        ),
+      ),
+    );
     void theme.value;
     void draw(plot, shown);
   });

@@ -3,13 +3,18 @@ import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { withCounts } from '../format.js';
+import { createHistogram } from './histogram.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
-import { createHistogram } from './histogram.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
-const DRAWN = { starting: 'Graphics starting', webgpu: 'Drawn with WebGPU', webgl2: 'Drawn with WebGL2', canvas2d: 'Drawn without acceleration' };
+const DRAWN = {
+  starting: 'Graphics starting',
+  webgpu: 'Drawn with WebGPU',
+  webgl2: 'Drawn with WebGL2',
+  canvas2d: 'Drawn without acceleration',
+};
 
 /**
  * @param {HTMLElement} body
@@ -20,23 +25,45 @@ export function mountReport(body, engine, description) {
   // While a run is under way the figures of the one before stay, dimmed.
   let kept = engine.report.peek();
   const report = computed(() => {
-    kept = engine.empty.value ? null : engine.report.value ?? kept;
+    kept = engine.empty.value ? null : (engine.report.value ?? kept);
     return kept;
   });
-  effect(() => { body.classList.toggle('stale', engine.report.value === null); });
+  effect(() => {
+    body.classList.toggle('stale', engine.report.value === null);
+  });
 
   const warnings = h('ul', { class: 'section warnings' });
   effect(() => {
     const list = report.value?.warnings ?? [];
     warnings.hidden = list.length === 0;
-    fill(warnings, list.map((text) => h('li', null, withCounts(text))));
+    fill(
+      warnings,
+      list.map((text) => h('li', null, withCounts(text))),
+    );
   });
   const waiting = h('p', { class: 'quiet waiting' });
-  bindText(waiting, () => (engine.empty.value ? 'Nothing to measure: there is no surface inside the box.' : 'The figures appear when the first run is done.'));
-  effect(() => { waiting.hidden = report.value !== null; });
+  bindText(waiting, () =>
+    engine.empty.value
+      ? 'Nothing to measure: there is no surface inside the box.'
+      : 'The figures appear when the first run is done.',
+  );
+  effect(() => {
+    waiting.hidden = report.value !== null;
+  });
   const drawn = h('button', { type: 'button', class: 'term' });
   bindText(drawn, () => DRAWN[engine.backend.value]);
-  explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), { tap: true, side: 'left' });
+  explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), {
+    tap: true,
+    side: 'left',
+  });
   const backend = h('p', { class: 'section quiet backend' }, drawn, h('span', null, `Version ${description.version}`));
-  fill(body, waiting, warnings, createTable(report, description.report), createTiming(engine, report), createHistogram(report, engine), backend);
+  fill(
+    body,
+    waiting,
+    warnings,
+    createTable(report, description.report),
+    createTiming(engine, report),
+    createHistogram(report, engine),
+    backend,
+  );
 }

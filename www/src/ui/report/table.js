@@ -31,12 +31,16 @@ export function createTable(report, rows) {
         ),
         members.map((row) => createRow(report, row)),
       );
-      effect(() => { body.hidden = !members.some((row) => isTold(report.value, row)); });
+      effect(() => {
+        body.hidden = !members.some((row) => isTold(report.value, row));
+      });
       return body;
     }),
   );
   const section = h('div', { class: 'section' }, table);
-  effect(() => { section.hidden = report.value === null; });
+  effect(() => {
+    section.hidden = report.value === null;
+  });
   return section;
 }
 
@@ -48,8 +52,16 @@ const isPaired = ({ key }) => key.startsWith('quality.');
  * @param {ReportRow} row
  */
 function createRow(report, row) {
-  const term = h('button', { type: 'button', class: 'term' }, row.label, row.unit ? h('span', { class: 'unit' }, `\u00a0${row.unit}`) : null);
-  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) }), { tap: true, side: 'left' });
+  const term = h(
+    'button',
+    { type: 'button', class: 'term' },
+    row.label,
+    row.unit ? h('span', { class: 'unit' }, `\u00a0${row.unit}`) : null,
+  );
+  explain(term, () => ({ title: row.label, text: row.help, ideal: idealOf(row, report.peek()) }), {
+    tap: true,
+    side: 'left',
+  });
   const before = h('td');
   const now = h('td', { class: 'now' });
   effect(() => {
@@ -82,5 +94,8 @@ function idealOf(row, report) {
   const direction = better === 'higher' ? 'Higher is better.' : better === 'lower' ? 'Lower is better.' : '';
   const figures = report && figuresOf(report, row.key);
   const change = figures ? CHANGES[compare(row, figures.before, figures.now)] : '';
-  return [ideal ? `Ideal: ${ideal}${/[.!]$/.test(ideal) ? '' : '.'}` : '', direction, change].filter(Boolean).join(' ') || undefined;
+  return (
+    [ideal ? `Ideal: ${ideal}${/[.!]$/.test(ideal) ? '' : '.'}` : '', direction, change].filter(Boolean).join(' ') ||
+    undefined
+  );
 }

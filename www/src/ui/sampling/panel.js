@@ -38,7 +38,13 @@ function createTrack({ busy, reveal, progress, loading }) {
     const share = reveal.value ? reveal.value.particles / Math.max(1, particles) : busy.value ? done : 0;
     return Math.round(Math.min(1, share) * 200) / 200;
   });
-  const track = h('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Sampling', 'aria-valuemin': 0, 'aria-valuemax': 100 });
+  const track = h('div', {
+    class: 'progress',
+    role: 'progressbar',
+    'aria-label': 'Sampling',
+    'aria-valuemin': 0,
+    'aria-valuemax': 100,
+  });
   effect(() => {
     track.style.setProperty('--fraction', String(fraction.value));
     track.dataset.busy = String(growing.value);
@@ -55,9 +61,25 @@ function createActions(engine) {
   const some = computed(() => engine.progress.value.particles > 0);
   return h('div', { class: 'actions', role: 'group', 'aria-label': 'Run' }, [
     action('Run', 'Samples the surface from its first particle. Key R.', () => engine.run(), always, 'primary in-tabs'),
-    action('Stop', 'Ends the run and keeps the particles placed so far. Key Escape.', () => engine.stop(), stoppable, 'in-tabs'),
-    action('Generate only', 'Places the particles level by level and leaves them unrelaxed. Key G.', () => engine.generateOnly(), always),
-    action('Relax one step', 'Moves the present particles one relaxation step further. Key E.', () => engine.relax(1), computed(() => some.value && !busy.value)),
+    action(
+      'Stop',
+      'Ends the run and keeps the particles placed so far. Key Escape.',
+      () => engine.stop(),
+      stoppable,
+      'in-tabs',
+    ),
+    action(
+      'Generate only',
+      'Places the particles level by level and leaves them unrelaxed. Key G.',
+      () => engine.generateOnly(),
+      always,
+    ),
+    action(
+      'Relax one step',
+      'Moves the present particles one relaxation step further. Key E.',
+      () => engine.relax(1),
+      computed(() => some.value && !busy.value),
+    ),
   ]);
 }
 
@@ -71,7 +93,19 @@ function createActions(engine) {
 function action(label, help, act, enabled, kind = '') {
   const press = once(act);
   // It stays focusable while it can do nothing, so that a keyboard user does not lose the place.
-  const button = h('button', { type: 'button', class: `button ${kind}`, on: { click: () => { if (enabled.peek()) press(); } } }, label);
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: `button ${kind}`,
+      on: {
+        click: () => {
+          if (enabled.peek()) press();
+        },
+      },
+    },
+    label,
+  );
   effect(() => {
     if (enabled.value) button.removeAttribute('aria-disabled');
     else button.setAttribute('aria-disabled', 'true');
@@ -89,18 +123,43 @@ function action(label, help, act, enabled, kind = '') {
  */
 function createAdvanced(engine, all, advanced, create) {
   const id = uniqueId('advanced');
-  const section = h('div', { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: true }, advanced.map(create));
+  const section = h(
+    'div',
+    { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: true },
+    advanced.map(create),
+  );
   const changed = h('span', { class: 'unit' });
-  const button = h('button', { type: 'button', class: 'button plain disclose', 'aria-controls': id, 'aria-expanded': 'false', on: { click: () => {
-    section.hidden = !section.hidden;
-    button.setAttribute('aria-expanded', String(!section.hidden));
-  } } }, 'Advanced', changed);
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain disclose',
+      'aria-controls': id,
+      'aria-expanded': 'false',
+      on: {
+        click: () => {
+          section.hidden = !section.hidden;
+          button.setAttribute('aria-expanded', String(!section.hidden));
+        },
+      },
+    },
+    'Advanced',
+    changed,
+  );
   const count = computed(() => countChanged(advanced, all, engine.state.value.settings));
   effect(() => {
     changed.hidden = count.value === 0;
     changed.textContent = `${count.value} changed`;
   });
-  explain(button, () => ({ text: count.peek() ? `${plural(count.peek(), 'setting')} changed. A double click on a slider takes its default back.` : 'Settings that few need.' }), { side: 'above' });
+  explain(
+    button,
+    () => ({
+      text: count.peek()
+        ? `${plural(count.peek(), 'setting')} changed. A double click on a slider takes its default back.`
+        : 'Settings that few need.',
+    }),
+    { side: 'above' },
+  );
   button.hidden = advanced.length === 0;
   return { button, section };
 }

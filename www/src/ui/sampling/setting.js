@@ -18,7 +18,12 @@ import { isSegmented, isShown } from './settings.js';
  */
 export function createSetting(engine, all, info) {
   const value = computed(() => engine.state.value.settings[info.name] ?? info.default);
-  const label = h('span', { class: 'setting-label' }, info.label, info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null);
+  const label = h(
+    'span',
+    { class: 'setting-label' },
+    info.label,
+    info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null,
+  );
   const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
   const element = h('div', { class: 'setting', data: { setting: info.name, kind: kindOf(info) } }, label, control);
   const help = () => ({ title: info.label, text: info.help });
@@ -28,12 +33,15 @@ export function createSetting(engine, all, info) {
   explain(label, help, { tap: true, side: 'above' });
 
   const holds = computed(() => isShown(info, all, engine.state.value.settings));
-  effect(() => { element.hidden = !holds.value; });
+  effect(() => {
+    element.hidden = !holds.value;
+  });
   return element;
 }
 
 /** @param {SettingInfo} info */
-const kindOf = (info) => (isSegmented(info) ? 'segmented' : info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number');
+const kindOf = (info) =>
+  isSegmented(info) ? 'segmented' : info.kind === 'choice' ? 'choice' : wantsSlider(info) ? 'slider' : 'number';
 
 /**
  * @param {Engine} engine
@@ -42,16 +50,27 @@ const kindOf = (info) => (isSegmented(info) ? 'segmented' : info.kind === 'choic
  */
 function createChoice(engine, info, value) {
   if (isSegmented(info)) {
-    const segmented = createSegmented({ name: info.label, choices: info.choices ?? [], change: (next) => engine.setSetting(info.name, next) });
+    const segmented = createSegmented({
+      name: info.label,
+      choices: info.choices ?? [],
+      change: (next) => engine.setSetting(info.name, next),
+    });
     effect(() => segmented.set(String(value.value)));
     return segmented.element;
   }
   const select = h(
     'select',
-    { class: 'select', id: uniqueId('setting'), 'aria-label': info.label, on: { change: () => engine.setSetting(info.name, select.value) } },
+    {
+      class: 'select',
+      id: uniqueId('setting'),
+      'aria-label': info.label,
+      on: { change: () => engine.setSetting(info.name, select.value) },
+    },
     (info.choices ?? []).map((choice) => h('option', { value: choice.value }, choice.label)),
   );
-  effect(() => { select.value = String(value.value); });
+  effect(() => {
+    select.value = String(value.value);
+  });
   return select;
 }
 
@@ -68,7 +87,8 @@ function createNumber(engine, info, value) {
     scale: { min: info.min, max: info.max, step: info.step, scale: info.scale, integer },
     value: Number(value.peek()),
     factor,
-    describe: (now) => `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
+    describe: (now) =>
+      `${integer ? formatCount(now) : formatSignificant(now * factor)}${info.unit ? ` ${info.unit}` : ''}`,
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
   });

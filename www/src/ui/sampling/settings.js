@@ -21,8 +21,12 @@ export function arrange(settings) {
 
 /** Two or three short values are easier to see side by side than in a list. @param {SettingInfo} info */
 export function isSegmented({ kind, choices = [] }) {
-  return kind === 'choice' && choices.length > 1 && choices.length <= 3
-    && choices.reduce((sum, { label }) => sum + label.length, 0) <= SEGMENTED_LETTERS;
+  return (
+    kind === 'choice' &&
+    choices.length > 1 &&
+    choices.length <= 3 &&
+    choices.reduce((sum, { label }) => sum + label.length, 0) <= SEGMENTED_LETTERS
+  );
 }
 
 /**
@@ -31,7 +35,7 @@ export function isSegmented({ kind, choices = [] }) {
  * @param {Settings} values what differs from the defaults
  * @param {string} name
  */
-export const valueOf = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
+export const settingValue = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
 
 /**
  * Whether every condition of a setting holds.
@@ -40,7 +44,7 @@ export const valueOf = (all, values, name) => values[name] ?? all.find((info) =>
  * @param {Settings} values
  */
 export function isShown({ when = [] }, all, values) {
-  return when.every(({ name, value, equal = true }) => (valueOf(all, values, name) === value) === equal);
+  return when.every(({ name, value, equal = true }) => (settingValue(all, values, name) === value) === equal);
 }
 
 /**
@@ -50,5 +54,6 @@ export function isShown({ when = [] }, all, values) {
  * @param {Settings} values
  */
 export function countChanged(some, all, values) {
-  return some.filter((info) => isShown(info, all, values) && (values[info.name] ?? info.default) !== info.default).length;
+  return some.filter((info) => isShown(info, all, values) && (values[info.name] ?? info.default) !== info.default)
+    .length;
 }

@@ -23,7 +23,9 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
     case 'search':
       return busy ? `Looking for further pieces · ${particles}` : resting();
     case 'relaxation':
-      return busy ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}` : resting();
+      return busy
+        ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}`
+        : resting();
     case 'quality':
       return `${particles} · measuring`;
     case 'done':

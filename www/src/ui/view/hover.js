@@ -41,5 +41,9 @@ function rowsOf(hover) {
   if (hover.valence !== null) rows.push(['Neighbours', formatCount(hover.valence)]);
   if (hover.nearest !== null) rows.push(['Nearest', `${formatFixed(hover.nearest / (2 * hover.radius), 3)} · 2r`]);
   if (hover.residual !== null) rows.push(['Residual', formatSignificant(hover.residual, 2)]);
-  return h('dl', null, rows.flatMap(([label, value]) => [h('dt', null, label), h('dd', null, value)]));
+  return h(
+    'dl',
+    null,
+    rows.flatMap(([label, value]) => [h('dt', null, label), h('dd', null, value)]),
+  );
 }

@@ -15,11 +15,17 @@ import { formatCount, formatSignificant } from '../format.js';
 export function createLegend(engine, description) {
   const select = h(
     'select',
-    { class: 'select', 'aria-label': 'Colour by', on: { change: () => engine.setView({ colour: /** @type {ColourMode} */ (select.value) }) } },
+    {
+      class: 'select',
+      'aria-label': 'Colour by',
+      on: { change: () => engine.setView({ colour: /** @type {ColourMode} */ (select.value) }) },
+    },
     description.colours.map(({ id, label }) => h('option', { value: id }, label)),
   );
   const colour = computed(() => engine.state.value.view.colour);
-  effect(() => { select.value = colour.value; });
+  effect(() => {
+    select.value = colour.value;
+  });
   explain(select, () => {
     const entry = description.colours.find(({ id }) => id === colour.peek());
     return entry ? { title: entry.label, text: entry.help } : null;
@@ -45,22 +51,33 @@ function swatch(colour) {
 const SCALES = {
   plain: () => [],
   cyclic: ({ colours }) => [
-    h('div', { class: 'cycle', role: 'img', 'aria-label': `${colours.length} colours, repeating` }, colours.map(swatch)),
+    h(
+      'div',
+      { class: 'cycle', role: 'img', 'aria-label': `${colours.length} colours, repeating` },
+      colours.map(swatch),
+    ),
     h('div', { class: 'ends' }, h('span', null, '0'), h('span', null, `${colours.length - 1}, then again`)),
   ],
   categories: ({ entries }) => [
-    h('ul', { class: 'categories' }, (entries ?? []).map(({ label, colour, count }) => h(
-      'li',
-      null,
-      swatch(colour),
-      h('span', null, label),
-      count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
-    ))),
+    h(
+      'ul',
+      { class: 'categories' },
+      (entries ?? []).map(({ label, colour, count }) =>
+        h(
+          'li',
+          null,
+          swatch(colour),
+          h('span', null, label),
+          count === undefined ? null : h('span', { class: 'count' }, formatCount(count)),
+        ),
+      ),
+    ),
   ],
   normal: (legend) => (legend.entries?.length ? SCALES.categories(legend) : SCALES.cyclic(legend)),
   sequential: (legend) => rampOf(legend, ([low, high]) => [formatSignificant(low), formatSignificant(high)]),
   // Values beyond the ends have the colour of the end.
-  diverging: (legend) => rampOf(legend, ([low, high]) => [`≤\u2009${formatSignificant(low, 2)}`, `≥\u2009${formatSignificant(high, 2)}`]),
+  diverging: (legend) =>
+    rampOf(legend, ([low, high]) => [`≤\u2009${formatSignificant(low, 2)}`, `≥\u2009${formatSignificant(high, 2)}`]),
 };
 
 /**

@@ -21,16 +21,29 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const empty = h('div', { class: 'empty', role: 'status' });
   view.append(empty, h('div', { class: 'foot' }, caption, hint), spoken);
 
-  const text = computed(() => (told.value ? told.value.title : engine.reveal.value ? revealOf(engine.reveal.value) : captionOf(engine.progress.value, {
-    partial: engine.partial.value, empty: engine.empty.value, busy: engine.busy.value, seconds: secondsOf(engine.timing.value),
-  })));
+  const text = computed(() =>
+    told.value
+      ? told.value.title
+      : engine.reveal.value
+        ? revealOf(engine.reveal.value)
+        : captionOf(engine.progress.value, {
+            partial: engine.partial.value,
+            empty: engine.empty.value,
+            busy: engine.busy.value,
+            seconds: secondsOf(engine.timing.value),
+          }),
+  );
   // The field panel reads the loading out.
   const line = h('span');
   const detail = h('span', { class: 'detail' });
   caption.append(line, detail);
   bindText(line, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
-  bindText(detail, () => (engine.loading.value ? '' : told.value?.text ?? ''));
-  announce(spoken, computed(() => (told.value ? `${text.value}. ${told.value.text}` : text.value)), computed(() => engine.busy.value || engine.reveal.value !== null));
+  bindText(detail, () => (engine.loading.value ? '' : (told.value?.text ?? '')));
+  announce(
+    spoken,
+    computed(() => (told.value ? `${text.value}. ${told.value.text}` : text.value)),
+    computed(() => engine.busy.value || engine.reveal.value !== null),
+  );
 
   // The poster stands in until the first particles are on screen.
   const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
@@ -40,7 +53,9 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     poster.classList.add('gone');
     start.hidden = true;
   });
-  effect(() => { if (engine.description.value || engine.notice.value?.id === 'load') start.hidden = true; });
+  effect(() => {
+    if (engine.description.value || engine.notice.value?.id === 'load') start.hidden = true;
+  });
 
   hintUntilUsed(hint, stage, settled);
 
@@ -68,23 +83,39 @@ function emptyState(engine) {
   const bounds = engine.field.peek()?.bounds;
   const widen = () => {
     if (!bounds) return;
-    const grow = (/** @type {1 | -1} */ side) => /** @type {[number, number, number]} */ (bounds.min.map((low, i) => {
-      const high = bounds.max[i];
-      return (low + high) / 2 + side * (high - low);
-    }));
+    const grow = (/** @type {1 | -1} */ side) =>
+      /** @type {[number, number, number]} */ (
+        bounds.min.map((low, i) => {
+          const high = bounds.max[i];
+          return (low + high) / 2 + side * (high - low);
+        })
+      );
     engine.setBounds({ min: grow(-1), max: grow(1) });
   };
-  const [title, remedy] = EMPTY[stop_reason ?? ''] ?? ['No surface inside the box', 'Change the formula, or widen the box.'];
+  const [title, remedy] = EMPTY[stop_reason ?? ''] ?? [
+    'No surface inside the box',
+    'Change the formula, or widen the box.',
+  ];
   return [
     h('h2', null, title),
     // The title says the first half of it.
     message ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, '')) : null,
-    h('p', { class: 'quiet' }, `${remedy}${engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : ''}`),
+    h(
+      'p',
+      { class: 'quiet' },
+      `${remedy}${engine.columns.stale ? ' The last surface stays, dimmed, until there is another.' : ''}`,
+    ),
     h(
       'div',
       { class: 'empty-actions' },
-      stop_reason === 'no_surface' ? h('button', { type: 'button', class: 'button', on: { click: widen } }, 'Double the box') : null,
-      h('button', { type: 'button', class: 'button', on: { click: () => engine.setSurface(engine.state.peek().surface) } }, 'Take the gallery formula back'),
+      stop_reason === 'no_surface'
+        ? h('button', { type: 'button', class: 'button', on: { click: widen } }, 'Double the box')
+        : null,
+      h(
+        'button',
+        { type: 'button', class: 'button', on: { click: () => engine.setSurface(engine.state.peek().surface) } },
+        'Take the gallery formula back',
+      ),
     ),
   ];
 }

@@ -5,8 +5,8 @@ import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { icon } from '../icons.js';
 import { attachMenu } from '../menu.js';
-import { createSlider } from '../slider.js';
 import { copyLink, exportFile, savePicture } from '../share.js';
+import { createSlider } from '../slider.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -36,11 +36,17 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('help', 'Keyboard shortcuts', 'Key ?', shortcuts),
   );
-  attachMenu(view, [turning(engine), discSize(engine), theme(engine), choice('Hide the panels', hide)], { label: 'View options' });
-  attachMenu(save, [
-    choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
-    choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
-  ], { label: 'Export' });
+  attachMenu(view, [turning(engine), discSize(engine), theme(engine), choice('Hide the panels', hide)], {
+    label: 'View options',
+  });
+  attachMenu(
+    save,
+    [
+      choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
+      choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
+    ],
+    { label: 'Export' },
+  );
   return bar;
 }
 
@@ -51,7 +57,11 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
  * @param {() => void} [act]
  */
 function tool(name, label, help, act) {
-  const button = h('button', { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} }, icon(name));
+  const button = h(
+    'button',
+    { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} },
+    icon(name),
+  );
   explain(button, () => ({ title: label, text: help }), { side: 'left' });
   return button;
 }
@@ -59,30 +69,55 @@ function tool(name, label, help, act) {
 /** Shows or hides the points that a model was made of. @param {Engine} engine */
 function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
-  const button = tool('points', 'Show points', 'The points that the surface goes through, as dots.', () => engine.setView({ points: !shown.peek() }));
-  effect(() => { button.hidden = engine.field.value?.kind !== 'points'; });
+  const button = tool('points', 'Show points', 'The points that the surface goes through, as dots.', () =>
+    engine.setView({ points: !shown.peek() }),
+  );
+  effect(() => {
+    button.hidden = engine.field.value?.kind !== 'points';
+  });
   effect(() => button.setAttribute('aria-pressed', String(shown.value)));
   return button;
 }
 
 /** @param {string} label @param {() => void} act @param {string} [note] */
 function choice(label, act, note) {
-  return h('button', { type: 'button', class: 'button', data: { closes: '' }, on: { click: act } }, label, note ? h('span', { class: 'unit note' }, note) : null);
+  return h(
+    'button',
+    { type: 'button', class: 'button', data: { closes: '' }, on: { click: act } },
+    label,
+    note ? h('span', { class: 'unit note' }, note) : null,
+  );
 }
 
 /** Buttons for those who cannot drag. @param {Engine} engine */
 function turning(engine) {
   /** @type {[import('../icons.js').IconName, string, number, number][]} */
-  const turns = [['left', 'Turn left', -1, 0], ['right', 'Turn right', 1, 0], ['up', 'Tilt up', 0, -1], ['down', 'Tilt down', 0, 1]];
+  const turns = [
+    ['left', 'Turn left', -1, 0],
+    ['right', 'Turn right', 1, 0],
+    ['up', 'Tilt up', 0, -1],
+    ['down', 'Tilt down', 0, 1],
+  ];
   return h(
     'div',
     { class: 'menu-line', role: 'group', 'aria-label': 'Turn' },
     h('span', null, 'Turn'),
-    h('span', { class: 'pad' }, turns.map(([name, label, x, y]) => h(
-      'button',
-      { type: 'button', class: 'button square', 'aria-label': label, on: { click: () => engine.orbit(x * TURN_RAD, y * TURN_RAD) } },
-      icon(name),
-    ))),
+    h(
+      'span',
+      { class: 'pad' },
+      turns.map(([name, label, x, y]) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            class: 'button square',
+            'aria-label': label,
+            on: { click: () => engine.orbit(x * TURN_RAD, y * TURN_RAD) },
+          },
+          icon(name),
+        ),
+      ),
+    ),
   );
 }
 
@@ -105,11 +140,24 @@ function discSize(engine) {
 /** @param {Engine} engine */
 function theme(engine) {
   const chosen = computed(() => engine.state.value.view.theme);
-  const themes = /** @type {const} */ ([['auto', 'System'], ['light', 'Light'], ['dark', 'Dark']]);
+  const themes = /** @type {const} */ ([
+    ['auto', 'System'],
+    ['light', 'Light'],
+    ['dark', 'Dark'],
+  ]);
   const buttons = themes.map(([id, label]) => {
-    const button = h('button', { type: 'button', class: 'button small', on: { click: () => engine.setView({ theme: id }) } }, label);
+    const button = h(
+      'button',
+      { type: 'button', class: 'button small', on: { click: () => engine.setView({ theme: id }) } },
+      label,
+    );
     effect(() => button.setAttribute('aria-pressed', String(chosen.value === id)));
     return button;
   });
-  return h('div', { class: 'menu-line', role: 'group', 'aria-label': 'Theme' }, h('span', null, 'Theme'), h('span', { class: 'pad' }, buttons));
+  return h(
+    'div',
+    { class: 'menu-line', role: 'group', 'aria-label': 'Theme' },
+    h('span', null, 'Theme'),
+    h('span', { class: 'pad' }, buttons),
+  );
 }
