@@ -18,7 +18,7 @@ use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::field::rbf::RbfField;
 use marching_particles::math::Bounds;
-use marching_particles::points::models;
+use marching_particles::pointcloud::models;
 use marching_particles::quality::{Options, measure};
 use marching_particles::sampler::{Phase, Sampler, Sampling, Settings, SizeMode, StopReason};
 use std::hint::black_box;

@@ -45,7 +45,7 @@
 //! ```text
 //! math ← field ← differential ← sampler ← session ← web
 //!           ↑              ↖ quality ← export ↙
-//!         points
+//!       pointcloud
 //! ```
 //!
 //! An arrow points at what is used; `tests/architecture.rs` names every use that is allowed and fails on any other.
@@ -56,16 +56,18 @@
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `pieces`: long work that can be left and gone on with, as measuring is.
 //! * [`trace`]: the log with which the adaptive front can be replayed.
-//! * [`sampler`]: survey, front, gaps, relaxation, as a state machine with a budget; and, natively, the particle systems that the
-//!   paper compares them with.
+//! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
+//! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
-//! * [`points`]: from a file of points to a field (feature `points`, on by default).
+//! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`export`]: PLY, CSV, XYZ and NPY.
 //! * [`json`]: what crosses between the core and the page, as text.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
 //! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).
 //! * `web`: what JavaScript sees, on `wasm32` only.
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod baseline;
 pub mod differential;
 pub mod export;
 pub mod field;
@@ -74,7 +76,7 @@ pub mod math;
 pub mod particles;
 mod pieces;
 #[cfg(feature = "points")]
-pub mod points;
+pub mod pointcloud;
 pub mod quality;
 pub mod render;
 pub mod sampler;

@@ -152,7 +152,7 @@ fn ten_steps_even_the_sizes_out() {
 #[test]
 fn the_bunny_is_even_after_ten_steps() {
     use marching_particles::field::{model, rbf::RbfField};
-    use marching_particles::points::models;
+    use marching_particles::pointcloud::models;
     let bunny = model::find("bunny").expect("a built-in model");
     let fit = models::begin(bunny).finish().expect("the bunny is solved for");
     let mut field = RbfField::new(fit.data).expect("the data is whole");

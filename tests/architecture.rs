@@ -14,16 +14,17 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     ("field", &["math"]),
     ("differential", &["math", "field"]),
     // From a file to a field. The core that samples is built without it.
-    ("points", &["math", "field", "spatial"]),
+    ("pointcloud", &["math", "field", "spatial"]),
     // Particles and the search among them know no field: they hold whatever made them.
     ("spatial", &["math", "pieces"]),
     ("particles", &["math"]),
     ("trace", &["math", "particles"]),
     ("sampler", &["math", "field", "differential", "spatial", "particles", "trace"]),
+    // The methods that the paper compares its own with stand on the sampler's survey, sizes and way to the surface.
+    ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
     // Figures about a set of particles must not depend on what made them.
-    ("quality", &["math", "pieces", "field", "differential", "spatial", "particles", "polygonize"]),
-    ("polygonize", &["math", "spatial", "particles"]),
-    ("export", &["math", "spatial", "particles", "quality", "polygonize"]),
+    ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
+    ("export", &["math", "spatial", "particles", "quality"]),
     (
         "session",
         &[
@@ -37,14 +38,13 @@ const MAY_USE: [(&str, &[&str]); 18] = [
             "trace",
             "sampler",
             "quality",
-            "polygonize",
             "export",
         ],
     ),
     // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
     ("render", &["math"]),
     ("web/core", &["json", "field", "sampler", "session"]),
-    ("web/points", &["json", "math", "points"]),
+    ("web/points", &["json", "math", "pointcloud"]),
     ("web/render", &["render"]),
 ];
 

@@ -1,11 +1,11 @@
 //! The particle systems that the paper compares its method with (§6): from one particle they cover a surface by themselves, as evenly as
 //! their sources promise, the same every time, and they end on any field.
 
+use marching_particles::baseline::{Baseline, Settings, StopReason};
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::{Field, gallery};
 use marching_particles::math::Bounds;
 use marching_particles::quality::{self, Figures, Sizes};
-use marching_particles::sampler::baseline::{Baseline, Settings, StopReason};
 use marching_particles::sampler::{Sampling, Settings as Of, SettingsError, SizeMode};
 
 const SCHEMES: [Sampling; 2] = [Sampling::Uniform, Sampling::Adaptive];

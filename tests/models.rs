@@ -13,8 +13,8 @@ use glam::{DVec3, Vec3};
 use marching_particles::field::Field;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::model::MODELS;
-use marching_particles::points::Cloud;
-use marching_particles::points::models;
+use marching_particles::pointcloud::Cloud;
+use marching_particles::pointcloud::models;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ const COUNT: usize = 200;
 
 fn check(id: &str, made: &Cloud) {
     let bytes = models::encode(&centred(made));
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/points/data/{id}.bin"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/pointcloud/data/{id}.bin"));
     if std::env::var_os("UPDATE_MODELS").is_some_and(|value| value == "1") {
         std::fs::write(&path, &bytes).expect("the data file can be written");
     }
@@ -66,7 +66,7 @@ fn every_model_has_two_hundred_points_of_its_own() {
         // What is read is written again to the last bit: nothing is lost by storing it twice.
         let again = models::encode(&cloud);
         let path =
-            PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/points/data/{}.bin", model.id));
+            PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/pointcloud/data/{}.bin", model.id));
         assert!(std::fs::read(path).expect("the data file can be read") == again, "{}", model.id);
     }
     assert_eq!(models::cloud("ellipsoid"), None);

@@ -7,7 +7,7 @@
 
 use marching_particles::field::model;
 use marching_particles::json;
-use marching_particles::points::models;
+use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};

@@ -2,9 +2,9 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::DVec3;
-use marching_particles::points::normals::Estimator;
-use marching_particles::points::thin::{KEPT, Merger, Spreader, Thinner, check_spread};
-use marching_particles::points::{Cloud, CloudError, NormalSource};
+use marching_particles::pointcloud::normals::Estimator;
+use marching_particles::pointcloud::thin::{KEPT, Merger, Spreader, Thinner, check_spread};
+use marching_particles::pointcloud::{Cloud, CloudError, NormalSource};
 
 fn merged(cloud: Cloud) -> (Cloud, usize) {
     let mut merger = Merger::new(cloud);

@@ -6,8 +6,8 @@
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
-use marching_particles::points::fit::Fit;
-use marching_particles::points::job::{DEFAULT_CENTRES, Job, JobError, Stage};
+use marching_particles::pointcloud::fit::Fit;
+use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, Stage};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;

@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 use marching_particles::export;
 use marching_particles::particles::{Particles, Slots};
-use marching_particles::points::read::{Format, MAX_BYTES, Mesh, ReadError, Reader, check_size};
-use marching_particles::points::{Cloud, NormalSource};
+use marching_particles::pointcloud::read::{Format, MAX_BYTES, Mesh, ReadError, Reader, check_size};
+use marching_particles::pointcloud::{Cloud, NormalSource};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 

@@ -11,6 +11,9 @@ pub use real::Real;
 
 use glam::{DVec3, Vec3};
 
+/// √3: a hexagonal cell of spacing d has the area √3 d²/2.
+pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
 /// An axis-aligned box, in the field's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Bounds {

@@ -7,7 +7,7 @@ use super::sizes::{Wanted, length, mutual};
 use super::triangles::{area_vector, topology};
 use super::{Options, Prepared, Scene, components, probe};
 use crate::field::Field;
-use crate::math::{Bounds, tangent_frame};
+use crate::math::{Bounds, SQRT_3, tangent_frame};
 use crate::pieces::{piece, ranges};
 use crate::spatial::tree::{key, unkey};
 use glam::{DVec2, DVec3, Vec3};
@@ -17,7 +17,6 @@ use serde::Serialize;
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
-const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Points, triangles or places looked at in one piece of work.
 const PIECE: usize = 256;
 /// Triangles are larger than this many d_hex only where holes are.

@@ -4,6 +4,7 @@ use super::figures::Moments;
 use super::{Scene, Sizes};
 use crate::differential::exact_curvature;
 use crate::field::Field;
+use crate::math::SQRT_3;
 use crate::pieces::{piece, ranges};
 use glam::Vec3;
 
@@ -11,7 +12,6 @@ use glam::Vec3;
 const CELL_AREA: f64 = 2.0 * SQRT_3;
 /// Radius of a hole in that lattice.
 const HOLE: f64 = 2.0 / SQRT_3;
-const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// Points whose radii are found in one piece of work.
 const PIECE: usize = 64;

@@ -1,13 +1,13 @@
 //! What a run that has ended tells its user.
 
-use super::survey::Absence;
 use super::{Sampler, StopReason};
 use crate::math::decimal::text;
+use crate::sampler::discovery::survey::Absence;
 use glam::DVec3;
 
 impl Sampler {
     /// A sentence for the user where the reason for the end needs one.
-    pub(super) fn message(&self) -> Option<String> {
+    pub(crate) fn message(&self) -> Option<String> {
         Some(match self.stop_reason? {
             StopReason::Complete | StopReason::Cancelled => return None,
             StopReason::Cap => format!(

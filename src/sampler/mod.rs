@@ -4,55 +4,39 @@
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
 //! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
 
-mod adaptive;
-mod adaptive_grid;
-mod arcs;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod baseline;
+pub(crate) mod discovery;
+mod fates;
 mod front;
-mod gaps;
-mod laws;
 mod message;
-mod narrow;
-mod nodes;
-mod octree;
-mod pairs;
+pub(crate) mod neighbours;
 mod phase;
-mod placement;
-mod project;
-mod relax;
-mod repulsion;
-mod search;
-mod seeds;
+pub(crate) mod projection;
+pub(crate) mod relaxation;
 mod settings;
-mod sheets;
-mod sizing;
-mod surroundings;
-mod survey;
-mod uniform;
+pub(crate) mod sizing;
 
-pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
+pub use discovery::completeness::Search;
+pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
-pub use search::Search;
 pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
-pub use uniform::FateCounts;
+pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
-use crate::math::Bounds;
+use crate::math::{Bounds, SQRT_3};
 use crate::particles::Particles;
 use crate::trace::Trace;
-use adaptive::Surface;
+use discovery::seeds::{Place, Seeds};
+use discovery::survey::{Absence, Survey, survey};
 use front::Front;
+use front::adaptive::Surface;
 use glam::Vec3;
-use pairs::Pairs;
-use project::{Projector, Tolerance, tolerance};
+use neighbours::pairs::Pairs;
+use projection::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
-use relax::Relaxation;
-use seeds::{Place, Seeds};
+use relaxation::Relaxation;
 use serde::Serialize;
 use sizing::Sizing;
-use survey::{Absence, Survey, survey};
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
 /// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
@@ -278,7 +262,7 @@ impl Sampler {
     /// Places where f has no gradient on the surface, a curve of them counted as one; `None` where they were not looked for.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
-        self.seeds.open_cells().map(|_| nodes::places(self.seeds.singular()))
+        self.seeds.open_cells().map(|_| discovery::singular::places(self.seeds.singular()))
     }
 
     /// The settings of the run.
@@ -535,7 +519,7 @@ impl Sampler {
                 }
                 Phase::Relaxation => {
                     let start = self.projector.evaluations;
-                    let mut surface = relax::Surface {
+                    let mut surface = relaxation::Surface {
                         field: &mut *field,
                         projector: &mut self.projector,
                         sizing: self.sizing.as_ref(),
@@ -553,7 +537,7 @@ impl Sampler {
             }
         }
         if self.phase == Phase::Done && core::mem::take(&mut self.is_unmarked) {
-            nodes::mark(field, self.seeds.singular(), &mut self.particles);
+            discovery::singular::mark(field, self.seeds.singular(), &mut self.particles);
             self.moved = true;
         }
         debug_assert!(self.projector.evaluations >= before);
@@ -746,9 +730,9 @@ impl Sampler {
         self.pairs.shrink();
         let law = match self.settings.sampling {
             Sampling::Uniform => {
-                relax::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
+                relaxation::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
             }
-            Sampling::Adaptive => relax::Law::Overlap {
+            Sampling::Adaptive => relaxation::Law::Overlap {
                 resolution: self.survey.resolution,
                 min_gradient: self.tolerance.min_gradient,
             },
@@ -775,5 +759,3 @@ fn typical_radius(survey: &Survey, sizing: &Sizing, other: f64) -> f64 {
     let radius = (survey.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
     if radius > 0.0 && radius.is_finite() { radius } else { other }
 }
-
-const SQRT_3: f64 = 1.732_050_807_568_877_2;

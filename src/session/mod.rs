@@ -377,7 +377,7 @@ impl Session {
         Ok(self.answer())
     }
 
-    /// Changes the field to one from points, as `points::fit` makes it. [`Session::set_field`] with a surface or a formula
+    /// Changes the field to one from points, as `pointcloud::fit` makes it. [`Session::set_field`] with a surface or a formula
     /// changes it back. Both end a run on another field, whose particles stay until the next [`Session::start`].
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The bundle for models from points: a [`Job`] behind JSON strings and copies of its results.
 
 use crate::json;
-use crate::points::job::{DEFAULT_CENTRES, Job, JobError};
+use crate::pointcloud::job::{DEFAULT_CENTRES, Job, JobError};
 use serde::Serialize;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -43,7 +43,7 @@ fn accepted(value: &impl Serialize) -> String {
 /// What there is to know of a field.
 #[derive(Serialize)]
 struct Known<'a> {
-    info: &'a crate::points::ModelInfo,
+    info: &'a crate::pointcloud::ModelInfo,
     bounds: crate::math::Bounds,
 }
 

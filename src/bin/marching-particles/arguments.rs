@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use marching_particles::math::Bounds;
-use marching_particles::points::job::{CENTRES, DEFAULT_CENTRES};
+use marching_particles::pointcloud::job::{CENTRES, DEFAULT_CENTRES};
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -284,8 +284,8 @@ impl Length {
     }
 }
 
-fn baseline() -> marching_particles::sampler::baseline::Settings {
-    marching_particles::sampler::baseline::Settings::default()
+fn baseline() -> marching_particles::baseline::Settings {
+    marching_particles::baseline::Settings::default()
 }
 
 fn defaults() -> marching_particles::sampler::Settings {

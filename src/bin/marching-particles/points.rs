@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use indicatif::ProgressBar;
-use marching_particles::points::fit::Fit;
-use marching_particles::points::job::{Job, JobError};
-use marching_particles::points::read::{MAX_BYTES, check_size};
+use marching_particles::pointcloud::fit::Fit;
+use marching_particles::pointcloud::job::{Job, JobError};
+use marching_particles::pointcloud::read::{MAX_BYTES, check_size};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

@@ -9,7 +9,7 @@ use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model::{self, ModelInfo};
 use marching_particles::math::{Bounds, decimal};
-use marching_particles::points::fit::Fit;
+use marching_particles::pointcloud::fit::Fit;
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode, StopReason,
 };

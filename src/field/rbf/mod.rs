@@ -1,7 +1,7 @@
 //! Hermite radial basis functions: a smooth field from points with normals.
 //!
 //! f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³, whose gradient 3 r d and second derivative 3 (r I + d dᵀ/r)
-//! vanish at d = 0. The coefficients come from `points::fit`, which asks for f = 0 and ∇f = n at every centre; the paper's
+//! vanish at d = 0. The coefficients come from `pointcloud::fit`, which asks for f = 0 and ∇f = n at every centre; the paper's
 //! models (§6) are fields of this kind.
 
 mod data;

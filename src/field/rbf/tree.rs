@@ -77,7 +77,7 @@ impl Tree {
     pub(super) fn new(data: &RbfData) -> Self {
         let frame = Frame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
-        // f(x) = g(s (x − o))/s, as in `points::fit`.
+        // f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
         let centres: Vec<Centre> = (0..data.centres.len())
             .map(|j| Centre {
                 place: frame.local(DVec3::from_array(data.centres[j])),

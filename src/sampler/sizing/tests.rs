@@ -1,8 +1,8 @@
 use super::*;
 use crate::field::gallery::{self, SURFACES, Surface};
-use crate::sampler::project::Projector;
+use crate::sampler::discovery::survey::survey;
+use crate::sampler::projection::Projector;
 use crate::sampler::settings::LawKind;
-use crate::sampler::survey::survey;
 
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
 

@@ -1,0 +1,139 @@
+//! Where in a cell the highest point of a piece of the surface can be.
+//!
+//! At such a point p the function f and its derivatives along the sides vanish: as many equations as there are free axes. By
+//! Taylor's theorem from p to the middle m of the cell, with d = m − p,
+//!
+//! f(m) = ∂f/∂up(p) · d_up + ½ dᵀ H d  and  ∂f/∂side(m) = (H d)_side,
+//!
+//! H being second derivatives somewhere between: the sides do not occur in the first equation but in H. Bounds of H over the
+//! cell make both linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel), those of the sides
+//! multiplied by the inverse of their middle first, as Krawczyk's and Hansen's forms of the interval Newton method do
+//! (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where nothing is left the cell holds no such point;
+//! near one the range shrinks with the square of the width.
+
+use crate::field::Enclosure;
+use glam::DVec3;
+
+type Range = [f64; 2];
+
+/// Rounds of narrowing.
+const ROUNDS: u32 = 2;
+/// What the operations of one step may have been rounded by, as a share of what goes into it.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+fn add(a: Range, b: Range) -> Range {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+fn negated([lo, hi]: Range) -> Range {
+    [-hi, -lo]
+}
+
+fn scaled([lo, hi]: Range, factor: f64) -> Range {
+    let (a, b) = (lo * factor, hi * factor);
+    [a.min(b), a.max(b)]
+}
+
+#[inline(never)]
+fn product(a: Range, b: Range) -> Range {
+    let (p, q) = (scaled(a, b[0]), scaled(a, b[1]));
+    [p[0].min(q[0]), p[1].max(q[1])]
+}
+
+fn size([lo, hi]: Range) -> f64 {
+    hi.abs().max(lo.abs())
+}
+
+/// `range` cut to where `slope` · d = `right` has a solution d; none if that is nowhere.
+#[inline(never)]
+fn solved(range: Range, slope: Range, right: Range) -> Option<Range> {
+    let slack = ROUNDING * (size(right) + size(slope) * size(range));
+    let right = [right[0] - slack, right[1] + slack];
+    let cut = if slope[0] > 0.0 || slope[1] < 0.0 {
+        // The quotient is rounded by far less than the slack.
+        let quotient = product(right, [1.0 / slope[1], 1.0 / slope[0]]);
+        [range[0].max(quotient[0]), range[1].min(quotient[1])]
+    } else {
+        let reached = product(slope, range);
+        if reached[0] > right[1] || reached[1] < right[0] {
+            return None;
+        }
+        range
+    };
+    // True for NaN, of which nothing is known.
+    if cut[0] > cut[1] { None } else { Some(cut) }
+}
+
+/// The part of the box from `lo` to `hi` in which there can be a point where f and its derivatives along the free `sides` vanish;
+/// none if there can be none. What is `known` of f holds in the box, as do the bounds of the `second` derivatives; `middle` is what
+/// is known in its middle.
+pub(crate) fn narrowed(
+    [lo, hi]: [DVec3; 2],
+    (sides, up): ([Option<usize>; 2], usize),
+    known: &Enclosure,
+    middle: &Enclosure,
+    second: &[Range; 6],
+) -> Option<[DVec3; 2]> {
+    /// Place of a second derivative among the six.
+    const ENTRY: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+    let is_bounded = known.smooth && known.defined && known.continuous;
+    if !(is_bounded && second.iter().all(|&[lo, hi]| lo.is_finite() && hi.is_finite())) {
+        return Some([lo, hi]);
+    }
+    let h = |i: usize, j: usize| second[ENTRY[i][j]];
+    let half = 0.5 * (hi - lo);
+    let m = 0.5 * (lo + hi);
+    // Of a pinned axis it is 0.
+    let mut d: [Range; 3] = core::array::from_fn(|axis| [-half[axis], half[axis]]);
+    for _ in 0..ROUNDS {
+        let mut quadratic = [0.0; 2];
+        let most = d.map(size);
+        for (i, most) in most.into_iter().enumerate() {
+            quadratic = add(quadratic, product(h(i, i), [0.0, 0.5 * most * most]));
+        }
+        for [i, j] in [[0, 1], [0, 2], [1, 2]] {
+            let mixed = most[i] * most[j] * size(h(i, j));
+            quadratic = add(quadratic, [-mixed, mixed]);
+        }
+        d[up] = solved(d[up], known.gradient[up], add(middle.value, negated(quadratic)))?;
+        let right = |i: usize, d: &[Range; 3]| add(middle.gradient[i], negated(product(h(i, up), d[up])));
+        match sides {
+            [Some(i), Some(j)] => {
+                let entries = [h(i, i), h(i, j), h(j, j)];
+                let [a, b, c] = entries.map(|[lo, hi]| 0.5 * (lo + hi));
+                let determinant = a * c - b * b;
+                let inverse = [[c, -b], [-b, a]].map(|row| row.map(|entry| entry / determinant));
+                let rights = [right(i, &d), right(j, &d)];
+                for (k, row) in inverse.into_iter().enumerate() {
+                    if !row.iter().all(|entry| entry.is_finite()) {
+                        continue;
+                    }
+                    // The two may nearly cancel.
+                    let combined = |v: [Range; 2]| {
+                        let slack = ROUNDING * (row[0].abs() * size(v[0]) + row[1].abs() * size(v[1]));
+                        add(add(scaled(v[0], row[0]), scaled(v[1], row[1])), [-slack, slack])
+                    };
+                    let coefficients = [combined([h(i, i), h(j, i)]), combined([h(i, j), h(j, j)])];
+                    let (axis, other) = if k == 0 { (i, j) } else { (j, i) };
+                    let rest = negated(product(coefficients[1 - k], d[other]));
+                    d[axis] = solved(d[axis], coefficients[k], add(combined(rights), rest))?;
+                }
+                // As they are: the inverse is of no use where they are nearly dependent.
+                for (axis, other) in [(i, j), (j, i)] {
+                    let rest = negated(product(h(axis, other), d[other]));
+                    d[axis] = solved(d[axis], h(axis, axis), add(right(axis, &d), rest))?;
+                }
+            }
+            [Some(axis), None] | [None, Some(axis)] => {
+                d[axis] = solved(d[axis], h(axis, axis), right(axis, &d))?;
+            }
+            [None, None] => {}
+        }
+    }
+    let room = ROUNDING * (lo.abs() + hi.abs());
+    let from = m - DVec3::from_array(d.map(|range| range[1])) - room;
+    let to = m - DVec3::from_array(d.map(|range| range[0])) + room;
+    // A free axis stays one.
+    let is_wide = from.max(lo).cmplt(to.min(hi));
+    Some([DVec3::select(is_wide, from.max(lo), lo), DVec3::select(is_wide, to.min(hi), hi)])
+}

@@ -1,0 +1,12 @@
+//! A first point on every connected component of the surface, and the proof that it is every one.
+//!
+//! The [`survey`] looks at a grid of the box. What it may miss, the [`octree`] finds by interval arithmetic: a highest point of every
+//! component. [`seeds`] hands those points out that no particle covers yet.
+
+pub(crate) mod completeness;
+mod interval_newton;
+pub(crate) mod octree;
+pub(crate) mod seeds;
+pub(crate) mod sheets;
+pub(crate) mod singular;
+pub(crate) mod survey;

@@ -1,0 +1,280 @@
+//! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
+
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::particles::Particles;
+use crate::sampler::discovery::completeness::Search;
+use crate::sampler::discovery::octree::{Octree, Witness};
+use crate::sampler::discovery::sheets::{
+    Oriented, TOGETHER, are_connected, is_connected_by_pieces, is_one_sheet,
+};
+use crate::sampler::discovery::singular::Singular;
+use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance};
+use glam::{DVec3, Vec3};
+
+/// Units of work that a witness is charged for.
+const UNITS: u32 = 16;
+/// Particles that a witness is tried to be connected with.
+const MOST_TRIED: usize = 6;
+/// The same by a way of several pieces.
+const MOST_TRIED_BY_PIECES: usize = 2;
+/// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
+const MAX_STEPS: u32 = 12;
+/// Most steps that bring a witness in the margin outside the box to its piece within.
+const MOST_INWARD: u32 = 32;
+
+/// What is left to be tried as the beginning of a front when the points of the survey are covered.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Seeds {
+    octree: Octree,
+    points: Vec<Seed>,
+    is_projected: bool,
+    next: usize,
+    /// Witnesses of which it is not proven that they lie on the piece of the particles around them.
+    unproven: u64,
+    /// Witnesses that single precision does not find.
+    lost: u64,
+    near: Vec<u32>,
+}
+
+/// A witness on the surface as single precision sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seed {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    /// Of which part of the field it is a zero.
+    part: usize,
+}
+
+/// Where a witness lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// On a piece that has particles near it.
+    Covered,
+    /// Where a front has to start.
+    Bare,
+}
+
+impl Seeds {
+    /// Forgets an earlier field.
+    pub(crate) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
+        self.octree.begin(field.has_bounds(), bounds);
+        self.points.clear();
+        self.lost = 0;
+        self.is_projected = false;
+        self.restart();
+    }
+
+    /// Says how many particles the run will have.
+    pub(crate) fn expect(&mut self, particles: f64) {
+        self.octree.expect(particles);
+    }
+
+    /// Begins again with the first witness.
+    pub(crate) fn restart(&mut self) {
+        self.next = 0;
+        self.unproven = 0;
+    }
+
+    /// Whether the search has come to its end.
+    pub(crate) fn is_searched(&self) -> bool {
+        self.octree.is_done()
+    }
+
+    /// Does up to `budget` units of the search; returns what is left, nothing unless the search has come to its end.
+    pub(crate) fn search(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        bounds: &Bounds,
+        tolerance: Tolerance,
+        budget: u32,
+    ) -> u32 {
+        let left = self.octree.step(field, budget);
+        if self.octree.is_done() && !self.is_projected {
+            self.is_projected = true;
+            self.project(field, projector, bounds, tolerance);
+        }
+        if self.octree.is_done() { left } else { 0 }
+    }
+
+    /// Brings the witnesses onto the surface as single precision sees it, and into the box.
+    fn project(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        bounds: &Bounds,
+        tolerance: Tolerance,
+    ) {
+        let margin = self.octree.margin();
+        let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
+        self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
+        // Those that belong to nothing but the margin are no loss.
+        let starts: Vec<(Vec3, usize)> = self
+            .octree
+            .witnesses
+            .iter()
+            .filter_map(|&Witness { position, part }| {
+                let start = if inside(position) {
+                    Some(position)
+                } else {
+                    moved_inside(field, position, bounds, margin)
+                };
+                start.map(|p| (p.as_vec3(), part))
+            })
+            .collect();
+        let mut normal = [Vec3::ZERO; BATCH];
+        let mut ok = [false; BATCH];
+        for starts in starts.chunks(BATCH) {
+            let mut points: Vec<Vec3> = starts.iter().map(|start| start.0).collect();
+            let reach = margin as f32 + 16.0 * tolerance.residual;
+            projector.land_along_gradient(
+                field,
+                &mut points,
+                &mut normal,
+                &mut ok,
+                tolerance.min_gradient,
+                &mut Descent { residual: tolerance.residual, reach, trust: 0.0 },
+                MAX_STEPS,
+            );
+            for (k, &position) in points.iter().enumerate() {
+                if ok[k] && bounds.contains(position) {
+                    self.points.push(Seed { position, normal: normal[k], part: starts[k].1 });
+                } else {
+                    self.lost += 1;
+                }
+            }
+        }
+    }
+
+    /// Drops witnesses that are connected with others within the box: along a ridge of equal height there are many.
+    fn thin_out(&mut self, field: &mut dyn Field, corners: [DVec3; 2], tolerance: Tolerance) {
+        let slack = f64::from(2.0 * tolerance.residual);
+        let witnesses = core::mem::take(&mut self.octree.witnesses);
+        let mut kept: Vec<(Witness, DVec3)> = Vec::new();
+        for group in witnesses.chunk_by(|a, b| a.part == b.part).flat_map(|part| part.chunks(TOGETHER)) {
+            let part = group[0].part;
+            let ends: Vec<Oriented> = group
+                .iter()
+                .map(|witness| {
+                    let gradient = field.jet(witness.position).gradient;
+                    (witness.position, gradient.try_normalize().unwrap_or(DVec3::Z))
+                })
+                .collect();
+            let nearest: Vec<Option<DVec3>> = ends
+                .iter()
+                .map(|end| {
+                    let distance = |p: DVec3| (p - end.0).length_squared();
+                    kept.iter()
+                        .filter(|(other, normal)| other.part == part && normal.dot(end.1) > 0.0)
+                        .min_by(|(a, _), (b, _)| distance(a.position).total_cmp(&distance(b.position)))
+                        .map(|(other, _)| other.position)
+                })
+                .collect();
+            let pairs: Vec<(Oriented, DVec3)> =
+                ends.iter().zip(&nearest).map(|(&end, nearest)| (end, nearest.unwrap_or(end.0))).collect();
+            let connected = are_connected(field, part, &pairs, slack, Some(corners));
+            for k in 0..group.len() {
+                if nearest[k].is_none() || !connected[k] {
+                    kept.push((group[k], ends[k].1));
+                }
+            }
+        }
+        self.octree.witnesses.extend(kept.into_iter().map(|(witness, _)| witness));
+    }
+
+    /// The next witness, if there is one, and what is left of the budget.
+    pub(crate) fn next(&mut self, budget: u32) -> (Option<Seed>, u32) {
+        let witness = self.points.get(self.next).copied();
+        self.next += 1;
+        (witness, budget.saturating_sub(UNITS))
+    }
+
+    /// Points where f and its gradient vanish together, as far as the search met them.
+    pub(crate) fn singular(&self) -> &[Singular] {
+        &self.octree.singular
+    }
+
+    /// All witnesses.
+    pub(crate) fn points(&self) -> &[Seed] {
+        &self.points
+    }
+
+    /// Room for the particles near a witness.
+    pub(crate) fn take_near(&mut self) -> Vec<u32> {
+        core::mem::take(&mut self.near)
+    }
+
+    /// Whether the witness lies on the piece of one of the particles `near` it, the nearest first. By proof; or,
+    /// where the bounds are too wide for one, by the field at a point between the two, which is counted.
+    pub(crate) fn place(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        seed: Seed,
+        near: Vec<u32>,
+        tolerance: Tolerance,
+    ) -> Place {
+        let Seed { position, normal, part } = seed;
+        let slack = f64::from(2.0 * tolerance.residual);
+        let from = (position.as_dvec3(), normal.as_dvec3());
+        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
+        let mut pairs = [(from, from.0); MOST_TRIED];
+        let tried = near.len().min(MOST_TRIED);
+        for (pair, &j) in pairs.iter_mut().zip(&near) {
+            pair.1 = place_of(j);
+        }
+        let within = (self.octree.searched(), self.octree.margin());
+        let mut place = Place::Bare;
+        if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
+            || near
+                .iter()
+                .take(MOST_TRIED_BY_PIECES)
+                .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack, within))
+        {
+            place = Place::Covered;
+        } else if near.iter().take(MOST_TRIED).any(|&j| {
+            let j = j as usize;
+            let offset = particles.position[j] - position;
+            is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
+        }) {
+            self.unproven += 1;
+            place = Place::Covered;
+        }
+        self.near = near;
+        place
+    }
+
+    /// Whether every piece is proven to have been found.
+    pub(crate) fn verdict(&self) -> Search {
+        if self.octree.is_available() && self.octree.is_done() && self.open_cells() == Some(0) {
+            Search::Proven
+        } else {
+            Search::Searched
+        }
+    }
+
+    /// Cells left undecided, and those whose witness was lost or not proven to be on the piece it was taken for; none without
+    /// a search.
+    pub(crate) fn open_cells(&self) -> Option<u64> {
+        (self.octree.is_available() && self.octree.is_done())
+            .then_some(self.octree.undecided.len() as u64 + self.unproven + self.lost)
+    }
+}
+
+/// A point of the surface a margin inside the box, near `p` in the margin outside: by turns to the nearest point of the smaller
+/// box and, along the gradient, to the surface. None where the surface does not reach into the box there.
+fn moved_inside(field: &mut dyn Field, mut p: DVec3, bounds: &Bounds, margin: f64) -> Option<DVec3> {
+    let (lo, hi) = (bounds.lo() + margin, bounds.hi() - margin);
+    for _ in 0..MOST_INWARD {
+        p = p.clamp(lo, hi);
+        let jet = field.jet(p);
+        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        if !step.is_finite() || step.length_squared() < 1e-6 * margin * margin {
+            break;
+        }
+        p -= step;
+    }
+    (p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all()).then_some(p)
+}

@@ -1,0 +1,218 @@
+//! Whether two points of the surface lie on one sheet of it, or on two that only come near each other.
+//!
+//! Between two sheets with like normals there is always one with the opposite normal. On one sheet the chord rises from
+//! one end's tangent plane as much as it sinks below the other's, up to the change of the curvature: the *lift*, half the sum
+//! of the two, is of third order in the distance. Between sheets at a distance g it is about g.
+
+use crate::field::{Enclosure, Field};
+use crate::particles::Particles;
+use crate::sampler::projection::Projector;
+use crate::spatial::Neighbour;
+use glam::{DVec3, Vec3};
+
+/// Half the sum of what the chord rises from the tangent plane at its beginning and at its end.
+#[inline(always)]
+pub(crate) fn lift(offset: Vec3, normal: Vec3, other: Vec3) -> f32 {
+    (0.5 * offset.dot(normal + other)).abs()
+}
+
+/// Lift, in spacings, above which two particles a spacing apart are looked at more closely: they are on two sheets that far from
+/// each other, or where the curvature changes by 12 times as much over a spacing, in units of its inverse.
+pub(crate) const MAX_LIFT: f32 = 0.02;
+
+/// Whether a particle at `offset` with the normal `other` may belong to another sheet than a point with the unit normal
+/// `normal`, although both normals point the same way: the lift is more than the change of the curvature over that distance
+/// would make it.
+#[inline(always)]
+pub(crate) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
+    let lift = lift(offset, normal, other);
+    // The lift grows with the third power of the distance.
+    let share = offset.length_squared() / (spacing * spacing);
+    lift * lift > (MAX_LIFT * spacing) * (MAX_LIFT * spacing) * (share * share * share).max(1.0)
+}
+
+/// Whether one of the particles `near` a point, all with normals like that of the point, belongs to its sheet; `spacing`
+/// is the usual distance between particles at each.
+pub(crate) fn is_near_own(
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    particles: &Particles,
+    (position, normal): (Vec3, Vec3),
+    near: &[Neighbour],
+    spacing: impl Fn(usize) -> f32,
+) -> bool {
+    let other = |near: &Neighbour| particles.normal[near.index as usize];
+    near.iter().any(|near| !is_doubtful(near.offset, normal, other(near), spacing(near.index as usize)))
+        || near
+            .iter()
+            .any(|near| is_one_sheet(field, projector, (position, normal), near.offset, other(near)))
+}
+
+/// Whether a point of the surface with the unit normal `normal` and another one at `offset` from it, with the unit normal
+/// `other`, seem to be on one sheet, by the field at one place between them.
+///
+/// The cubic curve that leaves and arrives in the two tangent planes misses one sheet by the fourth order of the distance in
+/// its middle: the surface is far nearer there than half the lift, and faces the same way. Between two sheets that middle is
+/// half the lift away from both, and beyond the sheet between them.
+pub(crate) fn is_one_sheet(
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    (position, normal): (Vec3, Vec3),
+    offset: Vec3,
+    other: Vec3,
+) -> bool {
+    /// Least share of the length that the lift is taken for.
+    const ROUNDING: f32 = 0.01;
+    /// Share of the lift within which the surface has to be.
+    const NEAR: f32 = 0.25;
+    let length = offset.length();
+    let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
+    let middle = position + offset * 0.5 + (along(normal) - along(other)) * 0.125;
+    let (value, gradient) = projector.evaluate(field, middle);
+    let reach = NEAR * lift(offset, normal, other).max(ROUNDING * length);
+    gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
+}
+
+/// Pairs of points that are looked at together: with both ends a chunk of boxes.
+pub(crate) const TOGETHER: usize = 10;
+
+/// A point of the surface, and the unit normal there.
+pub(crate) type Oriented = (DVec3, DVec3);
+
+/// For each of at most [`TOGETHER`] pairs of points of the surface, the first with its normal, whether the bounds of the gradient
+/// prove that the surface connects them; `slack` is how far they may be from it.
+///
+/// The proof is that of the [octree](super::octree) on a box around both: f is monotone along the axis of the normal, and the
+/// surface through the one cannot leave the box over the rectangle between the two, so that it is the graph of a function
+/// there, which meets the line through the other in one point. It need not stay between the two corners of a box, unless there
+/// are corners `within` which it has to.
+pub(crate) fn are_connected(
+    field: &mut dyn Field,
+    part: usize,
+    pairs: &[(Oriented, DVec3)],
+    slack: f64,
+    within: Option<[DVec3; 2]>,
+) -> [bool; TOGETHER] {
+    let mut boxes = [[DVec3::ZERO; 2]; 3 * TOGETHER];
+    let mut known = [Enclosure::UNKNOWN; 3 * TOGETHER];
+    for (k, &((a, normal), b)) in pairs.iter().enumerate() {
+        let (around, _, _) = graph_box(a, b, normal, slack);
+        boxes[3 * k..3 * k + 3].copy_from_slice(&[around, [a, a], [b, b]]);
+    }
+    field.enclose(part, &boxes[..3 * pairs.len()], &mut known);
+    core::array::from_fn(|k| {
+        let Some(&((a, normal), b)) = pairs.get(k) else { return false };
+        let (around, up, room) = graph_box(a, b, normal, slack);
+        let [known, ends @ ..] = [0, 1, 2].map(|part| known[3 * k + part]);
+        let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
+        // Ends that are not quite on the surface have it within 2 slacks above or below.
+        within.is_none_or(|[lo, hi]| around[0].cmpge(lo).all() && around[1].cmple(hi).all())
+            && proves_graph(&known, around, up, room - 4.0 * slack)
+            && ends.iter().all(|end| end.value[1].max(-end.value[0]) <= 2.0 * slack * least)
+    })
+}
+
+/// Whether the way between two points of the surface, cut into pieces, is [connected](are_connected): for points too far from
+/// each other, as the surface bends, for one box. A piece that is not is cut in two, again and again, at
+/// a point in the box from `lo` to `hi`; one outside is brought at least `margin` inside and back to the surface by turns.
+pub(crate) fn is_connected_by_pieces(
+    field: &mut dyn Field,
+    part: usize,
+    from: Oriented,
+    to: DVec3,
+    slack: f64,
+    ([lo, hi], margin): ([DVec3; 2], f64),
+) -> bool {
+    /// Most turns that bring a point back into the box.
+    const MOST_TURNS: u32 = 8;
+    /// Most rounds of looking at pieces, and most pieces that wait.
+    const MOST_ROUNDS: u32 = 8;
+    const MOST_WAITING: usize = 3 * TOGETHER;
+    let is_inside = |p: DVec3| p.cmpge(lo).all() && p.cmple(hi).all();
+    let mut waiting = [(from, to); MOST_WAITING];
+    let mut count = 1;
+    for _ in 0..MOST_ROUNDS {
+        let tried = count.min(TOGETHER);
+        count -= tried;
+        let mut pairs = [(from, to); TOGETHER];
+        pairs[..tried].copy_from_slice(&waiting[count..count + tried]);
+        let connected = are_connected(field, part, &pairs[..tried], slack, None);
+        for k in (0..tried).filter(|&k| !connected[k]) {
+            let (start, end) = pairs[k];
+            let chord = end - start.0;
+            let Some(mut middle) = land(field, start.0 + 0.5 * chord) else { return false };
+            for _ in 0..MOST_TURNS {
+                if is_inside(middle.0) {
+                    break;
+                }
+                let Some(next) = land(field, middle.0.clamp(lo + margin, hi - margin)) else { return false };
+                middle = next;
+            }
+            // Elsewhere than between the two.
+            let offset = middle.0 - (start.0 + 0.5 * chord);
+            if count + 2 > MOST_WAITING
+                || offset.length_squared() > 0.25 * chord.length_squared()
+                || !is_inside(middle.0)
+            {
+                return false;
+            }
+            waiting[count] = (start, middle.0);
+            waiting[count + 1] = (middle, end);
+            count += 2;
+        }
+        if count == 0 {
+            return true;
+        }
+    }
+    false
+}
+
+/// The surface near `p` by Newton's method along the gradient, and the unit normal there.
+fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
+    const STEPS: u32 = 8;
+    for _ in 0..STEPS {
+        let jet = field.jet(p);
+        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        if !step.is_finite() {
+            return None;
+        }
+        p -= step;
+        if step.length_squared() <= 1e-24 * p.length_squared() {
+            return jet.gradient.try_normalize().map(|normal| (p, normal));
+        }
+    }
+    None
+}
+
+/// The box of one piece, its upward axis and how far it reaches beyond the ends along that.
+fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
+    let size = normal.abs();
+    let up = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    let (mut lo, mut hi) = (a.min(b), a.max(b));
+    let reach = (b - a).abs();
+    let slope: f64 = (0..3).filter(|&axis| axis != up).map(|axis| size[axis] / size[up] * reach[axis]).sum();
+    let room = 1.5 * slope + 0.25 * reach.max_element() + 8.0 * slack;
+    lo[up] -= room;
+    hi[up] += room;
+    ([lo, hi], up, room)
+}
+
+/// Whether the surface through any point of a box, `room` away from its lower and upper face, is a graph over all of it.
+fn proves_graph(known: &Enclosure, [lo, hi]: [DVec3; 2], up: usize, room: f64) -> bool {
+    let [least, most] = known.gradient[up];
+    if !(known.defined && known.continuous) || least <= 0.0 && most >= 0.0 {
+        return false;
+    }
+    let least = least.abs().min(most.abs());
+    let t: f64 = (0..3)
+        .filter(|&axis| axis != up)
+        .map(|axis| known.gradient[axis][1].max(-known.gradient[axis][0]) / least * (hi[axis] - lo[axis]))
+        .sum();
+    t <= room
+}

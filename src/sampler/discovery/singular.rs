@@ -1,0 +1,253 @@
+//! Points of the surface where f has no gradient: cone points, cusps, and the curves on which a surface crosses itself.
+//!
+//! # Why a box around one can be left out of the search
+//!
+//! Let B be a box in the interior of which f has no local extremum. Then every connected piece of the surface S in B reaches
+//! the boundary of B. For suppose that a piece K does not. It has a neighbourhood U in B on whose boundary f is not 0; take the
+//! part of U that holds K, and with it the holes in it: an open set W with a connected boundary, on which f has one sign, say
+//! the positive one. Every neighbourhood of a point of K holds places where f is negative, else that point were a minimum. So f
+//! has a negative minimum in W: a local extremum.
+//!
+//! There is none where the second derivative of f along one fixed direction is positive throughout B, and along another one
+//! negative: at a minimum neither is negative, at a maximum neither positive. This is so around a cone point, whose tangent
+//! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
+
+use crate::field::{Enclosure, Field};
+use crate::math::Sym3;
+use crate::particles::{Particles, Slots};
+use crate::spatial::tree::Tree;
+use glam::{DMat3, DVec3, Vec3};
+
+/// Sizes of a box around a singular point that are tried: the largest is this share of the longest side of the whole box, each
+/// of the others half of the one before it.
+const LARGEST: f64 = 0.25;
+const SIZES: usize = 10;
+/// How many larger sizes are tried in pieces than one that does as a whole, and the pieces.
+const MOST_LARGER: usize = 2;
+const PIECES: usize = 27;
+/// How far the sides of such a box are from the point, in units of its size: not equally, because where they are, symmetric
+/// surfaces have more of their highest points in one place than can be told apart.
+const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
+const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
+
+/// Most Newton steps to a singular point: at a cusp each only halves the distance.
+const MOST_STEPS: u32 = 24;
+/// Most that f may be at a singular point, in what its second derivatives make of it over the distance to the point: far above
+/// what rounding leaves of a zero.
+const LARGEST_VALUE: f64 = 1e-8;
+/// The same where it is as good as one for the search: the neck of a cone point that has just opened.
+const LARGEST_NECK: f64 = 1e-3;
+/// Where the second derivatives along a direction are smaller than this share of the largest, a singular point is looked for
+/// across that direction only.
+const SMALL: f64 = 1e-6;
+
+/// A point where the gradient of f vanishes and f is 0, or nearly so.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Singular {
+    pub(crate) position: DVec3,
+    /// How far around it was looked.
+    pub(crate) reach: f64,
+    /// Whether f is 0 there but for rounding.
+    pub(crate) is_zero: bool,
+    /// Whether it is alone: the second derivatives tell that the gradient vanishes nowhere else near it.
+    pub(crate) is_alone: bool,
+}
+
+/// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.
+#[inline(never)]
+pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
+    let mut p = start;
+    // False for NaN.
+    let is_near = |offset: DVec3| offset.length_squared() <= reach * reach;
+    for _ in 0..MOST_STEPS {
+        let jet = field.jet(p);
+        let hessian = matrix(&jet.hessian);
+        let size_sq = size_sq(&hessian);
+        // The least squares solution of H δ = −∇f, which does not run along a curve of such points.
+        let normal = times(&hessian, &hessian) + DMat3::from_diagonal(DVec3::splat(SMALL * SMALL * size_sq));
+        let step = normal.inverse() * (hessian * jet.gradient);
+        p -= step;
+        if !is_near(step) || !is_near(p - start) {
+            return None;
+        }
+        if step.length_squared() <= 1e-24 * reach * reach {
+            break;
+        }
+    }
+    let jet = field.jet(p);
+    let hessian = matrix(&jet.hessian);
+    let size = size_sq(&hessian).sqrt();
+    let value = jet.value.abs() / (size * reach * reach);
+    let settled = jet.gradient.length() <= LARGEST_VALUE.sqrt() * size * reach;
+    (settled && value <= LARGEST_NECK).then(|| Singular {
+        position: p,
+        reach,
+        is_zero: value <= LARGEST_VALUE,
+        is_alone: hessian.determinant().abs() > SMALL * size * size * size,
+    })
+}
+
+/// Number of places that the points are of: one for each that is alone, and one for all others that are linked by steps no longer
+/// than they looked around.
+pub(crate) fn places(points: &[Singular]) -> u64 {
+    let alone = points.iter().filter(|point| point.is_alone).count();
+    let mut rest: Vec<Singular> = points.iter().filter(|point| !point.is_alone).copied().collect();
+    let mut groups = 0;
+    let mut linked = Vec::new();
+    while let Some(first) = rest.pop() {
+        groups += 1;
+        linked.push(first);
+        while let Some(point) = linked.pop() {
+            let is_linked = |other: &Singular| {
+                let most = point.reach.max(other.reach);
+                (other.position - point.position).length_squared() <= most * most
+            };
+            linked.extend(rest.iter().filter(|other| is_linked(other)).copied());
+            rest.retain(|other| !is_linked(other));
+        }
+    }
+    (alone + groups) as u64
+}
+
+/// Marks the particles within 2r of a singular point. Of a curve the `points` are a selection: near it each particle looks for
+/// itself.
+#[inline(never)]
+pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
+    let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
+    let tree = Tree::new(&places);
+    // The distance between those of a curve that were found last, all along it: the first ones looked much farther.
+    let on_curves = points.iter().filter(|point| !point.is_alone).map(|point| point.reach);
+    let widest = on_curves.reduce(f64::min).unwrap_or(0.0);
+    let mut near = Vec::new();
+    for i in 0..particles.len() {
+        let (p, reach) = (particles.position[i], 2.0 * particles.radius[i]);
+        let around = Vec3::splat(reach + widest as f32);
+        near.clear();
+        tree.within_box(p - around, p + around, &mut near);
+        let is_within = near.iter().any(|&k| tree.position[k as usize].distance_squared(p) <= reach * reach);
+        let is_marked = is_within
+            || widest > 0.0
+                && !near.is_empty()
+                && singular_point(field, p.as_dvec3(), f64::from(reach)).is_some_and(|point| point.is_zero);
+        let slots = &mut particles.slots[i].0;
+        *slots = if is_marked { *slots | Slots::SINGULAR } else { *slots & !Slots::SINGULAR };
+    }
+}
+
+/// One copy of the product, which is long.
+#[inline(never)]
+fn times(a: &DMat3, b: &DMat3) -> DMat3 {
+    *a * *b
+}
+
+fn matrix(h: &Sym3<f64>) -> DMat3 {
+    DMat3::from_cols_array(&[h.xx, h.xy, h.xz, h.xy, h.yy, h.yz, h.xz, h.yz, h.zz])
+}
+
+#[inline(never)]
+fn size_sq(m: &DMat3) -> f64 {
+    m.to_cols_array().iter().map(|entry| entry * entry).sum()
+}
+
+/// The largest of a number of boxes around the singular point `at` of one part of the field in which that part has no local
+/// extremum, in the box from `lo` to `hi` and away from those `taken`.
+pub(crate) fn isolating_box(
+    field: &mut dyn Field,
+    part: usize,
+    at: DVec3,
+    [lo, hi]: [DVec3; 2],
+    taken: &[[DVec3; 2]],
+) -> Option<[DVec3; 2]> {
+    let largest = LARGEST * (hi - lo).max_element();
+    let boxes: [[DVec3; 2]; SIZES] = core::array::from_fn(|k| {
+        let size = largest / f64::from(1_u32 << k);
+        [at - size * BELOW, at + size * ABOVE]
+    });
+    let fits = |&[bottom, top]: &[DVec3; 2]| {
+        let is_free = |&[a, b]: &[DVec3; 2]| a.cmpgt(top).any() || b.cmplt(bottom).any();
+        bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
+    };
+    let mut is_so = [false; PIECES];
+    has_no_extremum(field, part, &boxes, &mut is_so);
+    let as_one = is_so[..SIZES].iter().position(|&is_so| is_so)?;
+    // Larger ones may do in pieces: the bounds of each are tighter.
+    let in_pieces = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
+        fits(&boxes[k]) && {
+            has_no_extremum(field, part, &pieces(boxes[k]), &mut is_so);
+            is_so.iter().all(|&is_so| is_so)
+        }
+    });
+    boxes[in_pieces.unwrap_or(as_one)..].iter().find(|around| fits(around)).copied()
+}
+
+/// A box cut into three along each axis.
+fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
+    let third = |k: usize| if k == 3 { hi } else { lo + (hi - lo) * (k as f64 / 3.0) };
+    core::array::from_fn(|i| {
+        let [x, y, z] = [i % 3, i / 3 % 3, i / 9];
+        [0, 1].map(|end| DVec3::new(third(x + end).x, third(y + end).y, third(z + end).z))
+    })
+}
+
+/// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
+/// function [is a saddle](is_saddle) throughout.
+#[inline(never)]
+fn has_no_extremum(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
+    let mut known = [Enclosure::UNKNOWN; PIECES];
+    let mut second = [[[0.0; 2]; 6]; PIECES];
+    field.enclose(part, boxes, &mut known);
+    field.enclose_second(part, boxes, &mut second);
+    for (k, out) in out[..boxes.len()].iter_mut().enumerate() {
+        let Enclosure { defined, continuous, smooth, gradient, .. } = known[k];
+        let is_steep = gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0);
+        *out = defined && continuous && (is_steep || smooth && is_saddle(&second[k]));
+    }
+}
+
+/// Whether the second derivatives along two fixed directions have different signs.
+fn is_saddle(second: &[[f64; 2]; 6]) -> bool {
+    let middle = second.map(|[lo, hi]| 0.5 * (lo + hi));
+    extreme_directions(middle)
+        .is_some_and(|[up, down]| along(second, up)[0] > 0.0 && along(second, down)[1] < 0.0)
+}
+
+/// Directions along which the second derivative is about the largest and about the smallest, if these have different signs.
+fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> {
+    /// Squarings of a matrix: enough to tell eigenvalues apart that differ by a tenth.
+    const SQUARINGS: u32 = 7;
+    let hessian = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+    let size = size_sq(&hessian).sqrt();
+    let directions = [1.0, -1.0].map(|sign| {
+        let mut power = hessian * sign + DMat3::from_diagonal(DVec3::splat(size));
+        for _ in 0..SQUARINGS {
+            power = times(&power, &power);
+            power *= 1.0 / size_sq(&power).sqrt();
+        }
+        let columns = [power.x_axis, power.y_axis, power.z_axis];
+        let longest = columns.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        longest.and_then(DVec3::try_normalize)
+    });
+    match directions {
+        [Some(up), Some(down)] if up.dot(hessian * up) > 0.0 && down.dot(hessian * down) < 0.0 => {
+            Some([up, down])
+        }
+        _ => None,
+    }
+}
+
+/// Bounds of the second derivative along a direction, from those of the six.
+#[inline(never)]
+fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
+    /// What the few operations here may have been rounded by.
+    const ROUNDING: f64 = 32.0 * f64::EPSILON;
+    let factors = [d.x * d.x, 2.0 * d.x * d.y, 2.0 * d.x * d.z, d.y * d.y, 2.0 * d.y * d.z, d.z * d.z];
+    let (mut lo, mut hi, mut size) = (0.0, 0.0, 0.0);
+    for (factor, [least, most]) in factors.into_iter().zip(second) {
+        let (a, b) = (factor * least, factor * most);
+        lo += a.min(b);
+        hi += a.max(b);
+        size += a.abs().max(b.abs());
+    }
+    // NaN, from bounds that are infinite, is no sign.
+    [lo - ROUNDING * size, hi + ROUNDING * size]
+}

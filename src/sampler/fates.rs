@@ -1,0 +1,46 @@
+//! What became of the children that the particles of a front propose.
+
+use crate::particles::SlotFate;
+
+/// Fates of children, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct FateCounts {
+    /// New particles, seeds not counted.
+    pub added: u64,
+    /// Slots where an existing particle sits.
+    pub matched: u64,
+    /// No surface met on the circle.
+    pub not_converged: u64,
+    /// Outside the clip box.
+    pub outside: u64,
+    /// No value or no gradient.
+    pub undefined: u64,
+    /// Not placed because the limit on particles was reached.
+    pub capped: u64,
+}
+
+impl FateCounts {
+    pub(crate) fn count(&mut self, fate: SlotFate) {
+        if let Some(count) = self.of(fate) {
+            *count += 1;
+        }
+    }
+
+    pub(crate) fn uncount(&mut self, fate: SlotFate) {
+        if let Some(count) = self.of(fate) {
+            *count -= 1;
+        }
+    }
+
+    fn of(&mut self, fate: SlotFate) -> Option<&mut u64> {
+        match fate {
+            SlotFate::Added => Some(&mut self.added),
+            SlotFate::Matched => Some(&mut self.matched),
+            SlotFate::NotConverged => Some(&mut self.not_converged),
+            SlotFate::Outside => Some(&mut self.outside),
+            SlotFate::Undefined => Some(&mut self.undefined),
+            SlotFate::Capped => Some(&mut self.capped),
+            SlotFate::Open | SlotFate::Parent => None,
+        }
+    }
+}

@@ -1,0 +1,507 @@
+//! Free arcs around a parent, paper §5.3: between the particles that are there, and the children that fit into them.
+//!
+//! A child of radius r_c touches its parent, so its centre lies on a circle of radius D = r_p + r_c around it. A particle
+//! at distance d, of radius r_j, is in the way of such a child within an angle β of its own direction: the law of cosines
+//! in the triangle with the sides D, d and r_c + r_j. What is left of the circle are the free arcs.
+//!
+//! In each arc the free circumference τ is compared with φ, the angle that the child's own diameter takes (Figs 7g and 8):
+//! a child has room if τ ≥ φ, and gets in, pressing its neighbours aside, if τ ≥ [`FIT`] φ.
+//!
+//! # Differs from the paper
+//!
+//! * The angles are those of the curved surface, not of the tangent plane: both legs of the triangle dip below the plane.
+//! * Particles that do not touch the parent but would overlap a child count too.
+//! * τ < φ by a little is no refusal: on a perfect lattice τ equals φ and rounding would decide.
+
+use crate::math::functions::{acos, asin, atan2, cos, sin};
+use crate::math::{LANES, Lanes};
+use core::f32::consts::TAU;
+use glam::{Vec2, Vec3};
+
+/// A child gets in if the free circumference is at least this share of what it takes: at ½ it is 0.77 (r_i + r_j) from
+/// either neighbour.
+pub(crate) const FIT: f32 = 0.5;
+
+/// Another child is pressed into an arc with room for this share of it.
+const CROWDING: f32 = 0.5;
+
+/// The radius changes by at most this much per unit of length, as far as a prediction goes.
+const MAX_SLOPE: f32 = 0.45;
+
+/// No angle: an interval that ends this far from its middle is empty.
+const NOWHERE: f32 = -100.0;
+
+/// The tangent plane of a parent and what is known of the surface and the radius there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Base {
+    /// Radius of the parent.
+    pub(crate) radius: f32,
+    /// Unit tangent vector at angle 0.
+    pub(crate) u: Vec3,
+    /// Unit tangent vector at 90°.
+    pub(crate) w: Vec3,
+    /// Unit normal.
+    pub(crate) n: Vec3,
+    /// Second fundamental form in (u, w): a, b, c of [a b; b c].
+    pub(crate) shape: [f32; 3],
+    /// Gradient of the radius along the surface, in (u, w).
+    pub(crate) slope: Vec2,
+}
+
+impl Base {
+    /// Slope of the radius in a direction, kept where a child can touch.
+    #[inline(always)]
+    fn slope_along(&self, x: f32, y: f32) -> f32 {
+        let slope = self.slope.x * x + self.slope.y * y;
+        let slope = if slope < MAX_SLOPE { slope } else { MAX_SLOPE };
+        if slope > -MAX_SLOPE { slope } else { -MAX_SLOPE }
+    }
+
+    /// Normal curvature in a direction.
+    #[inline(always)]
+    fn curvature_along(&self, x: f32, y: f32) -> f32 {
+        let [a, b, c] = self.shape;
+        a * x * x + (b + b) * x * y + c * y * y
+    }
+
+    /// Radius to expect of a child in a direction: r_c = r_p + s (r_p + r_c).
+    #[inline(always)]
+    fn child_radius(&self, x: f32, y: f32) -> f32 {
+        let slope = self.slope_along(x, y);
+        self.radius * (1.0 + slope) / (1.0 - slope)
+    }
+
+    /// Sine of the angle by which a chord of length `distance` dips below the tangent plane, negative below.
+    #[inline(always)]
+    fn dip(&self, x: f32, y: f32, distance: f32) -> f32 {
+        let dip = -0.5 * self.curvature_along(x, y) * distance;
+        let dip = if dip < MAX_DIP { dip } else { MAX_DIP };
+        if dip > -MAX_DIP { dip } else { -MAX_DIP }
+    }
+
+    /// The child to expect at an angle, no larger than `largest`.
+    pub(crate) fn child_at(&self, angle: f32, largest: f32) -> Guess {
+        let (x, y) = (cos(angle), sin(angle));
+        let radius = self.child_radius(x, y);
+        let radius = if radius < largest { radius } else { largest };
+        let distance = self.radius + radius;
+        let sin_theta = self.dip(x, y, distance);
+        let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
+        let direction = self.u * x + self.w * y;
+        let [a, b, c] = self.shape;
+        let turn = self.u * (a * x + b * y) + self.w * (b * x + c * y);
+        Guess {
+            direction,
+            turn: [cos_theta, sin_theta],
+            distance,
+            radius,
+            largest,
+            slope: self.slope_along(x, y),
+            offset: (direction * cos_theta + self.n * sin_theta) * distance,
+            // The turn is tangential, so the sum is never shorter than n.
+            normal: (self.n + turn * (distance * cos_theta)).normalize_or(self.n),
+        }
+    }
+
+    /// Angle between two children that touch each other, at two angles.
+    fn between(&self, one: f32, other: f32) -> f32 {
+        let [(x, y), (z, w)] = [one, other].map(|angle| (cos(angle), sin(angle)));
+        let (r, q) = (self.child_radius(x, y), self.child_radius(z, w));
+        let (d, e) = (self.radius + r, self.radius + q);
+        let (s, t) = (self.dip(x, y, d), self.dip(z, w, e));
+        wedge(d, e, r + q, s, t)
+    }
+}
+
+/// Steepest chord that is predicted: beyond it the curvature is not resolved by the radius.
+const MAX_DIP: f32 = 0.9;
+
+/// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`, with the sines `s` and
+/// `t` of their dips.
+#[inline(always)]
+fn wedge(d: f32, e: f32, apart: f32, s: f32, t: f32) -> f32 {
+    let cosine = (d * d + e * e - apart * apart) / (2.0 * d * e);
+    let flat = (cosine - s * t) / ((1.0 - s * s) * (1.0 - t * t)).sqrt();
+    let flat = if flat < 1.0 { flat } else { 1.0 };
+    acos(if flat > -1.0 { flat } else { -1.0 })
+}
+
+/// A child to expect.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guess {
+    /// Unit tangent vector V̂.
+    pub(crate) direction: Vec3,
+    /// cos θ and sin θ on the circle C.
+    pub(crate) turn: [f32; 2],
+    /// Distance from the parent, r_p + r_c.
+    pub(crate) distance: f32,
+    /// Radius r_c.
+    pub(crate) radius: f32,
+    /// Largest radius that the particles around allow.
+    pub(crate) largest: f32,
+    /// Change of the radius per length in this direction.
+    pub(crate) slope: f32,
+    /// Position from the parent's.
+    pub(crate) offset: Vec3,
+    /// Unit normal.
+    pub(crate) normal: Vec3,
+}
+
+/// A free arc: between two angles, from the particle before it to the one behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    /// Where a child touches the particle before the arc.
+    pub(crate) from: f32,
+    /// Where a child touches the particle behind the arc; less than `from` where it does not fit between them.
+    pub(crate) to: f32,
+    /// Where no child gets in before this angle.
+    pub(crate) start: f32,
+    /// Nothing is there: the arc is the whole circle.
+    pub(crate) whole: bool,
+}
+
+/// The comparison that decides about a child (Fig. 7g).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Room {
+    /// φ: the angle at the parent that the child's diameter takes.
+    pub(crate) phi: f32,
+    /// τ: the free angle, of which φ is used up where the child just fits.
+    pub(crate) tau: f32,
+}
+
+impl Room {
+    /// That of a child beside nothing.
+    pub(crate) fn whole(parent_radius: f32, radius: f32) -> Self {
+        Self { phi: taken(parent_radius, radius), tau: TAU }
+    }
+
+    /// That of a child between two others, given by place and radius, the second one in the direction of growing angles.
+    pub(crate) fn between(
+        parent_radius: f32,
+        radius: f32,
+        (before, before_radius): (Vec2, f32),
+        (behind, behind_radius): (Vec2, f32),
+    ) -> Self {
+        let phi = taken(parent_radius, radius);
+        let distance = parent_radius + radius;
+        let beside = |centre: Vec2, other: f32| wedge(distance, centre.length(), radius + other, 0.0, 0.0);
+        let apart = atan2(before.perp_dot(behind), before.dot(behind));
+        let apart = if apart <= 0.0 { apart + TAU } else { apart };
+        Self { phi, tau: apart - beside(before, before_radius) - beside(behind, behind_radius) + phi }
+    }
+}
+
+/// φ: twice the angle whose sine is r_c / (r_p + r_c).
+pub(crate) fn taken(parent_radius: f32, radius: f32) -> f32 {
+    2.0 * asin(radius / (parent_radius + radius))
+}
+
+/// Eight neighbours. Lanes without one are infinitely far.
+#[derive(Clone, Copy, Debug)]
+struct Chunk {
+    x: Lanes,
+    y: Lanes,
+    z: Lanes,
+    radius: Lanes,
+    /// 1 where the radius counts for its gradient.
+    weight: Lanes,
+    /// Direction in the tangent plane.
+    angle: Lanes,
+    /// Angles within which it is in the way of a child, towards smaller and larger angles.
+    before: Lanes,
+    behind: Lanes,
+    /// Those within which no child gets in.
+    closed_before: Lanes,
+    closed_behind: Lanes,
+}
+
+const NO_CHUNK: Chunk = {
+    let (none, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
+    Chunk {
+        x: far,
+        y: far,
+        z: far,
+        radius: none,
+        weight: none,
+        angle: none,
+        before: none,
+        behind: none,
+        closed_before: none,
+        closed_behind: none,
+    }
+};
+
+/// The particles of the parent's sheet around it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ring {
+    len: usize,
+    chunks: Vec<Chunk>,
+    /// Start and end of the closed intervals, sorted by start.
+    closed: Vec<(f32, f32)>,
+    pub(crate) arcs: Vec<Arc>,
+    pub(crate) children: Vec<f32>,
+    /// What each child of the arc gave up to the others, or they to it, in radians.
+    slack: f32,
+}
+
+impl Ring {
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Adds a neighbour by its offset from the parent; `counts` says that its radius is exact.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, offset: Vec3, radius: f32, counts: bool) {
+        let (chunk, lane) = (self.len / LANES, self.len % LANES);
+        if chunk == self.chunks.len() {
+            self.chunks.push(NO_CHUNK);
+        }
+        let chunk = &mut self.chunks[chunk];
+        if lane == 0 {
+            *chunk = NO_CHUNK;
+        }
+        chunk.x.0[lane] = offset.x;
+        chunk.y.0[lane] = offset.y;
+        chunk.z.0[lane] = offset.z;
+        chunk.radius.0[lane] = radius;
+        chunk.weight.0[lane] = if counts { 1.0 } else { 0.0 };
+        self.len += 1;
+    }
+
+    /// Direction in the tangent plane of neighbour `i`.
+    pub(crate) fn angle(&self, i: usize) -> f32 {
+        self.chunks[i / LANES].angle.0[i % LANES]
+    }
+
+    /// Gradient of the radius in the plane (u, w), fitted to the neighbours whose radius is exact; what they leave open is as
+    /// `inherited`.
+    pub(crate) fn slope(&self, u: Vec3, w: Vec3, radius: f32, inherited: Vec2) -> Vec2 {
+        let mut sums = [Lanes::splat(0.0); 5];
+        for chunk in &self.chunks[..self.len.div_ceil(LANES)] {
+            for lane in 0..LANES {
+                let (x, y, z) = (chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
+                let counts = chunk.weight.0[lane] > 0.0;
+                let fx = if counts { x * u.x + y * u.y + z * u.z } else { 0.0 };
+                let fy = if counts { x * w.x + y * w.y + z * w.z } else { 0.0 };
+                let dr = if counts { chunk.radius.0[lane] - radius } else { 0.0 };
+                sums[0].0[lane] += fx * fx;
+                sums[1].0[lane] += fx * fy;
+                sums[2].0[lane] += fy * fy;
+                sums[3].0[lane] += fx * dr;
+                sums[4].0[lane] += fy * dr;
+            }
+        }
+        let [xx, xy, yy, xr, yr] = sums.map(Lanes::sum);
+        let pull = SLOPE_PULL * (xx + yy);
+        let (a, c) = (xx + pull, yy + pull);
+        let (xr, yr) = (xr + pull * inherited.x, yr + pull * inherited.y);
+        let slope = Vec2::new(c * xr - xy * yr, a * yr - xy * xr) / (a * c - xy * xy);
+        if slope.is_finite() { slope } else { inherited }
+    }
+
+    /// Finds the free arcs, in the order of their angles.
+    pub(crate) fn find_arcs(&mut self, base: &Base) {
+        self.closed.clear();
+        self.arcs.clear();
+        let p = base.radius;
+        for (k, chunk) in self.chunks[..self.len.div_ceil(LANES)].iter_mut().enumerate() {
+            for lane in 0..LANES {
+                let (x, y, z) = (chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
+                let fx = x * base.u.x + y * base.u.y + z * base.u.z;
+                let fy = x * base.w.x + y * base.w.y + z * base.w.z;
+                let rise = x * base.n.x + y * base.n.y + z * base.n.z;
+                let flat_sq = fx * fx + fy * fy;
+                let distance = (x * x + y * y + z * z).sqrt();
+                let inverse = 1.0 / flat_sq.sqrt();
+                let (cx, cy) = (fx * inverse, fy * inverse);
+                let t = rise / distance;
+                let t = if t < MAX_DIP { t } else { MAX_DIP };
+                let t = if t > -MAX_DIP { t } else { -MAX_DIP };
+                chunk.angle.0[lane] = atan2(fy, fx);
+                let other = chunk.radius.0[lane];
+                let mut side = [[0.0; 2]; 2];
+                for (out, sixty) in side.iter_mut().zip([-SIN_60, SIN_60]) {
+                    // The child that touches it is about 60° away.
+                    let (dx, dy) = (0.5 * cx - sixty * cy, sixty * cx + 0.5 * cy);
+                    let r = base.child_radius(dx, dy);
+                    let d = p + r;
+                    let wide = wedge(d, distance, r + other, base.dip(dx, dy, d), t);
+                    let pressed = wide - (1.0 - FIT) * asin(r / d);
+                    // Where a child gets in beside it unpressed, it is no neighbour.
+                    *out = if pressed > 0.0 { [wide, pressed] } else { [NOWHERE; 2] };
+                }
+                chunk.before.0[lane] = side[0][0];
+                chunk.behind.0[lane] = side[1][0];
+                chunk.closed_before.0[lane] = side[0][1];
+                chunk.closed_behind.0[lane] = side[1][1];
+            }
+            for lane in 0..LANES.min(self.len - k * LANES) {
+                let angle = chunk.angle.0[lane];
+                let (mut start, mut end) =
+                    (angle - chunk.closed_before.0[lane], angle + chunk.closed_behind.0[lane]);
+                if start >= end
+                    || chunk.closed_before.0[lane] == NOWHERE
+                    || chunk.closed_behind.0[lane] == NOWHERE
+                {
+                    chunk.before.0[lane] = NOWHERE;
+                    chunk.behind.0[lane] = NOWHERE;
+                    continue;
+                }
+                if start < 0.0 {
+                    (start, end) = (start + TAU, end + TAU);
+                }
+                let mut at = self.closed.len();
+                self.closed.push((start, end));
+                while at > 0 && self.closed[at - 1].0 > start {
+                    self.closed[at] = self.closed[at - 1];
+                    at -= 1;
+                }
+                self.closed[at] = (start, end);
+            }
+        }
+        if self.closed.is_empty() {
+            self.arcs.push(Arc { from: 0.0, to: TAU, start: 0.0, whole: true });
+            return;
+        }
+        let mut reached = self.closed.iter().fold(f32::NEG_INFINITY, |most, c| most.max(c.1)) - TAU;
+        for k in 0..self.closed.len() {
+            let (start, end) = self.closed[k];
+            if start > reached {
+                let arc = self.between(reached, start - reached);
+                self.arcs.push(arc);
+            }
+            reached = reached.max(end);
+        }
+    }
+
+    /// The arc that begins at `start` and is `length` long: from where to where a child touches nothing.
+    fn between(&self, start: f32, length: f32) -> Arc {
+        let mut from = Lanes::splat(0.0);
+        let mut to = Lanes::splat(length);
+        for (k, chunk) in self.chunks[..self.len.div_ceil(LANES)].iter().enumerate() {
+            for lane in 0..LANES {
+                let angle = chunk.angle.0[lane] - start;
+                let angle = if angle < 0.0 { angle + TAU } else { angle };
+                let angle = if angle < 0.0 { angle + TAU } else { angle };
+                let angle = if angle >= TAU { angle - TAU } else { angle };
+                let exists = k * LANES + lane < self.len;
+                let end = if exists { angle + chunk.behind.0[lane] - TAU } else { 0.0 };
+                let begin = if exists { angle - chunk.before.0[lane] } else { length };
+                from.0[lane] = if end > from.0[lane] { end } else { from.0[lane] };
+                to.0[lane] = if begin < to.0[lane] { begin } else { to.0[lane] };
+            }
+        }
+        let most = from.0.iter().fold(0.0_f32, |a, &b| if b > a { b } else { a });
+        let least = to.0.iter().fold(length, |a, &b| if b < a { b } else { a });
+        Arc { from: start + most, to: start + least, start, whole: false }
+    }
+
+    /// The neighbours at the two ends of an arc: those that a child at either end touches.
+    pub(crate) fn ends(&self, arc: Arc) -> Option<(usize, usize)> {
+        if arc.whole {
+            return None;
+        }
+        let mut ends = (0, 0);
+        let (mut most, mut least) = (f32::NEG_INFINITY, f32::INFINITY);
+        for i in 0..self.len {
+            let chunk = &self.chunks[i / LANES];
+            let mut angle = self.angle(i) - arc.start;
+            while angle < 0.0 {
+                angle += TAU;
+            }
+            if angle >= TAU {
+                angle -= TAU;
+            }
+            let (end, begin) = (angle + chunk.behind.0[i % LANES] - TAU, angle - chunk.before.0[i % LANES]);
+            if end > most {
+                (most, ends.0) = (end, i);
+            }
+            if begin < least {
+                (least, ends.1) = (begin, i);
+            }
+        }
+        Some(ends)
+    }
+
+    /// Neighbour `i` in the tangent plane, at its true distance, and its radius.
+    pub(crate) fn disc(&self, i: usize, base: &Base) -> (Vec2, f32) {
+        let (chunk, lane) = (&self.chunks[i / LANES], i % LANES);
+        let offset = Vec3::new(chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
+        let flat = Vec2::new(offset.dot(base.u), offset.dot(base.w));
+        (flat.normalize_or_zero() * offset.length(), chunk.radius.0[lane])
+    }
+
+    /// Angles of the children of an arc: as many as fit, evenly spread, so that no gap is left that is wider than the others.
+    pub(crate) fn spread(&mut self, base: &Base, arc: Arc) -> &[f32] {
+        self.children.clear();
+        let mut at = arc.from;
+        loop {
+            self.children.push(at);
+            let mut step = base.between(at, at + 1.05);
+            step = base.between(at, at + step);
+            let room = (arc.to - at) / step;
+            if room.is_nan() || room < CROWDING || self.children.len() > MAX_CHILDREN {
+                break;
+            }
+            at += step;
+        }
+        let count = self.children.len();
+        if arc.whole {
+            // The last one has come round to the first.
+            self.children.pop();
+            self.slack = 0.0;
+            let stretch = TAU / (at - arc.from);
+            self.children.iter_mut().for_each(|angle| *angle *= stretch);
+        } else {
+            let slack = (arc.to - at) / (count + 1) as f32;
+            self.slack = slack;
+            for (k, angle) in self.children.iter_mut().enumerate() {
+                *angle += slack * (k + 1) as f32;
+            }
+        }
+        &self.children
+    }
+
+    /// φ and τ of child `k` of an arc that was spread, of the given radius: τ is what the children before it left.
+    pub(crate) fn room(&self, base: &Base, arc: Arc, k: usize, radius: f32) -> Room {
+        let phi = taken(base.radius, radius);
+        if arc.whole {
+            return Room { phi, tau: TAU - self.children[k] };
+        }
+        Room { phi, tau: arc.to - (self.children[k] - self.slack * (k + 1) as f32) + phi }
+    }
+
+    /// What the neighbours leave to a place at `offset` with the radius `radius`: the room beyond `share` (r_i + r_j), negative
+    /// where one is nearer, and the largest radius that a slope of `grading` away from each of them allows.
+    #[inline(always)]
+    pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
+        let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
+        let mut room = Lanes::splat(f32::INFINITY);
+        let mut largest = Lanes::splat(f32::INFINITY);
+        for chunk in &self.chunks[..self.len.div_ceil(LANES)] {
+            let (dx, dy, dz) = (chunk.x - ox, chunk.y - oy, chunk.z - oz);
+            let distance = (dx * dx + dy * dy + dz * dz).sqrt();
+            let beyond = distance - (chunk.radius + Lanes::splat(radius)) * Lanes::splat(share);
+            let allowed = chunk.radius + distance * Lanes::splat(grading);
+            for lane in 0..LANES {
+                let (a, b) = (beyond.0[lane], allowed.0[lane]);
+                room.0[lane] = if a < room.0[lane] { a } else { room.0[lane] };
+                largest.0[lane] = if b < largest.0[lane] { b } else { largest.0[lane] };
+            }
+        }
+        let least = |lanes: Lanes| lanes.0.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
+        (least(room), least(largest))
+    }
+}
+
+const SIN_60: f32 = 0.866_025_4;
+
+/// Ridge of the fit of the radius's gradient, as a share of the squared distances.
+const SLOPE_PULL: f32 = 0.02;
+
+/// Most children of an arc, whatever the prediction says.
+pub(crate) const MAX_CHILDREN: usize = 16;

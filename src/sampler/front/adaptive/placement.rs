@@ -1,0 +1,338 @@
+//! Direct placement of children, the paper's "way to directly place the children even for the non-uniform sampling" (§7):
+//! |c − p| = r_p + r(c) with c on the surface, solved for the angle on the circle and the distance at once, a batch at a
+//! time.
+
+use crate::differential::{Curvature, curvatures_of};
+use crate::field::Field;
+use crate::math::Sym3;
+use crate::sampler::projection::{BATCH, Circle, Landing, MIN_COS, Projector, Tolerance, turned};
+use crate::sampler::sizing::Sizing;
+use glam::Vec3;
+
+/// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c.
+pub(crate) const TOUCH: f32 = 2e-3;
+
+/// A correction of the distance shorter than this share of r_c is trusted without another evaluation: what it leaves is
+/// the change of the radius that the slope did not foresee.
+const TRUSTED_PULL: f32 = 0.02;
+
+/// Most evaluations of Newton's method; a good guess takes one or two.
+const MAX_STEPS: u32 = 8;
+
+/// The slope of the radius along the way, as far as it is believed.
+const MAX_SLOPE: f32 = 0.7;
+
+/// A step turns by at most this, in half-angle tangents.
+const MAX_TURN: f32 = 0.2;
+
+/// A step changes the distance by at most this share of it.
+const MAX_PULL: f32 = 0.3;
+
+/// Newton's method is trusted while the circle crosses the surface at more than about 6°.
+const MIN_CROSSING: f32 = 0.1;
+
+/// Rounds of the safeguarded search: a root on the circle, then the distance anew.
+const MAX_ROUNDS: u32 = 6;
+
+/// Where the radius jumps no distance fits: a child is taken if it misses by no more than this share of its radius.
+const LOOSE_TOUCH: f32 = 0.5;
+
+/// A child on its way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Proposal {
+    /// The circle of the first guess; its radius is the guessed distance from the parent.
+    pub(crate) circle: Circle,
+    /// Radius of the parent.
+    pub(crate) parent_radius: f32,
+    /// Change of the radius per length away from the parent, as guessed.
+    pub(crate) slope: f32,
+    /// Largest radius that the particles around allow.
+    pub(crate) largest: f32,
+}
+
+impl Proposal {
+    /// The radius that the law gives, as far as the particles around allow it. They never ask for less than `least`, the
+    /// law's own least, but siblings may, whose radii are still guesses.
+    #[inline(always)]
+    fn graded(&self, radius: f32, least: f32) -> f32 {
+        let largest = if self.largest > least { self.largest } else { least };
+        // NaN stays.
+        if radius > largest { largest } else { radius }
+    }
+}
+
+/// Where a child came to lie.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Landed {
+    /// On the surface, touching the parent.
+    On(Spot),
+    /// No such place met.
+    NotConverged,
+    /// The field has no value there, or no gradient to speak of.
+    Undefined,
+}
+
+/// A place on the surface and what is known there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) radius: f32,
+    pub(crate) curvature: Curvature,
+}
+
+/// One child under way.
+#[derive(Clone, Copy)]
+struct Active {
+    proposal: u32,
+    steps: u32,
+    turn: [f32; 2],
+    distance: f32,
+    slope: f32,
+    /// Distance and radius of the step before.
+    last: [f32; 2],
+    last_value: f32,
+}
+
+/// Solves batches of proposals; owns the memory that takes.
+#[derive(Clone, Debug)]
+pub(crate) struct Placement {
+    points: Vec<Vec3>,
+    value: Vec<f32>,
+    gradient: Vec<Vec3>,
+    hessian: Vec<Sym3<f32>>,
+    curvature: Vec<Curvature>,
+    landing: Vec<Landing>,
+}
+
+impl Placement {
+    pub(crate) fn new() -> Self {
+        Self {
+            points: Vec::with_capacity(BATCH),
+            value: vec![0.0; BATCH],
+            gradient: vec![Vec3::ZERO; BATCH],
+            hessian: vec![Sym3::default(); BATCH],
+            curvature: vec![Curvature::default(); BATCH],
+            landing: Vec::new(),
+        }
+    }
+
+    fn evaluate(&mut self, field: &mut dyn Field, projector: &mut Projector) {
+        let n = self.points.len();
+        projector.evaluations += n as u64;
+        field.hessians(&self.points, &mut self.value[..n], &mut self.gradient[..n], &mut self.hessian[..n]);
+        curvatures_of(&self.gradient[..n], &self.hessian[..n], &mut self.curvature[..n]);
+    }
+
+    /// What is known at one point, on the surface or near it.
+    pub(crate) fn look(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        sizing: &Sizing,
+        position: Vec3,
+    ) -> Spot {
+        self.points.clear();
+        self.points.push(position);
+        self.evaluate(field, projector);
+        let curvature = self.curvature[0];
+        let radius = sizing.radius(position, &curvature);
+        Spot { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
+    }
+
+    /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the distance, together; a bracketed
+    /// search on the circle, by turns with the distance, where those do not settle. `landed[i]` belongs to `proposals[i]`.
+    pub(crate) fn land(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        sizing: &Sizing,
+        proposals: &[Proposal],
+        tolerance: &dyn Fn(f32) -> Tolerance,
+        landed: &mut Vec<Landed>,
+    ) {
+        debug_assert!(proposals.len() <= BATCH);
+        landed.clear();
+        landed.resize(proposals.len(), Landed::NotConverged);
+        let idle = Active {
+            proposal: 0,
+            steps: 0,
+            turn: [1.0, 0.0],
+            distance: 0.0,
+            slope: 0.0,
+            last: [0.0; 2],
+            last_value: f32::INFINITY,
+        };
+        let mut active = [idle; BATCH];
+        for (i, proposal) in proposals.iter().enumerate() {
+            active[i] = Active {
+                proposal: i as u32,
+                turn: proposal.circle.guess,
+                distance: proposal.circle.radius,
+                slope: proposal.slope,
+                ..idle
+            };
+        }
+        let mut unsettled = [0_u32; BATCH];
+        let mut unsettled_count = 0;
+        let mut count = proposals.len();
+        while count > 0 {
+            self.points.clear();
+            self.points.extend(active[..count].iter().map(|a| {
+                Circle { radius: a.distance, ..proposals[a.proposal as usize].circle }.point(a.turn)
+            }));
+            self.evaluate(field, projector);
+            let mut kept = 0;
+            for k in 0..count {
+                let mut a = active[k];
+                let i = a.proposal as usize;
+                match self.advance(sizing, &proposals[i], tolerance, k, &mut a) {
+                    Step::Landed(spot) => landed[i] = Landed::On(spot),
+                    Step::Again => {
+                        active[kept] = a;
+                        kept += 1;
+                    }
+                    Step::Lost => {
+                        unsettled[unsettled_count] = a.proposal;
+                        unsettled_count += 1;
+                    }
+                }
+            }
+            count = kept;
+        }
+        for &i in &unsettled[..unsettled_count] {
+            landed[i as usize] = self.search(field, projector, sizing, &proposals[i as usize], tolerance);
+        }
+    }
+
+    /// One step of the two unknowns, from the evaluation at place `k` of the batch.
+    fn advance(
+        &self,
+        sizing: &Sizing,
+        proposal: &Proposal,
+        tolerance: &dyn Fn(f32) -> Tolerance,
+        k: usize,
+        a: &mut Active,
+    ) -> Step {
+        let (position, value, gradient) = (self.points[k], self.value[k], self.gradient[k]);
+        let hessian = &self.hessian[k];
+        let curvature = self.curvature[k];
+        let slope = gradient.length();
+        let radius = proposal.graded(sizing.radius(position, &curvature), sizing.least());
+        let tolerance = tolerance(radius);
+        let residual = tolerance.residual;
+        // NaN is never greater.
+        if !(tolerance.is_slope(slope) && radius > 0.0) {
+            return Step::Lost;
+        }
+        let touch = a.distance - proposal.parent_radius - radius;
+        let way = a.distance - a.last[0];
+        if a.steps > 0 && way.abs() > TOUCH * radius {
+            a.slope = ((radius - a.last[1]) / way).clamp(-MAX_SLOPE, MAX_SLOPE);
+        }
+        a.last = [a.distance, radius];
+        let circle = Circle { radius: a.distance, ..proposal.circle };
+        // In shares of the distance: a clamp between numbers that are not constants can panic with them in words.
+        let pull = (-touch / ((1.0 - a.slope) * a.distance)).clamp(-MAX_PULL, MAX_PULL) * a.distance;
+        let radial = (position - circle.centre) / a.distance;
+        let derivative = gradient.dot(circle.tangent(a.turn));
+        let half = (-0.5 * (value + gradient.dot(radial) * pull) / derivative).clamp(-MAX_TURN, MAX_TURN);
+        a.turn = turned(a.turn, half);
+        a.distance += pull;
+        a.steps += 1;
+        // What the correction leaves is known from the Hessian; if that is on the surface, no evaluation is needed.
+        let corrected = Circle { radius: a.distance, ..proposal.circle }.point(a.turn);
+        let moved = corrected - position;
+        let corrected_gradient = gradient + hessian.apply(moved);
+        let corrected_slope = corrected_gradient.length();
+        let left = value + 0.5 * (gradient + corrected_gradient).dot(moved);
+        if left.abs() <= 0.5 * residual * corrected_slope
+            && tolerance.is_slope(corrected_slope)
+            && moved.length_squared() <= (TRUSTED_MOVE * radius) * (TRUSTED_MOVE * radius)
+            && pull.abs() <= TRUSTED_PULL * radius
+        {
+            return Step::Landed(Spot {
+                position: corrected,
+                normal: corrected_gradient / corrected_slope,
+                radius: a.distance - proposal.parent_radius,
+                curvature,
+            });
+        }
+        if value.abs() <= residual * slope && touch.abs() <= TOUCH * radius {
+            return Step::Landed(Spot { position, normal: gradient / slope, radius, curvature });
+        }
+        let settles = value.abs() <= a.last_value
+            && derivative.abs() > MIN_CROSSING * slope * circle.radius
+            && a.turn[0] > MIN_COS
+            && a.steps < MAX_STEPS
+            && half.is_finite()
+            && a.distance.is_finite();
+        // The value may stay: a step that is mostly a pull moves along the surface.
+        a.last_value = value.abs() + residual * slope;
+        if settles { Step::Again } else { Step::Lost }
+    }
+
+    /// The root on the circle and the distance by turns: ends on any field.
+    fn search(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        sizing: &Sizing,
+        proposal: &Proposal,
+        tolerance: &dyn Fn(f32) -> Tolerance,
+    ) -> Landed {
+        let mut circle = proposal.circle;
+        let guess = circle.radius;
+        // The sign of the miss tells on which side the distance lies that fits.
+        let (mut near, mut far) = (0.0_f32, f32::INFINITY);
+        let mut best: Option<(f32, Spot)> = None;
+        for _ in 0..MAX_ROUNDS {
+            let allowed = tolerance(circle.radius - proposal.parent_radius);
+            let mut landing = core::mem::take(&mut self.landing);
+            projector.land_on_circles(field, &[circle], allowed, &mut landing);
+            let result = landing[0];
+            self.landing = landing;
+            let position = match result {
+                Landing::On { position, .. } => position,
+                Landing::Undefined if best.is_none() => return Landed::Undefined,
+                _ => break,
+            };
+            let mut spot = self.look(field, projector, sizing, position);
+            spot.radius = proposal.graded(spot.radius, sizing.least());
+            if !(spot.radius > 0.0 && spot.normal.is_finite()) {
+                return Landed::Undefined;
+            }
+            let miss = circle.radius - proposal.parent_radius - spot.radius;
+            let relative = miss.abs() / spot.radius;
+            if best.is_none_or(|(least, _)| relative < least) {
+                best = Some((relative, spot));
+            }
+            if relative <= TOUCH {
+                break;
+            }
+            if miss < 0.0 {
+                near = near.max(circle.radius);
+            } else {
+                far = far.min(circle.radius);
+            }
+            let next = circle.radius - miss;
+            circle.radius =
+                if next > near && next < far { next } else { 0.5 * (near + far.min(2.0 * guess)) };
+        }
+        match best {
+            Some((miss, spot)) if miss <= LOOSE_TOUCH => Landed::On(spot),
+            _ => Landed::NotConverged,
+        }
+    }
+}
+
+/// A correction no longer than this share of the radius is trusted: the third order that the Hessian does not know is then
+/// below a thousandth of it.
+const TRUSTED_MOVE: f32 = 0.06;
+
+/// What a step led to.
+enum Step {
+    Landed(Spot),
+    Again,
+    Lost,
+}

@@ -1,0 +1,146 @@
+//! What a parent of the uniform front needs to know of the particles around it, worked out four at a time.
+
+use crate::sampler::discovery::sheets::MAX_LIFT;
+use glam::{Vec3, Vec4};
+
+/// Particles within this many radii of a parent tell its curvature: the six ideal neighbours are at 2, the next ring
+/// at 3.46.
+const RING: f32 = 2.6;
+
+/// Weight of "equal curvature in all directions" in the fit, which decides what the neighbours leave open.
+const ISOTROPY: f32 = 0.005;
+
+/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
+/// no more than 45°, give or take a slack: this is sin² 45°.
+pub(crate) const MAX_RISE_SQ: f32 = 0.5;
+
+/// Particles in a chunk.
+const CHUNK: usize = 4;
+
+/// The particles around a parent: offset x, y, z from the parent, normal x, y, z, and whether the particle is final.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surroundings {
+    len: usize,
+    chunks: Vec<[[f32; CHUNK]; 7]>,
+}
+
+/// Second fundamental form in a frame (u, w): the normal turns by `[a b; b c] · offset`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shape {
+    pub(crate) a: f32,
+    pub(crate) b: f32,
+    pub(crate) c: f32,
+}
+
+impl Surroundings {
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    #[inline(always)]
+    pub(crate) fn push(&mut self, offset: Vec3, normal: Vec3, is_final: bool) {
+        let (chunk, lane) = (self.len / CHUNK, self.len % CHUNK);
+        if chunk == self.chunks.len() {
+            self.chunks.push([[0.0; CHUNK]; 7]);
+        }
+        let columns = &mut self.chunks[chunk];
+        if lane == 0 {
+            // Lanes without a particle are infinitely far and have no normal.
+            let (far, none) = ([f32::INFINITY; CHUNK], [0.0; CHUNK]);
+            *columns = [far, far, far, none, none, none, none];
+        }
+        let tells = f32::from(u8::from(is_final));
+        let values = [offset.x, offset.y, offset.z, normal.x, normal.y, normal.z, tells];
+        for (column, value) in columns.iter_mut().zip(values) {
+            column[lane] = value;
+        }
+        self.len += 1;
+    }
+
+    fn chunks(&self) -> impl Iterator<Item = [Vec4; 7]> {
+        self.chunks[..self.len.div_ceil(CHUNK)].iter().map(|chunk| chunk.map(Vec4::from_array))
+    }
+
+    /// Whether any of the particles is [doubtful](crate::sampler::discovery::sheets::is_doubtful) beside the parent with the unit normal `normal`.
+    #[inline(always)]
+    pub(crate) fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
+        let unit = 1.0 / (spacing * spacing);
+        // The lift is half of what is summed here.
+        let limit = (2.0 * MAX_LIFT * spacing) * (2.0 * MAX_LIFT * spacing);
+        self.chunks().any(|[x, y, z, mx, my, mz, _]| {
+            let along = mx * normal.x + my * normal.y + mz * normal.z;
+            let lift = x * (normal.x + mx) + y * (normal.y + my) + z * (normal.z + mz);
+            let share = (x * x + y * y + z * z) * unit;
+            let cube = share * share * share;
+            let growth = Vec4::select(cube.cmpgt(Vec4::ONE), cube, Vec4::ONE);
+            (along.cmpgt(Vec4::ZERO) & (lift * lift).cmpgt(growth * limit)).any()
+        })
+    }
+
+    /// Least-squares fit of the second fundamental form to the normals of the final particles within [`RING`] radii of the
+    /// parent, whose normal is `n`.
+    #[inline(always)]
+    pub(crate) fn fit_shape(&self, radius: f32, n: Vec3, u: Vec3, w: Vec3) -> Shape {
+        let reach_sq = Vec4::splat((RING * radius) * (RING * radius));
+        let [mut xx, mut xy, mut yy, mut xp, mut yp, mut xq, mut yq] = [Vec4::ZERO; 7];
+        for [x, y, z, mx, my, mz, tells] in self.chunks() {
+            let (tx, ty, tz) = (mx - n.x, my - n.y, mz - n.z);
+            // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
+            let is_told = tells.cmpgt(Vec4::ZERO)
+                & (x * x + y * y + z * z).cmple(reach_sq)
+                & (tx * tx + ty * ty + tz * tz).cmple(Vec4::ONE);
+            let told = |value: Vec4| Vec4::select(is_told, value, Vec4::ZERO);
+            let (p, q) = (told(tx * u.x + ty * u.y + tz * u.z), told(tx * w.x + ty * w.y + tz * w.z));
+            let (x, y) = (told(x * u.x + y * u.y + z * u.z), told(x * w.x + y * w.y + z * w.z));
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
+            xp += x * p;
+            yp += y * p;
+            xq += x * q;
+            yq += y * q;
+        }
+        let [xx, xy, yy, xp, yp, xq, yq] =
+            [xx, xy, yy, xp, yp, xq, yq].map(|sum| (sum.x + sum.y) + (sum.z + sum.w));
+        let prior = ISOTROPY * (xx + yy);
+        // Normal equations of a x + b y = p, b x + c y = q with the prior (a − c)² + b², solved by Cramer's rule.
+        let (m11, m12, m13) = (xx + prior, xy, -prior);
+        let (m22, m23, m33) = (xx + yy + prior, xy, yy + prior);
+        let (r1, r2, r3) = (xp, yp + xq, yq);
+        let (c11, c12, c13) = (m22 * m33 - m23 * m23, m13 * m23 - m12 * m33, m12 * m23 - m13 * m22);
+        let determinant = m11 * c11 + m12 * c12 + m13 * c13;
+        let (c22, c23, c33) = (m11 * m33 - m13 * m13, m12 * m13 - m11 * m23, m11 * m22 - m12 * m12);
+        let inverse = 1.0 / determinant;
+        let shape = Shape {
+            a: (c11 * r1 + c12 * r2 + c13 * r3) * inverse,
+            b: (c12 * r1 + c22 * r2 + c23 * r3) * inverse,
+            c: (c13 * r1 + c23 * r2 + c33 * r3) * inverse,
+        };
+        if shape.a.is_finite() && shape.b.is_finite() && shape.c.is_finite() {
+            shape
+        } else {
+            Shape::default()
+        }
+    }
+
+    /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
+    /// `normal`, of whatever length; and to the nearest of any sheet.
+    #[inline(always)]
+    pub(crate) fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> (f32, f32) {
+        let max_rise_sq = MAX_RISE_SQ * normal.length_squared();
+        let far = Vec4::splat(f32::INFINITY);
+        let (mut nearest, mut any) = (far, far);
+        for [x, y, z, mx, my, mz, _] in self.chunks() {
+            let (dx, dy, dz) = (x - offset.x, y - offset.y, z - offset.z);
+            let distance_sq = dx * dx + dy * dy + dz * dz;
+            let rise = dx * normal.x + dy * normal.y + dz * normal.z;
+            let along = mx * normal.x + my * normal.y + mz * normal.z;
+            // In lanes without a particle, which may hold a NaN, this is false.
+            let is_same =
+                along.cmpgt(Vec4::ZERO) & (rise * rise).cmple((distance_sq + slack_sq) * max_rise_sq);
+            any = any.min(distance_sq);
+            nearest = nearest.min(Vec4::select(is_same, distance_sq, far));
+        }
+        (nearest.min_element(), any.min_element())
+    }
+}

@@ -1,0 +1,169 @@
+//! Grids for particles of different radii: cells of one size per range of radii, so that a query among small particles does
+//! not read cells made for large ones.
+
+use crate::sampler::neighbours::constants::CELL_PER_REACH;
+use crate::spatial::chains::Chains;
+use crate::spatial::{CellGrid, Neighbour, Place};
+use glam::Vec3;
+
+/// Ratio of the radii in a range. On a tanglecube whose radii range over 1 : 16 the front takes 2.7 µs per particle with
+/// it, 2.75 with a ratio of 2, and 4.5 with one grid for all (at the same load, one after the other).
+const RATIO: f32 = 4.0;
+
+/// Most ranges; radii beyond the last belong to it.
+const MAX_LAYERS: usize = 6;
+
+/// Ranges of radii.
+#[derive(Clone, Debug)]
+struct Layers {
+    count: usize,
+    /// Middle of each range, and largest radius met in it.
+    middle: [f32; MAX_LAYERS],
+    largest: [f32; MAX_LAYERS],
+}
+
+impl Layers {
+    /// Ranges for radii from `smallest` to `largest`.
+    fn between(smallest: f32, largest: f32) -> Self {
+        let mut layers = Self { count: 0, middle: [1.0; MAX_LAYERS], largest: [1.0; MAX_LAYERS] };
+        let mut top = smallest;
+        while layers.count < MAX_LAYERS && (layers.count == 0 || top < largest) {
+            let bottom = top;
+            top *= RATIO;
+            if layers.count + 1 == MAX_LAYERS || top > largest {
+                top = largest.max(bottom);
+            }
+            layers.middle[layers.count] = if top > bottom { (bottom * top).sqrt() } else { top };
+            layers.largest[layers.count] = top;
+            layers.count += 1;
+        }
+        layers
+    }
+
+    /// Sides of the cells of each range, for queries that usually reach `reach` radii.
+    fn sides(&self, reach: f32) -> impl Iterator<Item = f32> {
+        self.middle[..self.count].iter().map(move |middle| CELL_PER_REACH * (reach * middle))
+    }
+
+    /// Range of a radius, which counts as met there.
+    #[inline(always)]
+    fn admit(&mut self, radius: f32) -> usize {
+        let layer = self.of(radius);
+        self.grow(layer, radius);
+        layer
+    }
+
+    /// Range of a radius.
+    #[inline(always)]
+    fn of(&self, radius: f32) -> usize {
+        let last = self.count - 1;
+        (0..last).find(|&k| radius <= self.largest[k]).unwrap_or(last)
+    }
+
+    /// Counts a radius as met in a range.
+    #[inline(always)]
+    fn grow(&mut self, layer: usize, radius: f32) {
+        let largest = &mut self.largest[layer];
+        *largest = if radius > *largest { radius } else { *largest };
+    }
+}
+
+/// Where a particle sits.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Held {
+    layer: u32,
+    place: Place,
+}
+
+/// Grids by radius.
+#[derive(Clone)]
+pub(crate) struct RadiusGrids {
+    grids: Vec<CellGrid>,
+    layers: Layers,
+}
+
+impl RadiusGrids {
+    pub(crate) fn new() -> Self {
+        Self { grids: Vec::new(), layers: Layers::between(1.0, 1.0) }
+    }
+
+    /// Empties the grids for radii from `smallest` to `largest`; a usual query reaches `reach` radii.
+    pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32) {
+        self.layers = Layers::between(smallest, largest);
+        self.grids.truncate(self.layers.count);
+        for (k, side) in self.layers.sides(reach).enumerate() {
+            match self.grids.get_mut(k) {
+                Some(grid) => grid.reset(side),
+                None => self.grids.push(CellGrid::new(side)),
+            }
+        }
+    }
+
+    pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) -> Held {
+        let layer = self.layers.admit(radius);
+        Held { layer: layer as u32, place: self.grids[layer].insert(position, index) }
+    }
+
+    pub(crate) fn remove(&mut self, held: Held) {
+        self.grids[held.layer as usize].remove(held.place);
+    }
+
+    /// Moves a particle that keeps about its radius.
+    pub(crate) fn update(&mut self, held: Held, position: Vec3, radius: f32, index: u32) {
+        self.layers.grow(held.layer as usize, radius);
+        self.grids[held.layer as usize].update(held.place, position, index);
+    }
+
+    /// Collects the particles within a distance of `centre` that may depend on the largest radius in a grid.
+    pub(crate) fn gather(&self, centre: Vec3, reach: impl Fn(f32) -> f32, found: &mut Vec<Neighbour>) {
+        found.clear();
+        for (grid, &largest) in self.grids.iter().zip(&self.layers.largest) {
+            grid.gather_more(centre, reach(largest), found);
+        }
+    }
+
+    pub(crate) fn release(&mut self) {
+        self.grids = Vec::new();
+    }
+}
+
+/// Lists by radius and place, of particles that stand in columns.
+#[derive(Clone)]
+pub(crate) struct RadiusChains {
+    chains: Chains,
+    layers: Layers,
+}
+
+impl RadiusChains {
+    pub(crate) fn new() -> Self {
+        Self { chains: Chains::default(), layers: Layers::between(1.0, 1.0) }
+    }
+
+    /// Forgets all particles; up to `particles` of radii from `smallest` to `largest` will be added, and a usual query
+    /// reaches `reach` radii.
+    pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32, particles: usize) {
+        self.layers = Layers::between(smallest, largest);
+        self.chains.reset(self.layers.sides(reach), particles);
+    }
+
+    #[inline(always)]
+    pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) {
+        let layer = self.layers.admit(radius);
+        self.chains.insert(layer, position, index);
+    }
+
+    /// Particles of about this radius that were put into the cell of `position` and are there, if they are `meant`.
+    pub(crate) fn beside(
+        &self,
+        positions: &[Vec3],
+        (position, radius): (Vec3, f32),
+        meant: impl Fn(u32) -> bool,
+    ) -> impl Iterator<Item = u32> {
+        self.chains.beside(positions, self.layers.of(radius), position, meant)
+    }
+
+    /// Visits the particles within a distance of a box that may depend on the largest radius of a range, and some beyond.
+    pub(crate) fn visit(&mut self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
+        self.chains.visit(bounds, self.layers.largest.iter().map(|&largest| reach(largest)), visit);
+    }
+}

@@ -1,0 +1,173 @@
+//! Neighbour lists for the relaxation: every pair once, under the larger index.
+
+use crate::math::push_gently;
+use crate::sampler::projection::BATCH;
+use core::ops::Range;
+
+/// Neighbours that a list has room for. Within the reach of the relaxation a lattice has 6 to 12, half of them of a
+/// smaller index; one particle in a hundred has more than eight.
+pub(crate) const ROOM: usize = 8;
+
+/// Particles of which it is known together whether all their pairs repel in full: a batch, which is landed together.
+const BLOCK: usize = BATCH;
+
+/// Lists by particle. A neighbour stands as its distance back in the order of the particles, which is that of the front:
+/// those around a particle are of its own level or the few before, so that 16 bits are enough.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pairs {
+    /// Distances back to the neighbours; 0 after the last.
+    near: Vec<[u16; ROOM]>,
+    /// Larger and smaller index of the pairs that find no room there: in crowds, and where fronts meet that are far apart
+    /// in the order.
+    far: Vec<[u32; 2]>,
+    /// By blocks of particles, whether one may have a pair that does not repel in full.
+    is_bent: Vec<bool>,
+}
+
+impl Pairs {
+    pub(crate) fn clear(&mut self) {
+        self.near.clear();
+        self.far.clear();
+        self.is_bent.clear();
+    }
+
+    /// Makes room for exactly `particles` lists.
+    pub(crate) fn reserve(&mut self, particles: usize) {
+        self.near.reserve_exact(particles.saturating_sub(self.near.len()));
+    }
+
+    /// Notes that particle `i` may have a pair that does not repel in full.
+    #[cold]
+    pub(crate) fn note_bend(&mut self, i: usize) {
+        let block = i / BLOCK;
+        if block >= self.is_bent.len() {
+            self.is_bent.resize(block + 1, false);
+        }
+        self.is_bent[block] = true;
+    }
+
+    /// Whether one of these particles may have a pair that does not repel in full.
+    pub(crate) fn are_bent(&self, range: &Range<usize>) -> bool {
+        (range.start / BLOCK..range.end.div_ceil(BLOCK)).any(|block| self.is_bent.get(block) == Some(&true))
+    }
+
+    /// Gives back the room beyond the lists there are.
+    pub(crate) fn shrink(&mut self) {
+        self.near.shrink_to_fit();
+        self.far.shrink_to_fit();
+    }
+
+    /// Number of lists.
+    pub(crate) fn len(&self) -> usize {
+        self.near.len()
+    }
+
+    pub(crate) fn truncate(&mut self, len: usize) {
+        self.near.truncate(len);
+        self.far.retain(|pair| (pair[0] as usize) < len);
+    }
+
+    /// Adds empty lists up to `len`.
+    pub(crate) fn extend_to(&mut self, len: usize) {
+        self.near.resize(len.max(self.near.len()), [0; ROOM]);
+    }
+
+    /// Adds the list of the next particle: those of the `candidates`, of a smaller index, that are said to belong to it.
+    #[inline]
+    pub(crate) fn push(&mut self, candidates: impl IntoIterator<Item = (u32, bool)>) {
+        let i = self.near.len();
+        self.near.push([0; ROOM]);
+        self.fill(i, candidates);
+    }
+
+    /// Replaces the list of particle `i`, of which no pair is [far](Self::far).
+    #[inline]
+    pub(crate) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
+        let mut list = [0; ROOM + 1];
+        let mut len = 0;
+        for (j, belongs) in candidates {
+            let back = (i as u32).wrapping_sub(j);
+            if belongs && (len == ROOM || back > u32::from(u16::MAX)) {
+                push_gently(&mut self.far, [i as u32, j]);
+                continue;
+            }
+            // Written in any case: a branch would be mispredicted for every other candidate.
+            list[len] = back as u16;
+            len += usize::from(belongs);
+        }
+        list[len] = 0;
+        self.near[i].copy_from_slice(&list[..ROOM]);
+    }
+
+    /// Adds `j` to the list of particle `i` if it is not there. No pair of `j` is [far](Self::far).
+    pub(crate) fn insert(&mut self, i: usize, j: u32) {
+        let back = i as u32 - j;
+        if let Ok(back) = u16::try_from(back) {
+            let list = &mut self.near[i];
+            if let Some(place) = list.iter().position(|&other| other == back || other == 0) {
+                list[place] = back;
+                return;
+            }
+        }
+        push_gently(&mut self.far, [i as u32, j]);
+    }
+
+    /// Drops the far pairs of the particles of which `is_renewed` says so.
+    pub(crate) fn drop_far(&mut self, is_renewed: impl Fn(usize) -> bool) {
+        self.far.retain(|pair| !pair.iter().any(|&i| is_renewed(i as usize)));
+    }
+
+    /// Neighbours of particle `i` with a smaller index, but for those of far pairs.
+    #[inline(always)]
+    pub(crate) fn near(&self, i: usize) -> impl Iterator<Item = usize> {
+        self.near[i].iter().take_while(|&&back| back != 0).map(move |&back| i - usize::from(back))
+    }
+
+    /// The other pairs: larger and smaller index.
+    pub(crate) fn far(&self) -> &[[u32; 2]] {
+        &self.far
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all_of(pairs: &Pairs, i: usize) -> Vec<usize> {
+        let far = pairs.far().iter().filter(|pair| pair[0] as usize == i).map(|pair| pair[1] as usize);
+        let mut all: Vec<usize> = pairs.near(i).chain(far).collect();
+        all.sort_unstable();
+        all
+    }
+
+    #[test]
+    fn lists_hold_what_was_put_last() {
+        // Farther back than 16 bits reach, and more neighbours than a list has room for.
+        let first = 70_000;
+        let mut pairs = Pairs::default();
+        pairs.extend_to(first);
+        for i in 0..40 {
+            pairs.push((0..13).map(|k| (k * 1_741, k < i % 11)));
+        }
+        for round in 0..5 {
+            let is_renewed = |i: usize| i >= first && i % 3 == round as usize % 3;
+            pairs.drop_far(is_renewed);
+            for i in (first..first + 40).filter(|&i| is_renewed(i)) {
+                let list = (0..(i as u32 + round) % 12).map(|k| k * 1_741 + round);
+                pairs.fill(i, list.clone().map(|j| (j, true)));
+                let mut expected: Vec<usize> = list.map(|j| j as usize).collect();
+                assert_eq!(all_of(&pairs, i), expected);
+                pairs.insert(i, 69_000);
+                expected.push(69_000);
+                assert_eq!(all_of(&pairs, i), expected);
+                if expected.len() <= 2 {
+                    pairs.insert(i, 69_000);
+                    assert_eq!(all_of(&pairs, i), expected);
+                }
+            }
+        }
+        assert_eq!(pairs.len(), first + 40);
+        pairs.truncate(first);
+        assert_eq!(pairs.far(), [[0; 2]; 0]);
+    }
+}

@@ -1,0 +1,421 @@
+//! Bringing points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or along
+//! the gradient (for seeds and relaxation). Everything works on batches, so that the field is evaluated in SIMD lanes.
+
+use crate::field::Field;
+use crate::math::sort_few;
+use glam::Vec3;
+
+/// Points per call of the field. Large enough to hide the cost of a call, small enough to stay in the first-level
+/// cache; a point's result does not depend on it.
+pub(crate) const BATCH: usize = 128;
+
+/// Most Newton steps on one circle; a good guess takes two evaluations.
+const MAX_NEWTON_STEPS: u32 = 12;
+
+/// Most steps of the bracketed search, over all brackets of one circle.
+const MAX_BRACKET_STEPS: u32 = 38;
+
+/// A Newton step on the circle turns by at most this angle, in half-angle tangents: about 23° a step.
+const MAX_TURN: f32 = 0.2;
+
+/// The circle is searched while the child stays within about 100° of the tangent plane: cos θ above this.
+pub(crate) const MIN_COS: f32 = -0.18;
+
+/// Newton on the circle is trusted while the circle crosses the surface at more than about 6°.
+const MIN_CROSSING: f32 = 0.1;
+
+/// |f| has to fall at least to this share in every Newton step, else the bracketed search takes over.
+const MIN_DECREASE: f32 = 0.7;
+
+/// Intervals into which the bracketed search cuts the arc.
+const ARC_SAMPLES: usize = 32;
+
+/// The circle C(p, 2r) in the plane of the parent's normal and one tangent direction.
+///
+/// A point of it is p + 2r (cos θ V̂ + sin θ N̂): the paper's formula with the centre added.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Circle {
+    /// Parent position p.
+    pub(crate) centre: Vec3,
+    /// Parent normal N̂.
+    pub(crate) normal: Vec3,
+    /// Unit tangent direction V̂ of the slot.
+    pub(crate) direction: Vec3,
+    /// Parent–child distance 2r.
+    pub(crate) radius: f32,
+    /// cos θ and sin θ of the first guess.
+    pub(crate) guess: [f32; 2],
+}
+
+impl Circle {
+    #[inline(always)]
+    pub(crate) fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
+        self.centre + (self.direction * cos + self.normal * sin) * self.radius
+    }
+
+    /// Derivative of the point by θ.
+    #[inline(always)]
+    pub(crate) fn tangent(&self, [cos, sin]: [f32; 2]) -> Vec3 {
+        (self.normal * cos - self.direction * sin) * self.radius
+    }
+}
+
+/// Where the search on a circle ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Landing {
+    /// On the surface.
+    On {
+        /// Point of the surface.
+        position: Vec3,
+        /// Unit outward normal there.
+        normal: Vec3,
+    },
+    /// No point of the surface met.
+    NotConverged,
+    /// The field has no value there, or no gradient to speak of.
+    Undefined,
+}
+
+/// What counts as being on the surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tolerance {
+    /// Largest |f|/|∇f|.
+    pub(crate) residual: f32,
+    /// |∇f| below this counts as zero: the surface has no normal there.
+    pub(crate) min_gradient: f32,
+}
+
+impl Tolerance {
+    /// Whether |∇f| tells where the surface is: not where it counts as zero, nor where it overflows, as beside a pole, and
+    /// any value would be small against it.
+    #[inline(always)]
+    pub(crate) fn is_slope(&self, slope: f32) -> bool {
+        slope > self.min_gradient && slope < f32::INFINITY
+    }
+}
+
+/// How far a point may go along the gradient, and when it has arrived.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Descent {
+    /// Largest |f|/|∇f| of a point of the surface.
+    pub(crate) residual: f32,
+    /// A point farther than this from where it began is given up.
+    pub(crate) reach: f32,
+    /// A point whose last correction was shorter is not evaluated again: by the quadratic convergence of Newton's method
+    /// its residual is then below the tolerance's order, and its normal is that of the point before the correction.
+    pub(crate) trust: f32,
+}
+
+/// What applies to each of some points on their way along the gradient, and what is asked of the field there.
+pub(crate) trait Descents {
+    /// What applies to point `i`.
+    fn of(&self, i: usize) -> Descent;
+
+    /// Evaluates the field at `points`, which are those with the numbers `which`.
+    #[inline(always)]
+    fn evaluate(
+        &mut self,
+        field: &mut dyn Field,
+        which: &[u32],
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+    ) {
+        let _ = which;
+        field.gradients(points, value, gradient);
+    }
+}
+
+/// The same for all points.
+impl Descents for Descent {
+    #[inline(always)]
+    fn of(&self, _: usize) -> Descent {
+        *self
+    }
+}
+
+/// One circle under way.
+#[derive(Clone, Copy)]
+struct Active {
+    /// Index of the circle in the batch.
+    circle: u32,
+    steps: u32,
+    turn: [f32; 2],
+    last: f32,
+}
+
+/// Projects batches of points; owns the memory that takes.
+#[derive(Clone, Debug)]
+pub(crate) struct Projector {
+    points: Vec<Vec3>,
+    value: Vec<f32>,
+    gradient: Vec<Vec3>,
+    /// Field evaluations made so far, one per point and call.
+    pub(crate) evaluations: u64,
+}
+
+impl Projector {
+    pub(crate) fn new() -> Self {
+        Self {
+            points: Vec::with_capacity(BATCH),
+            value: vec![0.0; BATCH],
+            gradient: vec![Vec3::ZERO; BATCH],
+            evaluations: 0,
+        }
+    }
+
+    /// Value and gradient at one point.
+    pub(crate) fn evaluate(&mut self, field: &mut dyn Field, point: Vec3) -> (f32, Vec3) {
+        self.evaluations += 1;
+        field.gradients(&[point], &mut self.value[..1], &mut self.gradient[..1]);
+        (self.value[0], self.gradient[0])
+    }
+
+    /// Evaluates at most [`BATCH`] points in one call; the results stand in the returned slices.
+    pub(crate) fn evaluate_batch(&mut self, field: &mut dyn Field, points: &[Vec3]) -> (&[f32], &[Vec3]) {
+        let n = points.len();
+        self.evaluations += n as u64;
+        field.gradients(points, &mut self.value[..n], &mut self.gradient[..n]);
+        (&self.value[..n], &self.gradient[..n])
+    }
+
+    /// Finds the surface on each of at most [`BATCH`] circles, nearest to the guess: Newton's method in θ, which
+    /// takes two evaluations where the guess is good, and a bracketed search where Newton's method does not settle
+    /// (at most 50 steps in all, so it ends on any field). `landing[i]` belongs to `circles[i]`.
+    pub(crate) fn land_on_circles(
+        &mut self,
+        field: &mut dyn Field,
+        circles: &[Circle],
+        tolerance: Tolerance,
+        landing: &mut Vec<Landing>,
+    ) {
+        debug_assert!(circles.len() <= BATCH);
+        landing.clear();
+        landing.resize(circles.len(), Landing::NotConverged);
+        let mut active = [Active { circle: 0, steps: 0, turn: [1.0, 0.0], last: f32::INFINITY }; BATCH];
+        for (i, circle) in circles.iter().enumerate() {
+            active[i].circle = i as u32;
+            active[i].turn = circle.guess;
+        }
+        let mut unsettled = [0_u32; BATCH];
+        let mut unsettled_count = 0;
+        let mut count = circles.len();
+        while count > 0 {
+            self.points.clear();
+            self.points.extend(active[..count].iter().map(|a| circles[a.circle as usize].point(a.turn)));
+            self.evaluations += count as u64;
+            field.gradients(&self.points, &mut self.value[..count], &mut self.gradient[..count]);
+            let mut kept = 0;
+            for k in 0..count {
+                let mut a = active[k];
+                let circle = &circles[a.circle as usize];
+                let (value, gradient) = (self.value[k], self.gradient[k]);
+                let slope = gradient.length();
+                if value.abs() <= tolerance.residual * slope && tolerance.is_slope(slope) {
+                    landing[a.circle as usize] =
+                        Landing::On { position: self.points[k], normal: gradient / slope };
+                    continue;
+                }
+                a.steps += 1;
+                let derivative = gradient.dot(circle.tangent(a.turn));
+                let half = (-0.5 * value / derivative).clamp(-MAX_TURN, MAX_TURN);
+                a.turn = turned(a.turn, half);
+                let settles = value.abs() <= MIN_DECREASE * a.last
+                    && derivative.abs() > MIN_CROSSING * slope * circle.radius
+                    && a.turn[0] > MIN_COS
+                    && a.steps < MAX_NEWTON_STEPS;
+                a.last = value.abs();
+                // A NaN anywhere makes `settles` false or stays in the position until it does.
+                if settles && half.is_finite() && tolerance.is_slope(slope) {
+                    active[kept] = a;
+                    kept += 1;
+                } else {
+                    unsettled[unsettled_count] = a.circle;
+                    unsettled_count += 1;
+                }
+            }
+            count = kept;
+        }
+        for &i in &unsettled[..unsettled_count] {
+            landing[i as usize] = self.search_arc(field, &circles[i as usize], tolerance);
+        }
+    }
+
+    /// The root on the arc nearest to the guess, by bracketing and the Illinois method.
+    fn search_arc(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
+        // θ runs over ±100° in equal steps of the half-angle rotation around the guess-free zero direction.
+        let half = HALF_TURN;
+        let mut turns = [[1.0, 0.0]; ARC_SAMPLES + 1];
+        for k in 0..ARC_SAMPLES / 2 {
+            turns[ARC_SAMPLES / 2 + k + 1] = turned(turns[ARC_SAMPLES / 2 + k], half);
+            turns[ARC_SAMPLES / 2 - k - 1] = turned(turns[ARC_SAMPLES / 2 - k], -half);
+        }
+        self.points.clear();
+        self.points.extend(turns.iter().map(|&turn| circle.point(turn)));
+        let mut f = [0.0; ARC_SAMPLES + 1];
+        field.values(&self.points, &mut f);
+        self.evaluations += f.len() as u64;
+        if f.iter().all(|v| !v.is_finite()) {
+            return Landing::Undefined;
+        }
+        // Brackets by nearness to the guess: the larger the cosine of the angle between, the nearer.
+        let nearness = |k: usize| {
+            let middle = turned(turns[k], 0.5 * half);
+            middle[0] * circle.guess[0] + middle[1] * circle.guess[1]
+        };
+        let mut brackets = [(f32::NEG_INFINITY, 0_usize); ARC_SAMPLES];
+        let mut count = 0;
+        for k in 0..ARC_SAMPLES {
+            if f[k].is_finite() && f[k + 1].is_finite() && (f[k] <= 0.0) != (f[k + 1] <= 0.0) {
+                brackets[count] = (nearness(k), k);
+                count += 1;
+            }
+        }
+        sort_few(&mut brackets[..count], |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt());
+        let mut budget = MAX_BRACKET_STEPS;
+        for &(_, k) in &brackets[..count] {
+            let found = self.illinois(field, circle, tolerance, (turns[k], f[k], f[k + 1]), &mut budget);
+            if let Some(landing) = found {
+                return landing;
+            }
+        }
+        let undefined = f.iter().filter(|v| !v.is_finite()).count();
+        if count == 0 && undefined > ARC_SAMPLES / 2 { Landing::Undefined } else { Landing::NotConverged }
+    }
+
+    /// Root in the bracket that begins at `turn` with the values `fa` and `fb` at its ends; `None` where the sign
+    /// change is a pole or a jump.
+    fn illinois(
+        &mut self,
+        field: &mut dyn Field,
+        circle: &Circle,
+        tolerance: Tolerance,
+        (turn, mut fa, mut fb): ([f32; 2], f32, f32),
+        budget: &mut u32,
+    ) -> Option<Landing> {
+        // The unknown is the half-angle tangent t from the start of the bracket.
+        let (mut a, mut b) = (0.0, HALF_TURN);
+        let end = fa.abs().max(fb.abs());
+        let mut side = 0;
+        while *budget > 0 {
+            *budget -= 1;
+            let mut t = (a * fb - b * fa) / (fb - fa);
+            if !(t > a && t < b) {
+                t = 0.5 * (a + b);
+            }
+            let position = circle.point(turned(turn, t));
+            let (value, gradient) = self.evaluate(field, position);
+            if !value.is_finite() || value.abs() > end {
+                return None;
+            }
+            let slope = gradient.length();
+            if value.abs() <= tolerance.residual * slope {
+                return Some(if tolerance.is_slope(slope) {
+                    Landing::On { position, normal: gradient / slope }
+                } else {
+                    Landing::Undefined
+                });
+            }
+            if b - a <= 1e-7 {
+                return None;
+            }
+            if (value <= 0.0) == (fa <= 0.0) {
+                (a, fa) = (t, value);
+                if side == 1 {
+                    fb *= 0.5;
+                }
+                side = 1;
+            } else {
+                (b, fb) = (t, value);
+                if side == 2 {
+                    fa *= 0.5;
+                }
+                side = 2;
+            }
+        }
+        None
+    }
+
+    /// Moves each of at most [`BATCH`] points onto the surface along the gradient, by Newton's method.
+    ///
+    /// `normal[i]` becomes the unit normal. `ok[i]` says that the point is on the surface as `descents` ask; a point is
+    /// given up when it has not arrived after `max_steps` evaluations, when it has gone too far from where it began, or
+    /// where the field is undefined or its gradient is not above `min_gradient`.
+    #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
+    pub(crate) fn land_along_gradient(
+        &mut self,
+        field: &mut dyn Field,
+        points: &mut [Vec3],
+        normal: &mut [Vec3],
+        ok: &mut [bool],
+        min_gradient: f32,
+        descents: &mut impl Descents,
+        max_steps: u32,
+    ) {
+        let n = points.len();
+        debug_assert!(n <= BATCH);
+        let mut start = [Vec3::ZERO; BATCH];
+        start[..n].copy_from_slice(points);
+        let mut active: [u32; BATCH] = core::array::from_fn(|i| i as u32);
+        ok[..n].fill(false);
+        let mut count = n;
+        for _ in 0..max_steps {
+            if count == 0 {
+                break;
+            }
+            self.points.clear();
+            self.points.extend(active[..count].iter().map(|&i| points[i as usize]));
+            self.evaluations += count as u64;
+            let (value, gradient) = (&mut self.value[..count], &mut self.gradient[..count]);
+            descents.evaluate(field, &active[..count], &self.points, value, gradient);
+            let mut kept = 0;
+            for k in 0..count {
+                let i = active[k] as usize;
+                let Descent { residual, reach, trust } = descents.of(i);
+                let (value, gradient) = (self.value[k], self.gradient[k]);
+                let slope_sq = gradient.length_squared();
+                let inverse_slope = 1.0 / slope_sq.sqrt();
+                let slope = slope_sq * inverse_slope;
+                // Written so that NaN fails.
+                if !(slope > min_gradient && slope.is_finite() && value.is_finite()) {
+                    continue;
+                }
+                normal[i] = gradient * inverse_slope;
+                let distance = value.abs() * inverse_slope;
+                if distance <= residual {
+                    ok[i] = true;
+                    continue;
+                }
+                points[i] -= normal[i] * (value * inverse_slope);
+                if (points[i] - start[i]).length_squared() > reach * reach {
+                    continue;
+                }
+                if distance <= trust {
+                    ok[i] = true;
+                    continue;
+                }
+                active[kept] = i as u32;
+                kept += 1;
+            }
+            count = kept;
+        }
+    }
+}
+
+/// tan of half the angle between two samples of the arc: 16 steps of 6.3° each way.
+const HALF_TURN: f32 = 0.055;
+
+/// (cos θ, sin θ) turned by the angle whose half has the tangent `t`: exact to rounding, arithmetic only.
+#[inline(always)]
+pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
+    let scale = 1.0 / (1.0 + t * t);
+    let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
+    [cos * c - sin * s, sin * c + cos * s]
+}
+
+/// The tolerance for particles of radius `radius`: |f|/|∇f| ≤ 10⁻⁴ r (paper §4.3 stops "when the child has converged"
+/// and names no number), but not below `resolution`, what single precision resolves on this field; a gradient below a
+/// millionth of the usual one is the cancellation noise of a singular point.
+pub(crate) fn tolerance(radius: f32, resolution: f32, gradient_scale: f32) -> Tolerance {
+    Tolerance { residual: (1e-4 * radius).max(resolution), min_gradient: 1e-6 * gradient_scale }
+}
