@@ -60,6 +60,7 @@
 //! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
+//! * [`mesh`]: triangles over particles, whatever made them.
 //! * [`export`]: PLY, CSV, XYZ and NPY.
 //! * [`json`]: what crosses between the core and the page, as text.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
@@ -73,6 +74,7 @@ pub mod export;
 pub mod field;
 pub mod json;
 pub mod math;
+pub mod mesh;
 pub mod particles;
 mod pieces;
 #[cfg(feature = "points")]

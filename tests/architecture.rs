@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Who may use whom. A module is named by its path under the crate; the longest entry that fits a file counts. What is
 /// not listed may not be used, and a module that is not listed has no place in the graph yet.
-const MAY_USE: [(&str, &[&str]); 18] = [
+const MAY_USE: &[(&str, &[&str])] = &[
     ("math", &[]),
     // Long work in pieces: of any kind.
     ("pieces", &[]),
@@ -18,13 +18,15 @@ const MAY_USE: [(&str, &[&str]); 18] = [
     // Particles and the search among them know no field: they hold whatever made them.
     ("spatial", &["math", "pieces"]),
     ("particles", &["math"]),
+    // Triangles over particles, whoever made them.
+    ("mesh", &["math", "spatial", "particles"]),
     ("trace", &["math", "particles"]),
-    ("sampler", &["math", "field", "differential", "spatial", "particles", "trace"]),
+    ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh", "trace"]),
     // The methods that the paper compares its own with stand on the sampler's survey, sizes and way to the surface.
     ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
     // Figures about a set of particles must not depend on what made them.
     ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
-    ("export", &["math", "spatial", "particles", "quality"]),
+    ("export", &["math", "spatial", "particles", "mesh", "quality"]),
     (
         "session",
         &[
@@ -36,6 +38,7 @@ const MAY_USE: [(&str, &[&str]); 18] = [
             "spatial",
             "particles",
             "trace",
+            "mesh",
             "sampler",
             "quality",
             "export",

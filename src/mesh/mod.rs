@@ -1,0 +1,9 @@
+//! Triangle meshes whose vertices are particles. Positions and normals are enough: this module knows no field and no
+//! sampler.
+//!
+//! A mesh crosses between modules as plain data, a list of triangles: triples of particle indices, counter-clockwise seen
+//! from outside.
+//!
+//! * [`topology`]: what a list of triangles adds up to: components, borders, Euler numbers, and where it is no manifold.
+
+pub mod topology;

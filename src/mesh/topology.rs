@@ -1,0 +1,270 @@
+//! What a list of triangles adds up to, found from the list alone.
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// A connected part of a mesh: vertices that edges join.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Component {
+    /// Vertices.
+    pub vertices: u32,
+    /// Edges, border edges included.
+    pub edges: u32,
+    /// Triangles.
+    pub triangles: u32,
+    /// Edges with one triangle.
+    pub border_edges: u32,
+}
+
+impl Component {
+    /// Euler number: vertices − edges + triangles. It is 2 − 2g for a closed oriented surface of genus g, and one less for each
+    /// border loop.
+    #[must_use]
+    pub fn euler(&self) -> i64 {
+        i64::from(self.vertices) - i64::from(self.edges) + i64::from(self.triangles)
+    }
+}
+
+/// The connectivity of a list of triangles.
+///
+/// The triangles form an oriented manifold, closed or with border, if [`Topology::is_manifold`] says so.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Topology {
+    /// Connected components in the order of their first vertices. Vertices without a triangle belong to none.
+    pub components: Vec<Component>,
+    /// Border loops: vertices in order, the mesh on the left. A loop that meets a vertex with several fans ends there.
+    pub borders: Vec<Vec<u32>>,
+    /// Directed edges that belong to more than one triangle: two triangles there have opposite orientations, or there are more
+    /// than two.
+    pub crowded_edges: Vec<[u32; 2]>,
+    /// Vertices whose triangles form more than one fan.
+    pub pinched_vertices: Vec<u32>,
+}
+
+/// The corners of all triangles, sorted by their vertex.
+struct Corners {
+    /// Corners of vertex `v`: `start[v]..start[v + 1]`.
+    start: Vec<u32>,
+    /// The vertices after and before `v` in the corner's triangle.
+    ends: Vec<[u32; 2]>,
+}
+
+impl Corners {
+    fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
+        let mut start = vec![0_u32; vertex_count + 2];
+        for &v in triangles.iter().flatten() {
+            start[v as usize + 2] += 1;
+        }
+        for v in 2..start.len() {
+            start[v] += start[v - 1];
+        }
+        let mut ends = vec![[0; 2]; 3 * triangles.len()];
+        for &[a, b, c] in triangles {
+            for (v, next, previous) in [(a, b, c), (b, c, a), (c, a, b)] {
+                let end = &mut start[v as usize + 1];
+                ends[*end as usize] = [next, previous];
+                *end += 1;
+            }
+        }
+        Self { start, ends }
+    }
+
+    fn of(&self, v: usize) -> &[[u32; 2]] {
+        &self.ends[self.start[v] as usize..self.start[v + 1] as usize]
+    }
+}
+
+impl Topology {
+    /// The connectivity of `triangles` over the vertices `0..vertex_count`. Linear in both, while no vertex has very many
+    /// triangles.
+    ///
+    /// # Panics
+    ///
+    /// If a triangle names a vertex that is not below `vertex_count`.
+    #[must_use]
+    pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
+        let corners = Corners::new(triangles, vertex_count);
+        let mut topology = Self::default();
+        // The border edge that leaves each vertex.
+        let mut border_to = vec![NONE; vertex_count];
+        let mut border_vertices = Vec::new();
+        for v in 0..vertex_count {
+            topology.add_vertex(v as u32, corners.of(v), &mut border_to, &mut border_vertices);
+        }
+        topology.trace_borders(&mut border_to, &border_vertices);
+        topology.count_components(&corners, vertex_count);
+        topology
+    }
+
+    /// Whether every edge has one or two triangles of equal orientation and every vertex one fan of them.
+    #[must_use]
+    pub fn is_manifold(&self) -> bool {
+        self.crowded_edges.is_empty() && self.pinched_vertices.is_empty()
+    }
+
+    /// Whether the triangles form a manifold without border.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.is_manifold() && self.borders.is_empty()
+    }
+
+    /// Sum of the Euler numbers of the components.
+    #[must_use]
+    pub fn euler(&self) -> i64 {
+        self.components.iter().map(Component::euler).sum()
+    }
+
+    /// Looks at the star of a vertex: its crowded edges, its fans and its border edge.
+    fn add_vertex(
+        &mut self,
+        v: u32,
+        corners: &[[u32; 2]],
+        border_to: &mut [u32],
+        border_vertices: &mut Vec<u32>,
+    ) {
+        let mut is_simple = true;
+        for (k, &[next, _]) in corners.iter().enumerate() {
+            if corners[..k].iter().any(|other| other[0] == next) {
+                self.crowded_edges.push([v, next]);
+                is_simple = false;
+            }
+            if corners[..k].iter().any(|other| other[1] == corners[k][1]) {
+                is_simple = false;
+            }
+        }
+        if corners.is_empty() || !is_simple {
+            return;
+        }
+        // An open fan starts at the corner whose next vertex is no corner's previous one.
+        let first = corners.iter().find(|corner| corners.iter().all(|other| other[1] != corner[0]));
+        let start = first.unwrap_or(&corners[0]);
+        let mut last = start;
+        let mut seen = 1;
+        while let Some(corner) = corners.iter().find(|corner| corner[0] == last[1] && *corner != start) {
+            last = corner;
+            seen += 1;
+        }
+        if seen < corners.len() {
+            self.pinched_vertices.push(v);
+        } else if let Some(first) = first {
+            border_to[v as usize] = first[0];
+            border_vertices.push(v);
+        }
+    }
+
+    fn trace_borders(&mut self, border_to: &mut [u32], border_vertices: &[u32]) {
+        for &start in border_vertices {
+            let mut border = Vec::new();
+            let mut v = start;
+            while border_to[v as usize] != NONE {
+                border.push(v);
+                v = core::mem::replace(&mut border_to[v as usize], NONE);
+            }
+            if !border.is_empty() {
+                self.borders.push(border);
+            }
+        }
+    }
+
+    fn count_components(&mut self, corners: &Corners, vertex_count: usize) {
+        let mut seen = vec![false; vertex_count];
+        let mut open = Vec::new();
+        for first in 0..vertex_count {
+            if seen[first] || corners.of(first).is_empty() {
+                continue;
+            }
+            let mut component = Component::default();
+            let mut corner_count = 0;
+            seen[first] = true;
+            open.push(first as u32);
+            while let Some(v) = open.pop() {
+                let star = corners.of(v as usize);
+                component.vertices += 1;
+                corner_count += star.len();
+                let ends = star.as_flattened();
+                for (k, &w) in ends.iter().enumerate() {
+                    if !core::mem::replace(&mut seen[w as usize], true) {
+                        open.push(w);
+                    }
+                    // An edge is counted once, at its smaller end.
+                    if v < w && !ends[..k].contains(&w) {
+                        component.edges += 1;
+                        component.border_edges += u32::from(!ends[k + 1..].contains(&w));
+                    }
+                }
+            }
+            component.triangles = (corner_count / 3) as u32;
+            self.components.push(component);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+
+    fn shifted(triangles: &[[u32; 3]], by: u32) -> impl Iterator<Item = [u32; 3]> {
+        triangles.iter().map(move |triangle| triangle.map(|v| v + by))
+    }
+
+    /// A torus of `columns` × `rows` squares, each cut by a diagonal.
+    fn torus(columns: u32, rows: u32) -> Vec<[u32; 3]> {
+        let at = |i: u32, j: u32| i % columns + j % rows * columns;
+        let square = |i: u32, j: u32| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        (0..rows).flat_map(|j| (0..columns).flat_map(move |i| square(i, j))).collect()
+    }
+
+    #[test]
+    fn closed_surfaces_have_their_euler_numbers() {
+        for (triangles, count, euler) in
+            [(TETRAHEDRON.to_vec(), 4, 2), (torus(3, 3), 9, 0), (torus(8, 5), 40, 0)]
+        {
+            let topology = Topology::new(&triangles, count);
+            assert!(topology.is_closed(), "{topology:?}");
+            assert_eq!((topology.components.len(), topology.euler()), (1, euler));
+            assert_eq!(topology.components[0].vertices as usize, count);
+        }
+    }
+
+    #[test]
+    fn components_are_told_apart_and_lone_vertices_belong_to_none() {
+        let triangles: Vec<_> = shifted(&TETRAHEDRON, 1).chain(shifted(&torus(4, 3), 5)).collect();
+        let topology = Topology::new(&triangles, 18);
+        assert!(topology.is_closed());
+        let euler: Vec<i64> = topology.components.iter().map(Component::euler).collect();
+        assert_eq!(euler, [2, 0]);
+    }
+
+    #[test]
+    fn borders_are_loops_with_the_mesh_on_their_left() {
+        let topology = Topology::new(&TETRAHEDRON[..3], 4);
+        assert!(topology.is_manifold() && !topology.is_closed());
+        assert_eq!(topology.borders, [[1, 2, 3]]);
+        assert_eq!((topology.euler(), topology.components[0].border_edges), (1, 3));
+        // A torus without one of its triangles, and without two that share a vertex only.
+        let mut triangles = torus(6, 6);
+        triangles.remove(0);
+        let topology = Topology::new(&triangles, 36);
+        assert_eq!((topology.borders.len(), topology.euler()), (1, -1));
+    }
+
+    #[test]
+    fn faults_are_named() {
+        let pinched: Vec<_> = TETRAHEDRON
+            .into_iter()
+            .chain(TETRAHEDRON.map(|triangle| triangle.map(|v| if v == 0 { 0 } else { v + 3 })))
+            .collect();
+        let topology = Topology::new(&pinched, 7);
+        assert_eq!((topology.pinched_vertices, topology.crowded_edges), (vec![0], vec![]));
+        let mut turned = TETRAHEDRON;
+        turned[3].swap(0, 1);
+        assert_eq!(Topology::new(&turned, 4).crowded_edges.len(), 3);
+        let doubled: Vec<_> = TETRAHEDRON.into_iter().chain([[0, 1, 2]]).collect();
+        assert!(!Topology::new(&doubled, 4).is_manifold());
+    }
+}
