@@ -3,7 +3,7 @@
 //! Each function is straight-line code over additions, products, quotients, square roots, comparisons and shifts,
 //! so that a loop over a slice becomes SIMD code; no platform library and no fused multiply-add is involved. The
 //! `…_all` forms are such loops, in place. Errors are given in units in the last place (ulp) of the exact result,
-//! and are held to double-precision references in `tests/formula_functions.rs`.
+//! and are held to double-precision references in `tests/it/formula_functions.rs`.
 //!
 //! Conventions: NaN in, NaN out, always; NaN where a function is undefined; ±∞ at poles.
 //!

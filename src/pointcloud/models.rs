@@ -2,7 +2,7 @@
 //!
 //! A file of `data` holds the smallest corner and the side of a cube as four little-endian floats, then five whole numbers
 //! of 16 bits per point: the position in the cube and the normal, folded onto an octahedron (Meyer et al. 2010).
-//! `tests/models.rs` makes the files and says where the points come from.
+//! `tests/it/models.rs` makes the files and says where the points come from.
 
 use super::fit::Fitter;
 use super::{Cloud, ModelInfo, NormalSource};

@@ -26,7 +26,7 @@ macro_rules! shader {
         Shader { name: $name, source: SOURCE, lean: TEXT }
     }};
 }
-/// Every shader. `tests/shaders.rs` checks that this lists all files of `shaders/`.
+/// Every shader. `tests/it/shaders.rs` checks that this lists all files of `shaders/`.
 pub const SHADERS: [Shader; 2] = [DISCS, BOX];
 
 /// Particles as discs, and the ring around one of them.

@@ -1,4 +1,4 @@
-// Holds the core as WebAssembly to the digests that the native core is held to by tests/parity.rs, and to an answer in
+// Holds the core as WebAssembly to the digests that the native core is held to by tests/it/parity.rs, and to an answer in
 // words where the memory is used up.
 //
 // Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core points`.

@@ -1,4 +1,4 @@
-// Holds the bundle for models from points to the digests that the native code is held to by tests/points_job.rs, and checks that
+// Holds the bundle for models from points to the digests that the native code is held to by tests/it/pointcloud_job.rs, and checks that
 // the core samples what it solves.
 //
 // Usage: node tests/wasm/points.mjs, after `cargo xtask wasm core points`.
@@ -32,7 +32,7 @@ function claim(holds, claim) {
   if (!holds) throw new Error(claim);
 }
 
-/** The text that `ellipsoid` of tests/points_job.rs makes. @param {number} steps @param {boolean} normals */
+/** The text that `ellipsoid` of tests/it/pointcloud_job.rs makes. @param {number} steps @param {boolean} normals */
 function ellipsoid(steps, normals) {
   const lines = [];
   // Rust writes no exponents, and the sign of a negative zero.

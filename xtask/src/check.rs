@@ -174,8 +174,12 @@ fn native(project: &Project) -> Result<()> {
 }
 
 fn shaders(project: &Project) -> Result<()> {
-    step::run("shader tests", &mut cargo_at_root(project, &["test", "--locked", "--test", "shaders"]), "")
-        .map(drop)
+    step::run(
+        "shader tests",
+        &mut cargo_at_root(project, &["test", "--locked", "--test", "it", "shaders::"]),
+        "",
+    )
+    .map(drop)
 }
 
 fn parity(project: &Project) -> Result<()> {

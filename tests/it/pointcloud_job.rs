@@ -1,7 +1,7 @@
 //! The whole way from a file or a model to a field: the same bits everywhere, in any cut, and mistakes in words.
 //!
 //! `tests/golden/points.json` holds digests of the solved systems; `tests/wasm/points.mjs` holds the WebAssembly bundle to the
-//! same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test points_job`.
+//! same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::`.
 
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
@@ -111,7 +111,7 @@ fn systems_have_the_digests_that_other_platforms_give() {
         std::fs::write(&path, text).expect("the golden file can be written");
         return;
     }
-    let advice = "If surfaces were meant to move: UPDATE_GOLDEN=1 cargo test --test points_job";
+    let advice = "If surfaces were meant to move: UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::";
     assert!(faults.is_empty(), "\n{}\n{advice}\n", faults.join("\n"));
 }
 

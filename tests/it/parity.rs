@@ -2,8 +2,7 @@
 //! digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` holds the WebAssembly core to the same file, and the
 //! browser tests hold the page to it.
 //!
-//! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test parity`.
-#![cfg(feature = "points")]
+//! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
 use marching_particles::field::model;
 use marching_particles::json;
@@ -85,7 +84,7 @@ fn runs_have_the_digests_that_other_platforms_give() {
     }
     assert!(
         faults.is_empty(),
-        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test parity\n",
+        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test it parity::\n",
         faults.join("\n")
     );
 }

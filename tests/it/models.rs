@@ -5,9 +5,8 @@
 //!
 //! ```sh
 //! npm pack bunny@1.0.1 && tar xzf bunny-1.0.1.tgz
-//! UPDATE_MODELS=1 BUNNY=package/index.js cargo test --test models -- --include-ignored
+//! UPDATE_MODELS=1 BUNNY=package/index.js cargo test --test it models:: -- --include-ignored
 //! ```
-#![cfg(feature = "points")]
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::Field;

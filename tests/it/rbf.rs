@@ -1,5 +1,4 @@
 //! Fields from points: the fit, its failures, and the evaluation against the sum in double precision.
-#![cfg(feature = "points")]
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::Field;

@@ -1,0 +1,34 @@
+//! The integration tests, one module per part of the library, in one binary: linking the library once for each of them would
+//! take longer than running them. One module runs by its name: `cargo test --test it front::`.
+
+mod adaptive;
+mod baseline;
+#[cfg(feature = "cli")]
+mod cli;
+mod components;
+mod decimal;
+mod differential;
+mod faults;
+mod formula;
+mod formula_functions;
+mod formula_properties;
+mod front;
+mod gallery;
+mod json;
+#[cfg(feature = "points")]
+mod models;
+#[cfg(feature = "points")]
+mod parity;
+#[cfg(feature = "points")]
+mod pointcloud;
+#[cfg(feature = "points")]
+mod pointcloud_job;
+#[cfg(feature = "points")]
+mod pointcloud_read;
+mod quality;
+#[cfg(feature = "points")]
+mod rbf;
+mod relax;
+mod session;
+mod shaders;
+mod sizing;
