@@ -20,9 +20,8 @@ const RUNS = 3;
 
 /** Runs in the worker; written out as a function so that it is checked as code. */
 const worker = `
-import init, { Core, join } from './core.js';
+import init, { Core } from './core.js';
 await init();
-join(await WebAssembly.compileStreaming(fetch('./core_rest.wasm')));
 const start = (core, settings) => {
   const answer = JSON.parse(core.start(JSON.stringify(settings)));
   if (answer.ok !== true) throw new Error(JSON.stringify(answer));
@@ -69,7 +68,7 @@ const files = {
   '/': ['text/html', page],
   '/worker.js': ['text/javascript', worker],
 };
-const bundle = new Set(['/core.js', '/core_bg.wasm', '/core_rest.wasm']);
+const bundle = new Set(['/core.js', '/core_bg.wasm']);
 
 const server = createServer((request, response) => {
   const path = new URL(request.url ?? '/', 'http://localhost').pathname;

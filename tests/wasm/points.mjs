@@ -13,8 +13,7 @@ const load = async (name) => {
   bundle.initSync({ module: await readFile(new URL(`${name}_bg.wasm`, folder)) });
   return bundle;
 };
-const { Core, join } = await load('core');
-join(new WebAssembly.Module(await readFile(new URL('www/src/wasm/core/core_rest.wasm', root))));
+const { Core } = await load('core');
 const { Points } = await load('points');
 
 /** Pieces of work per step: not the native test's number, which must make no difference. */

@@ -6,11 +6,8 @@ declare module '*/wasm/core/core.js' {
     readonly memory: WebAssembly.Memory;
   }
   export default function init(options: { module_or_path: WebAssembly.Module }): Promise<InitOutput>;
-  /** Joins the rest of the core to its first part, once. */
-  export function join(rest: WebAssembly.Module): void;
-  /** Says where the rest comes from if it is called before it has been joined. */
-  export function whenMissing(how: () => WebAssembly.Module): void;
   export class Core {
+    describe(): string;
     set_field(json: string): string;
     set_points(system: Uint8Array, about: string): string;
     start(json: string): string;
@@ -34,11 +31,6 @@ declare module '*/wasm/core/core.js' {
     digest(): string;
     free(): void;
   }
-}
-
-declare module '*/wasm/core/description.json' {
-  const description: import('./engine/types.js').Description;
-  export default description;
 }
 
 declare module '*/wasm/points/points.js' {

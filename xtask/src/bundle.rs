@@ -53,10 +53,9 @@ impl Bundle {
         }
     }
 
-    /// Its WebAssembly modules, the one that JavaScript instantiates first.
-    pub(crate) fn modules(self) -> Vec<String> {
-        let rest = (!self.later().is_empty()).then(|| format!("{}_rest.wasm", self.out_name()));
-        [format!("{}_bg.wasm", self.out_name())].into_iter().chain(rest).collect()
+    /// The file of its WebAssembly module.
+    pub(crate) fn module(self) -> String {
+        format!("{}_bg.wasm", self.out_name())
     }
 
     /// The class that JavaScript gets from the bundle.
@@ -78,82 +77,12 @@ impl Bundle {
         }
     }
 
-    /// The core is built for speed, and so is the solver: at level s it weighs 1.4 kB less and takes 1.7 times as long. The renderers' work is on the GPU; what counts there is the time to load them.
+    /// The core and the solver are built for speed: at level s the solver weighs 1.4 kB less and takes 1.7 times as long.
+    /// The renderers work on the GPU, so what counts is the time to load them.
     fn opt_level(self) -> &'static str {
         match self {
             Self::Core | Self::Points => "3",
             Self::Webgpu | Self::Webgl => "z",
-        }
-    }
-
-    /// Further flags for the compiler's back end. At the level for speed it copies every small function to where it is
-    /// called and repeats every short loop: half of the core's code, and of no use to its speed, since what must be
-    /// copied says so (`inline(always)`) and the long loops are SIMD loops.
-    fn code_generation(self) -> &'static [&'static str] {
-        match self {
-            Self::Core | Self::Points => &[
-                "-Cllvm-args=-inline-threshold=5",
-                "-Cllvm-args=-inlinehint-threshold=30",
-                "-Cllvm-args=-unroll-threshold=40",
-                "-Cllvm-args=-unroll-runtime=0",
-            ],
-            Self::Webgpu | Self::Webgl => &[],
-        }
-    }
-
-    /// What the page need not wait for: words in the names, without angle brackets, of functions that come in a module of
-    /// their own after the first one, with all that only these call. The first part of the core reads a formula, surveys its
-    /// field and lets uniform fronts grow from the points of the survey.
-    fn later(self) -> &'static [&'static str] {
-        match self {
-            Self::Core => &[
-                "panicking::",
-                "core_free",
-                "core_describe",
-                "core_set_points",
-                "core_relax",
-                "core_measure",
-                "core_valence",
-                "core_nearest",
-                "core_residual",
-                "core_component",
-                "core_curvature",
-                "core_digest",
-                "rbf::",
-                "interval::BoxProgram::",
-                "interval::range",
-                "Field::enclose",
-                "Field::interval",
-                "Field::hessians",
-                "Sampler::look_for_pieces",
-                "Sampler::search_all",
-                "Sampler::end_generation",
-                "Sampler::begin_relaxation",
-                "Relaxation::step",
-                "nodes::mark",
-                "AdaptiveFront::",
-                "Gaps::step",
-                "Sizing::",
-                "survey::Dense",
-                "quality::",
-                "Kept::measure",
-                "Session::measure",
-                "spatial::tree",
-                "FormulaField::compile_parts",
-                "libm::math::a",
-                "libm::math::cbrt",
-                "libm::math::cos",
-                "libm::math::exp",
-                "libm::math::log",
-                "libm::math::pow",
-                "libm::math::sin",
-                "libm::math::tan",
-                "math::functions::",
-                "parse::edits",
-                "parse::similar",
-                "Parser::unexpected",
-            ],
-            Self::Points | Self::Webgpu | Self::Webgl => &[],
         }
     }
 
@@ -173,9 +102,6 @@ impl Bundle {
         }
     }
 }
-
-/// Describes the core; it runs where the core was bound.
-const DESCRIBE: &str = include_str!("describe.mjs");
 
 /// Builds the bundles that are not up to date.
 pub(crate) fn build(project: &Project, bundles: &[Bundle]) -> Result<()> {
@@ -219,9 +145,6 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
         }
         bind(project, bundle, &module, &stage)?;
         optimise(project, bundle, &stage)?;
-        if bundle == Bundle::Core {
-            describe(&stage)?;
-        }
         publish(&stage, &out_dir)?;
     }
     let mut outputs = serde_json::Map::new();
@@ -241,7 +164,7 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Stri
     let root = &project.root;
     let mut fingerprint = Fingerprint::default()
         .text("compiler", &target.version)
-        .text("flags", &rust_flags(project, bundle).join(" "))
+        .text("flags", &rust_flags(project).join(" "))
         .text("opt-level", bundle.opt_level())
         .text("features", bundle.features())
         .text("process", &process_version(project, bundle)?)
@@ -261,14 +184,12 @@ fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
         .tree(&project.root.join("xtask/bindgen/src"))?
         .file(&project.www.join("node_modules/binaryen/package.json"))?
         .text("wasm-opt", &bundle.wasm_opt().join(" "))
-        .text("later", &bundle.later().join(" "))
-        .text("describe", DESCRIBE)
         .finish())
 }
 
 /// The flags for the wasm target. They are set here in full, so that `RUSTFLAGS` in the environment does not change
 /// what is published; paths of this machine are kept out of the panic messages.
-pub(crate) fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
+fn rust_flags(project: &Project) -> Vec<String> {
     let mut flags = vec!["-Ctarget-feature=+simd128".to_owned()];
     let cargo_home = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
@@ -277,11 +198,6 @@ pub(crate) fn rust_flags(project: &Project, bundle: Bundle) -> Vec<String> {
         flags.push(format!("--remap-path-prefix={}=cargo", home.display()));
     }
     flags.push(format!("--remap-path-prefix={}=.", project.root.display()));
-    flags.extend(bundle.code_generation().iter().map(|&flag| flag.to_owned()));
-    if !bundle.later().is_empty() {
-        // What tells the splitting tool which function uses which constants.
-        flags.push("-Clink-arg=--emit-relocs".to_owned());
-    }
     flags
 }
 
@@ -296,7 +212,7 @@ fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Pat
         .arg("--message-format=json-render-diagnostics")
         .env("CARGO_TARGET_DIR", &folder)
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
-        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project, bundle).join("\u{1f}"))
+        .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project).join("\u{1f}"))
         // Without this the builds would write one file of the same name, and cargo would take one bundle's
         // module for another's. With it the name carries a hash of the features and the profile.
         .env("__CARGO_DEFAULT_LIB_METADATA", bundle.folder());
@@ -337,7 +253,7 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
         .context("cargo named no executable for xtask-bindgen")?;
     step::run(
         &format!("{name}: bind"),
-        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()).args(bundle.later()),
+        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()),
         "",
     )?;
     let script = stage.join(format!("{}.js", bundle.out_name()));
@@ -348,7 +264,7 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
     Ok(())
 }
 
-/// Optimises the bound modules in place.
+/// Optimises the bound module in place.
 fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
     let tool = project.www.join("node_modules/binaryen/bin/wasm-opt");
     if !tool.is_file() {
@@ -357,24 +273,12 @@ fn optimise(project: &Project, bundle: Bundle, stage: &Path) -> Result<()> {
             project.relative(&tool).display()
         );
     }
-    for module in bundle.modules() {
-        let bound = stage.join(&module);
-        let optimised = stage.join("optimised.wasm");
-        let mut command = Command::new(node::node()?);
-        command.arg(&tool).arg(&bound).arg("-o").arg(&optimised).args(bundle.wasm_opt());
-        step::run(&format!("{}: optimise {module} (wasm-opt)", bundle.folder()), &mut command, "")?;
-        fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))?;
-    }
-    Ok(())
-}
-
-/// Writes down what the core says of itself, so that the page has it before the core can be asked, and which surfaces of the
-/// gallery and which functions call for the rest of it, so that the page can wait.
-fn describe(stage: &Path) -> Result<()> {
+    let bound = stage.join(bundle.module());
+    let optimised = stage.join("optimised.wasm");
     let mut command = Command::new(node::node()?);
-    command.args(["--input-type=module", "--eval", DESCRIBE]).current_dir(stage);
-    step::run("core: describe", &mut command, "")?;
-    Ok(())
+    command.arg(&tool).arg(&bound).arg("-o").arg(&optimised).args(bundle.wasm_opt());
+    step::run(&format!("{}: optimise (wasm-opt)", bundle.folder()), &mut command, "")?;
+    fs::rename(&optimised, &bound).with_context(|| format!("could not replace {}", bound.display()))
 }
 
 /// Moves the finished files to where the page takes them from. Each file is replaced at once, so that a running

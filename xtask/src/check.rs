@@ -184,7 +184,7 @@ fn shaders(project: &Project) -> Result<()> {
 
 fn parity(project: &Project) -> Result<()> {
     bundle::build(project, &[Bundle::Core, Bundle::Points])?;
-    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/parts.mjs"] {
+    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs"] {
         let mut command = Command::new(node::node()?);
         command.current_dir(&project.root).arg(script);
         step::run(&format!("the same digests in WebAssembly as natively ({script})"), &mut command, "")?;

@@ -14,23 +14,22 @@ use crate::fingerprint::{files_under, sha256_of};
 use crate::node;
 use crate::project::Project;
 
-/// The largest gzip size of what the page shows before any WebAssembly: HTML, style sheets and scripts.
-const FIRST_PAINT_BUDGET_KB: f64 = 60.0;
+/// The largest gzip size, in kB, of what the page shows before any WebAssembly: HTML, style sheets and scripts.
+///
+/// A budget is an alarm against accidents, not a goal. A change that needs more raises it in a commit of its own, which
+/// says why; no code is contorted to stay under one.
+const FIRST_PAINT_BUDGET_KB: f64 = 75.0;
 
-/// The largest gzip size of what the page waits for of a bundle: its first module and its JavaScript.
+/// The largest gzip size of a bundle, in kB: its module and its JavaScript. What [`FIRST_PAINT_BUDGET_KB`] says of budgets
+/// holds here too.
 fn budget_kb(bundle: Bundle) -> f64 {
     match bundle {
-        Bundle::Core => 120.0,
-        Bundle::Points => 106.0,
+        Bundle::Core => 400.0,
+        Bundle::Points => 120.0,
         Bundle::Webgpu => 90.0,
         Bundle::Webgl => 850.0,
     }
 }
-
-/// The largest gzip size of the rest of the core, which joins it while the first fronts grow: the search for all pieces,
-/// relaxation, adaptive sampling, models from points, figures. Optimising everything for size saves a tenth and takes three times
-/// as long to sample.
-const REST_BUDGET_KB: f64 = 162.0;
 
 /// Builds the site into `dist/`.
 pub(crate) fn build(project: &Project) -> Result<()> {
@@ -57,22 +56,16 @@ pub(crate) fn report_sizes(project: &Project) -> Result<()> {
     let mut lines = Vec::new();
     for bundle in Bundle::ALL {
         let folder = project.www.join("src/wasm").join(bundle.folder());
-        let mut modules: Vec<PathBuf> = bundle.modules().into_iter().map(|name| folder.join(name)).collect();
-        for module in &modules {
-            if !shipped.contains_key(&sha256_of(module)?) {
-                bail!(
-                    "{} is not in {}: the page does not load it",
-                    project.relative(module).display(),
-                    project.dist.display()
-                );
-            }
+        let module = folder.join(bundle.module());
+        if !shipped.contains_key(&sha256_of(&module)?) {
+            bail!(
+                "{} is not in {}: the page does not load it",
+                project.relative(&module).display(),
+                project.dist.display()
+            );
         }
-        let rest = modules.split_off(1);
-        modules.push(folder.join(format!("{}.js", bundle.out_name())));
-        lines.push(line(bundle.folder(), &modules, Some(budget_kb(bundle)))?);
-        if !rest.is_empty() {
-            lines.push(line(&format!("{}, the rest", bundle.folder()), &rest, Some(REST_BUDGET_KB))?);
-        }
+        let script = folder.join(format!("{}.js", bundle.out_name()));
+        lines.push(line(bundle.folder(), &[module, script], Some(budget_kb(bundle)))?);
     }
     let page = project.dist.join("index.html");
     let html = fs::read_to_string(&page).with_context(|| format!("could not read {}", page.display()))?;

@@ -9,6 +9,7 @@ import { Columns } from './columns.js';
 import { CAMERA_MS, installConsole } from './console.js';
 import { ModelLoader, shapeOf } from './points/loader.js';
 import { SamplingClient } from './sampling/client.js';
+import { spawnSampler } from './sampling/spawn.js';
 import { decode, encode } from './share/codec.js';
 import {
   completeSettings,
@@ -169,10 +170,7 @@ export function createEngine({ canvasHost }) {
     store,
     columns,
     picture: viewer,
-    spawn: () =>
-      /** @type {any} */ (
-        new Worker(new URL('./sampling/worker.js', import.meta.url), { type: 'module', name: 'sampler' })
-      ),
+    spawn: /** @type {() => any} */ (spawnSampler),
     whole: () => request({}),
     solved: (key) => loader.client.get(key),
     onReady() {

@@ -101,7 +101,6 @@
  * @property {{name: string, label: string, help: string}[]} fates
  * @property {{name: string, signature: string, help: string}[]} functions
  * @property {{id: string, label: string, help: string, unit: string}[]} colours
- * @property {{functions: string[], surfaces: string[]}} later  names and ids that the first part of the core cannot do by itself
  */
 
 /**

@@ -251,50 +251,6 @@ describe('the surface that stays', () => {
     expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
   });
 
-  test('because the next was stopped before the worker looked at it is dimmed, and that one can be asked for again', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
-    say(reportMessage(1, 7));
-    client.sample(request('y'));
-    client.stop();
-    say(done(2, 'stopped', 0, { progress: null }));
-    expect(store.busy.value).toBe(false);
-    expect(client.supervisor.busy).toBe(false);
-    expect(store.progress.value.phase).toBe('done');
-    expect(told.at(-1)).toBe('dim');
-    expect(store.report.value?.count).toBe(7);
-    client.sample(request('y'));
-    expect(jobs()).toHaveLength(3);
-    accept(3, 'y');
-    say(columnsMessage(3, 5));
-    say(done(3, 'complete', 5));
-    expect(columns.count).toBe(5);
-    expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
-  });
-
-  test('and was stopped with the next, which the worker never looked at, keeps what it has', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x'));
-    accept(1);
-    say(columnsMessage(1, 7));
-    client.sample(request('y'));
-    client.stop();
-    say(done(2, 'stopped', 0, { progress: null }));
-    expect(store.busy.value).toBe(true);
-    expect(told.at(-1)).toBe('dim');
-    say(done(1, 'stopped', 7, { report_follows: true }));
-    expect(store.busy.value).toBe(false);
-    expect(store.partial.value).toBe(true);
-    say(reportMessage(1, 7));
-    expect(client.supervisor.busy).toBe(false);
-    expect(store.report.value?.count).toBe(7);
-    expect(columns.count).toBe(7);
-    expect(jobs()).toHaveLength(2);
-  });
-
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
     const { client, columns, say, accept } = page();
     client.sample(request('x'));

@@ -104,5 +104,4 @@ export const description = {
   fates: [],
   functions: [],
   colours: [],
-  later: { functions: [], surfaces: [] },
 };

@@ -23,12 +23,12 @@ const sampleJob = (part = {}) => ({
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
  * @param {import('../../src/engine/sampling/protocol.js').Job} job
- * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}, rest?: (posted: FromWorker[]) => Promise<void> | null}} [options]
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
  */
 async function run(
   core,
   job,
-  { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 }, rest = () => null } = {},
+  { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 } } = {},
 ) {
   /** @type {FromWorker[]} */
   const posted = [];
@@ -44,7 +44,6 @@ async function run(
       interrupt: () => interrupt(posted),
       room: () => room(posted),
       curvature: () => curvature(posted),
-      rest: () => rest(posted),
     },
     memory,
   );
@@ -73,69 +72,6 @@ describe('a job', () => {
     expect(done[0].outcome).toBe('complete');
     expect(of(posted, 'report')).toHaveLength(1);
     expect(posted.at(-1)?.type).toBe('report');
-  });
-
-  test('with the first part of the core alone the whole front is shown, and nothing after it is asked for', async () => {
-    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
-    let waits = 0;
-    const { posted } = await run(core, sampleJob(), {
-      rest: (so_far) => {
-        if (waits === 3) return null;
-        waits += 1;
-        // It is asked once before it shows what it has.
-        if (waits > 1) expect(of(so_far, 'columns').at(-1)?.total).toBe(5_000);
-        expect(of(so_far, 'columns').some(({ progress }) => (progress?.relax_step ?? 0) > 0)).toBe(false);
-        return Promise.resolve();
-      },
-    });
-    expect(waits).toBe(3);
-    expect(of(posted, 'done')[0].outcome).toBe('complete');
-    expect(of(posted, 'report')).toHaveLength(1);
-  });
-
-  test('the page hears what is awaited also where the last step of the front found no particle', async () => {
-    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
-    const step = core.step.bind(core);
-    let closed = false;
-    core.step = (budget) => {
-      if (core.count() === 5_000 && !closed) {
-        closed = true;
-        core.clock.ms += 1;
-        return JSON.stringify({ ...JSON.parse(step(0)), phase: 'search', relax_step: 0, moved: false });
-      }
-      const progress = JSON.parse(step(budget));
-      // The front does not know that it is complete before a step finds nothing more, by which time its columns are sent.
-      core.clock.ms += 20;
-      return JSON.stringify(closed ? progress : { ...progress, phase: 'generation' });
-    };
-    let waits = 0;
-    await run(core, sampleJob(), {
-      rest: (so_far) => {
-        if (waits === 2) return null;
-        waits += 1;
-        if (waits > 1) expect(of(so_far, 'progress').at(-1)?.progress.phase).toBe('search');
-        return Promise.resolve();
-      },
-    });
-    expect(waits).toBe(2);
-  });
-
-  test('a stop while the rest of the core is awaited keeps the front; its report comes with the rest', async () => {
-    const core = fakeCore({ particles: 5_000, relax_steps: 3, us_per_unit: 5 });
-    let waits = 0;
-    const { posted } = await run(core, sampleJob(), {
-      interrupt: () => (waits === 1 ? 'stop' : null),
-      rest: (so_far) => {
-        if (waits === 4) return null;
-        waits += 1;
-        expect(of(so_far, 'report')).toHaveLength(0);
-        return Promise.resolve();
-      },
-    });
-    expect(waits).toBe(4);
-    expect(of(posted, 'done')[0].outcome).toBe('stopped');
-    expect(of(posted, 'columns').at(-1)?.total).toBe(5_000);
-    expect(of(posted, 'report')).toHaveLength(1);
   });
 
   test('the last word on the slots covers every particle', async () => {
@@ -343,7 +279,6 @@ async function work(core, first, meanwhile = () => {}) {
         interrupt: () => jobs.interrupt(core),
         room: () => true,
         curvature: () => false,
-        rest: () => null,
       },
       memory,
     );
@@ -432,128 +367,6 @@ describe('a job that comes while another is under way', () => {
       jobs.add(sampleJob({ id: 8, field: { formula: 'y' } }));
     });
     expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([[8, 'complete']]);
-  });
-});
-
-describe('a job that waits for the rest of the core', () => {
-  const adaptive = (/** @type {number} */ id) => sampleJob({ id, settings: { sampling: 'adaptive' } });
-
-  test('and is stopped ends without having been begun, once', () => {
-    const posted = /** @type {any[]} */ ([]);
-    const jobs = new Jobs((message) => posted.push(message));
-    const core = fakeCore();
-    jobs.add(adaptive(8));
-    expect(jobs.awaitsRest(core)).toBe(true);
-    expect(jobs.endStopped()).toBe(false);
-    jobs.stop();
-    expect(jobs.endStopped()).toBe(true);
-    expect(jobs.endStopped()).toBe(false);
-    expect(posted).toMatchObject([{ type: 'done', id: 8, outcome: 'stopped', progress: null, report_follows: false }]);
-    expect(jobs.awaitsRest(core)).toBe(false);
-    expect(jobs.take(core)).toBe(null);
-    // The next is not stopped by it.
-    jobs.add(adaptive(9));
-    expect(jobs.endStopped()).toBe(false);
-    expect(jobs.take(core)).toMatchObject({ id: 9 });
-    expect(jobs.interrupt(core)).toBe(null);
-  });
-
-  test('gives way to a newer one, which is answered meanwhile if it need not wait', () => {
-    const posted = /** @type {any[]} */ ([]);
-    const jobs = new Jobs((message) => posted.push(message));
-    const core = fakeCore();
-    jobs.add(adaptive(8));
-    expect(jobs.interrupt(core, false)).toBe(null);
-    expect(jobs.awaitsRest(core)).toBe(true);
-    jobs.add(sampleJob({ id: 9, field: { formula: 'x^2+' } }));
-    expect(jobs.interrupt(core, false)).toBe(null);
-    expect(jobs.awaitsRest(core)).toBe(false);
-    jobs.add(sampleJob({ id: 10 }));
-    expect(jobs.interrupt(core, false)).toBe('replace');
-    jobs.add(adaptive(11));
-    expect(jobs.awaitsRest(core)).toBe(true);
-    jobs.stop();
-    expect(jobs.endStopped()).toBe(true);
-    expect(posted.map(({ type, id, answer }) => [type, id, answer?.ok])).toEqual([
-      ['field', 9, false],
-      ['field', 10, true],
-      ['done', 10, undefined],
-      ['done', 11, undefined],
-    ]);
-    expect(jobs.take(core)).toBe(null);
-  });
-});
-
-describe('what the first part of the core cannot do', () => {
-  test('is stopped while another job is under way, which keeps what it has', async () => {
-    const core = fakeCore({ particles: 5_000 });
-    const posted = /** @type {FromWorker[]} */ ([]);
-    const jobs = new Jobs((message) => posted.push(message), { functions: ['sin'], surfaces: [] });
-    jobs.add(sampleJob({ id: 7 }));
-    const job = jobs.take(core);
-    if (!job) throw new Error('the first job was not taken');
-    let waits = 0;
-    await runJob(
-      core,
-      job,
-      {
-        now_ms: () => core.clock.ms,
-        pause: async () => {
-          core.clock.ms += 1;
-        },
-        post: (message) => posted.push(message),
-        interrupt: () => jobs.interrupt(core, waits === 4),
-        curvature: () => false,
-        room: () => true,
-        rest: () => {
-          if (waits === 4) return null;
-          waits += 1;
-          if (waits === 1) jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
-          if (waits === 2) jobs.stop();
-          if (waits > 3)
-            expect(of(posted, 'done').map(({ id, outcome }) => [id, outcome])).toEqual([
-              [8, 'stopped'],
-              [7, 'stopped'],
-            ]);
-          return Promise.resolve();
-        },
-      },
-      { held: 0 },
-    );
-    expect(waits).toBe(4);
-    expect(of(posted, 'report').map(({ id }) => id)).toEqual([7]);
-    expect(jobs.take(core)).toBe(null);
-  });
-
-  const later = { functions: ['sin', 'exp'], surfaces: ['gyroid'] };
-  /** @param {import('../../src/engine/types.js').FieldRequest} field */
-  const waits = (field) => {
-    const jobs = new Jobs(() => {}, later);
-    jobs.add(sampleJob({ field }));
-    return jobs.awaitsRest(fakeCore());
-  };
-
-  test('is told by the names of surfaces and of functions', () => {
-    for (const formula of ['sin(x)', '2sin(x) + y', 'x + exp (y)', 'z-sin x'])
-      expect(waits({ formula }), formula).toBe(true);
-    for (const formula of ['x', 'sine + x', 'asin(x)', 'expo', 'sqrt(x)'])
-      expect(waits({ formula }), formula).toBe(false);
-    expect(waits({ surface: 'gyroid' })).toBe(true);
-    expect(waits({ surface: 'torus' })).toBe(false);
-    expect(waits({ surface: 'gyroid', formula: 'x^2 + y^2 = 1' })).toBe(false);
-  });
-
-  test('is awaited while the job under way goes on, which a job that need not wait replaces', () => {
-    const core = fakeCore();
-    const jobs = new Jobs(() => {}, later);
-    jobs.add(sampleJob({ id: 8, field: { formula: 'sin(x)' } }));
-    expect(jobs.interrupt(core, false)).toBe(null);
-    expect(core.calls).toEqual([]);
-    jobs.add(sampleJob({ id: 9, field: { formula: 'x' } }));
-    expect(jobs.interrupt(core, false)).toBe('replace');
-    jobs.add(sampleJob({ id: 10, field: { formula: 'sin(x)' } }));
-    expect(jobs.interrupt(core)).toBe('replace');
-    expect(jobs.take(core)).toMatchObject({ id: 10 });
   });
 });
 

@@ -493,100 +493,6 @@ test.describe('files', () => {
   });
 });
 
-test.describe('the rest of the core', () => {
-  const rest = '**/core_rest*.wasm';
-
-  /** Keeps the rest back until the function that it resolves with is called. @param {import('@playwright/test').Page} page */
-  async function hold(page) {
-    /** @type {() => void} */
-    let send = () => {};
-    const sent = new Promise((/** @type {(nothing: void) => void} */ resolve) => {
-      send = () => resolve();
-    });
-    await page.route(rest, async (route) => {
-      await sent;
-      await route.continue();
-    });
-    return send;
-  }
-
-  test('is not awaited to show the first surface, nor to stop', async ({ page }) => {
-    const send = await hold(page);
-    await page.goto('/');
-    await page.waitForFunction(
-      () => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search',
-    );
-    await expect.poll(() => on(page, 'p.particles().count')).toBeGreaterThan(4000);
-    await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
-    await expect(() => expectSurface(page)).toPass();
-    await on(page, '(p.engine.stop(), 0)');
-    await expect.poll(async () => (await status(page)).progress.phase).not.toBe('search');
-    expect(await on(page, 'p.report()')).toBeNull();
-    send();
-    await expect.poll(() => on(page, 'p.report()?.count ?? 0')).toBeGreaterThan(4000);
-    expect(/** @type {any} */ (await on(page, 'p.report()')).stop_reason).toBe('cancelled');
-    const whole = /** @type {any} */ (await on(page, 'p.run()'));
-    expect(whole.stop_reason).toBe('complete');
-  });
-
-  for (const [what, state] of /** @type {[string, any][]} */ ([
-    ['an adaptive run', { settings: { ...coarse.settings, sampling: 'adaptive' } }],
-    ['a surface with sines', { ...coarse, surface: 'gyroid' }],
-  ])) {
-    test(`where it hangs does not keep ${what}, which waits for it, from being stopped`, async ({ page }) => {
-      const send = await hold(page);
-      await page.goto(`/${link(state)}`);
-      await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().busy);
-      await on(page, '(p.engine.stop(), 0)');
-      await expect.poll(async () => (await status(page)).busy).toBe(false);
-      expect((await status(page)).notice).toBe(null);
-      await on(page, '(p.engine.run(), 0)');
-      expect((await status(page)).busy).toBe(true);
-      send();
-      await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
-    });
-  }
-
-  test('where it hangs does not keep what is asked for after the first surface from being stopped', async ({
-    page,
-  }) => {
-    const send = await hold(page);
-    await page.goto('/');
-    await page.waitForFunction(
-      () => /** @type {any} */ (window).marchingParticles?.status().progress.phase === 'search',
-    );
-    await on(page, '(p.engine.setSurface("gyroid"), 0)');
-    await expect.poll(async () => (await status(page)).busy).toBe(true);
-    await on(page, '(p.engine.stop(), 0)');
-    await expect.poll(async () => (await status(page)).busy).toBe(false);
-    expect(await on(page, 'p.particles().count')).toBeGreaterThan(4000);
-    await on(page, '(p.engine.run(), 0)');
-    send();
-    await expect.poll(() => on(page, 'p.report()?.stop_reason')).toBe('complete');
-    expect(/** @type {any} */ (await on(page, 'p.engine.field.value')).surface).toBe('gyroid');
-  });
-
-  test('is brought at once by a formula that calls it unforeseen', async ({ page }) => {
-    await page.route(rest, async (route) => {
-      await new Promise((resolve) => setTimeout(resolve, 2500));
-      await route.continue();
-    });
-    const { errors } = await open(page, `/${link({ ...coarse, formula: 'abs(x)^2.5 + y^2 + z^2 = 0.5' })}`);
-    await expectSurface(page);
-    expect(errors).toEqual([]);
-  });
-
-  test('is missed in words', async ({ page }) => {
-    await page.route(rest, (route) => route.fulfill({ status: 404, body: 'not found' }));
-    await page.goto('/');
-    await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.status().notice?.id === 'load');
-    expect((await status(page)).notice.text).toMatch(/core_rest.*404/);
-    await page.unroute(rest);
-    await on(page, '(p.engine.notice.value.action.run(), 0)');
-    await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
-  });
-});
-
 test.describe('a sampler that does not load', () => {
   /** @type {[string, (route: import('@playwright/test').Route) => Promise<void>, RegExp][]} */
   const faults = [
@@ -615,6 +521,23 @@ test.describe('a sampler that does not load', () => {
       await expect.poll(async () => (await status(page)).progress.phase).toBe('done');
     });
   }
+
+  test('is fetched once: what the page preloads is what it uses, also for the worker that replaces another', async ({
+    page,
+  }) => {
+    let fetched = 0;
+    await page.route('**/core_bg*.wasm', async (route) => {
+      fetched += 1;
+      await route.continue();
+    });
+    const { errors } = await open(page);
+    await on(page, 'p.debug.panic()');
+    await expect.poll(async () => (await counts(page)).restarts).toBe(1);
+    await on(page, 'p.run()');
+    expect(fetched).toBe(1);
+    expect(await page.locator('link[rel="preload"][as="fetch"]').count()).toBe(1);
+    expect(errors.filter((text) => text.includes('preload'))).toEqual([]);
+  });
 
   test('under a wrong media type loads all the same', async ({ page }) => {
     await page.route('**/core_bg*.wasm', async (route) => {

@@ -269,12 +269,8 @@ export class SamplingClient {
       return;
     }
     if (message.type === 'failed') return this.loadFailed(message.message);
-    if (message.type === 'beat' || message.type === 'waiting' || message.type === 'crashed') return;
+    if (message.type === 'beat' || message.type === 'crashed') return;
     if (message.type === 'field') return this.fieldAnswered(message.id, message.answer);
-    // Stopped before the worker looked at its field.
-    const unbegun = message.type === 'done' && this.answered(message.id);
-    if (unbegun && this.current && !this.current.ended) return this.passedOver(unbegun, this.current);
-    if (unbegun) this.begin(unbegun);
     const { current } = this;
     if (!current || message.id !== current.id) {
       this.stale += 1;
@@ -306,20 +302,13 @@ export class SamplingClient {
     if (current) this.store.progress.value = { ...progress, run: current.id, live: current.request.live };
   }
 
-  /** @param {number} id @returns {Run | undefined} the job, if the worker had not spoken of it */
-  answered(id) {
-    const { asked } = this;
-    const run = asked.get(id);
-    // Jobs are asked about in their order: the worker never looked at those before that are still here.
-    if (run) for (const other of asked.keys()) if (other <= id) asked.delete(other);
-    return run;
-  }
-
   /** @param {number} id @param {import('../types.js').FieldAnswer} answer */
   fieldAnswered(id, answer) {
-    const { store, current } = this;
-    const run = this.answered(id);
+    const { store, asked, current } = this;
+    const run = asked.get(id);
     if (run?.request.kind !== 'sample') return;
+    // Jobs are asked about in their order: the worker never looked at those before that are still here.
+    for (const other of asked.keys()) if (other <= id) asked.delete(other);
     const { request } = run;
     batch(() => {
       if (answer.ok) {
@@ -344,16 +333,6 @@ export class SamplingClient {
         this.settle();
       }
     });
-  }
-
-  /** A job that was stopped with the one before it, which keeps what it has and ends by itself. @param {Run} run @param {Run} before */
-  passedOver({ id, request }, before) {
-    this.astray = request.kind === 'sample' && JSON.stringify(request.field) !== JSON.stringify(this.accepted?.field);
-    batch(() => {
-      this.dim();
-      this.attend();
-    });
-    this.scheduler.ended(id, before);
   }
 
   /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */

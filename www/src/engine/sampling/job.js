@@ -44,7 +44,6 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {() => 'stop' | 'replace' | null} interrupt
  * @property {() => boolean} curvature  whether the page shows it
  * @property {() => boolean} room  whether the page has drawn what it was sent
- * @property {() => Promise<void> | null} rest  what to await before the core is asked for more than its first part can do
  */
 
 /** A step of the loop should take about this long: short enough for a Stop, long enough that its overhead is lost in it. */
@@ -208,13 +207,6 @@ export async function runJob(core, job, env, memory) {
       progress = last;
       break;
     }
-    const rest = phase === 'seeding' || phase === 'generation' ? null : env.rest();
-    if (rest) {
-      if (last && !job.live && core.count() > sent.count) sendColumns();
-      else if (last) env.post({ type: 'progress', id, progress: last });
-      await rest;
-      continue;
-    }
     const budget = budgets[phase] ?? FIRST_BUDGET;
     const before = env.now_ms();
     last = JSON.parse(core.step(budget));
@@ -274,11 +266,6 @@ export async function runJob(core, job, env, memory) {
   do {
     await env.pause();
     if (env.interrupt() === 'replace') return;
-    const rest = env.rest();
-    if (rest) {
-      await rest;
-      continue;
-    }
     tellCurvature();
     const before = env.now_ms();
     report = core.measure(pieces);

@@ -25,16 +25,9 @@ function setField(core, { field, points }) {
 }
 
 export class Jobs {
-  /**
-   * @param {(message: FromWorker) => void} post
-   * @param {import('../types.js').Description['later']} [later]  what the first part of the core cannot do by itself
-   */
-  constructor(post, { functions, surfaces } = { functions: [], surfaces: [] }) {
+  /** @param {(message: FromWorker) => void} post */
+  constructor(post) {
     this.post = post;
-    this.later = {
-      surfaces: new Set(surfaces),
-      call: new RegExp(`(?<![a-z])(?:${functions.join('|') || '(?!)'})(?![a-z0-9])`),
-    };
     /** The core has not been asked about it. @type {Pending | null} */
     this.waiting = null;
     /** Its field is the core's: it runs as soon as the one under way has given way. @type {Pending | null} */
@@ -55,52 +48,6 @@ export class Jobs {
     if (this.accepted) this.accepted.stopped = true;
   }
 
-  /**
-   * Whether a job begins with what the first part of the core cannot do; the others come to need the rest.
-   * @param {Job} job
-   */
-  isLater(job) {
-    if (job.kind !== 'sample' || job.points !== null || job.settings.sampling === 'adaptive') return true;
-    const { formula, surface } = job.field;
-    return formula === undefined ? this.later.surfaces.has(surface ?? '') : this.later.call.test(formula);
-  }
-
-  /**
-   * Whether the job to run next waits for the rest of the core. One that need not wait is asked about, so that it does not stand
-   * behind one that does.
-   * @param {CoreLike} core
-   */
-  awaitsRest(core) {
-    if (this.waiting && !this.isLater(this.waiting.job)) this.ask(core);
-    const next = this.waiting ?? this.accepted;
-    return next !== null && this.isLater(next.job);
-  }
-
-  /** Ends what was stopped before it began. @returns {boolean} whether there was any */
-  endStopped() {
-    const accepted = this.end('accepted');
-    return this.end('waiting') || accepted;
-  }
-
-  /** @param {'accepted' | 'waiting'} place @returns {boolean} whether what is there was stopped */
-  end(place) {
-    const pending = this[place];
-    if (!pending?.stopped) return false;
-    this[place] = null;
-    const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
-    this.post({
-      type: 'done',
-      id: pending.job.id,
-      outcome: 'stopped',
-      progress: null,
-      seconds,
-      predicted: 0,
-      message: '',
-      report_follows: false,
-    });
-    return true;
-  }
-
   /** The job to run next, its field set. @param {CoreLike} core @returns {Job | null} */
   take(core) {
     this.ask(core);
@@ -110,14 +57,9 @@ export class Jobs {
     return next?.job ?? null;
   }
 
-  /**
-   * What a job under way has to do: between two steps it asks. While the core is not `whole`, a job that needs all of it waits,
-   * unless it is stopped.
-   * @param {CoreLike} core @param {boolean} [whole] @returns {'stop' | 'replace' | null}
-   */
-  interrupt(core, whole = true) {
-    if (whole || (this.waiting && !this.isLater(this.waiting.job))) this.ask(core);
-    else this.end('waiting');
+  /** What a job under way has to do: between two steps it asks. @param {CoreLike} core @returns {'stop' | 'replace' | null} */
+  interrupt(core) {
+    this.ask(core);
     if (this.accepted) return 'replace';
     return this.stopped ? 'stop' : null;
   }

@@ -66,20 +66,5 @@ export async function loadModule(
   }
 }
 
-/**
- * The same at once, within a call that cannot wait.
- * @param {string} url
- * @returns {WebAssembly.Module}
- */
-export function moduleNow(url) {
-  const request = new XMLHttpRequest();
-  request.open('GET', url, false);
-  request.responseType = 'arraybuffer';
-  request.send();
-  if (request.status !== 200)
-    throw new LoadError('missing', `A part of the sampler is not on the server: it answers ${request.status}.`);
-  return new WebAssembly.Module(request.response);
-}
-
 /** @param {unknown} error */
 export const words = (error) => (error instanceof Error ? error.message : String(error));

@@ -42,8 +42,10 @@
 /**
  * A `job` takes over from the one before once the core has accepted its field; until then, and for good where the field is
  * refused, that one goes on. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature: it then comes with the other columns, and at once for the particles
- * that are held.
- * @typedef {{type: 'job', job: Job}
+ * that are held. `core` comes first, or `no_core` where it could not be loaded.
+ * @typedef {{type: 'core', module: WebAssembly.Module}
+ *   | {type: 'no_core', fault: LoadFault, message: string}
+ *   | {type: 'job', job: Job}
  *   | {type: 'curvature', on: boolean}
  *   | {type: 'stop'}
  *   | {type: 'drawn', id: number}
@@ -53,7 +55,7 @@
 
 /**
  * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `ask_above` are expected;
- * `lost`: the particles to relax are no longer there; `stopped` may come of a job of whose field nothing was said. A job whose field was refused has ended with that answer, and one that
+ * `lost`: the particles to relax are no longer there. A job whose field was refused has ended with that answer, and one that
  * a newer one takes over from ends without a word.
  * @typedef {'complete' | 'stopped' | 'refused' | 'ask' | 'lost'} Outcome
  */
@@ -100,7 +102,6 @@
  * @typedef {{type: 'ready', description: Description}
  *   | {type: 'failed', fault: LoadFault, message: string}
  *   | {type: 'beat'}
- *   | {type: 'waiting'}
  *   | {type: 'field', id: number, answer: FieldAnswer}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
@@ -114,5 +115,3 @@ export const PROGRESS_MS = 60;
 export const BEAT_MS = 250;
 /** Silence after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;
-/** The same after it has said that it waits for the server, within a call that cannot be left. */
-export const WAIT_MS = 30_000;

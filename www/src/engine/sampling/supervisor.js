@@ -6,7 +6,7 @@
  *
  * @module
  */
-import { SILENCE_MS, WAIT_MS } from './protocol.js';
+import { SILENCE_MS } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').FromWorker} FromWorker
@@ -62,11 +62,8 @@ export class Supervisor {
     this.state = 'off';
     this.busy = false;
     this.heard = false;
-    /** How long the worker may be silent now, and until when. */
-    this.silence_ms = SILENCE_MS;
+    /** Until when the worker may be silent. */
     this.deadline = 0;
-    /** When the timer goes off, if there is one. */
-    this.alarm = 0;
     /** @type {any} */
     this.timer = null;
     /** @type {number[]} */
@@ -110,21 +107,15 @@ export class Supervisor {
 
   /** Whether the worker has work: only then is its silence watched. @param {boolean} busy */
   setBusy(busy) {
-    if (busy && !this.busy) this.allow(SILENCE_MS);
+    if (busy && !this.busy) this.deadline = this.clock.now() + SILENCE_MS;
     this.busy = busy;
     this.watch();
-  }
-
-  /** @param {number} silence_ms */
-  allow(silence_ms) {
-    this.silence_ms = silence_ms;
-    this.deadline = this.clock.now() + silence_ms;
   }
 
   /** @param {FromWorker} message */
   receive(message) {
     this.heard = true;
-    this.allow(message.type === 'waiting' ? WAIT_MS : SILENCE_MS);
+    this.deadline = this.clock.now() + SILENCE_MS;
     if (message.type === 'ready') this.state = 'up';
     if (message.type === 'failed') {
       this.drop();
@@ -143,9 +134,7 @@ export class Supervisor {
     if (!on) {
       this.clock.clearTimeout(this.timer);
       this.timer = null;
-    } else if (this.timer === null || this.deadline < this.alarm) {
-      this.clock.clearTimeout(this.timer);
-      this.alarm = this.deadline;
+    } else if (this.timer === null) {
       this.timer = this.clock.setTimeout(() => this.check(false), Math.max(1, this.deadline - this.clock.now()));
     }
   }
@@ -155,7 +144,7 @@ export class Supervisor {
     this.timer = null;
     if (this.clock.now() < this.deadline) this.watch();
     else if (!again) this.timer = this.clock.setTimeout(() => this.check(true), GRACE_MS);
-    else this.replace('hang', `no word from the sampler for ${this.silence_ms / 1000} s`, '');
+    else this.replace('hang', `no word from the sampler for ${SILENCE_MS / 1000} s`, '');
   }
 
   drop() {

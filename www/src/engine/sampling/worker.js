@@ -1,20 +1,13 @@
 /**
- * The sampler's worker: loads the core, runs one job at a time, the latest one. A trapped core is never called again: the
+ * The sampler's worker: takes the core from the page, runs one job at a time, the latest one. A trapped core is never called again: the
  * worker says so and waits to be replaced.
- *
- * The core comes in two parts. With the first, which takes half as long to come, uniform fronts grow on the surface of a
- * formula; the rest joins it when it is there, and what needs it waits for it. What calls it earlier all the same (a mistake in
- * the formula, a surface that is hard to find) brings it within the call.
  *
  * @module
  */
-import init, { Core, join, whenMissing } from '../../wasm/core/core.js';
-import wasmUrl from '../../wasm/core/core_bg.wasm?url';
-import restUrl from '../../wasm/core/core_rest.wasm?url';
-import description from '../../wasm/core/description.json';
+import init, { Core } from '../../wasm/core/core.js';
 import { curvatureColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
-import { LoadError, loadModule, moduleNow, words } from './load.js';
+import { words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -33,7 +26,7 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 /** @param {FromWorker} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-const jobs = new Jobs(post, description.later);
+const jobs = new Jobs(post);
 /** @type {Job | null} */
 let running = null;
 /** Pictures under way to the page. */
@@ -73,24 +66,6 @@ let core = null;
 /** @type {import('../../wasm/core/core.js').InitOutput | null} */
 let raw = null;
 const memory = { held: 0 };
-/** The rest of the core while it is under way. @type {Promise<void> | null} */
-let rest = null;
-/** Has a wait for the rest end early. @type {(() => void) | null} */
-let wake = null;
-
-/** The rest of the core, or a message that may change what is to be done; null if it is there. @returns {Promise<void> | null} */
-function restOrMessage() {
-  if (!rest) return null;
-  const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
-  const message = new Promise((/** @type {(nothing: void) => void} */ resolve) => {
-    wake = () => resolve();
-  });
-  return Promise.race([rest, message]).finally(() => {
-    clearInterval(beat);
-    wake = null;
-  });
-}
-
 /** Does what tests ask for: a real trap in the instance, or an endless loop. */
 function provoke() {
   const fault = provoked;
@@ -105,19 +80,12 @@ function provoke() {
   }
 }
 
-let pumping = false;
 async function pump() {
-  if (pumping) return;
-  pumping = true;
   while (core && !dead) {
     const ours = core;
     try {
-      if (rest && jobs.awaitsRest(ours)) {
-        if (!jobs.endStopped()) await restOrMessage();
-        continue;
-      }
       running = jobs.take(ours);
-      if (!running) break;
+      if (!running) return;
       undrawn = 0;
       await runJob(
         ours,
@@ -131,11 +99,10 @@ async function pump() {
           },
           interrupt: () => {
             if (provoked) provoke();
-            return jobs.interrupt(ours, rest === null);
+            return jobs.interrupt(ours);
           },
           curvature: () => curvature,
           room: () => undrawn < 2,
-          rest: restOrMessage,
         },
         memory,
       );
@@ -144,7 +111,6 @@ async function pump() {
     }
     running = null;
   }
-  pumping = false;
 }
 
 /** @param {number} id @param {unknown} error */
@@ -157,10 +123,15 @@ function crashed(id, error) {
 self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   if (dead) return;
   switch (data.type) {
+    case 'core':
+      void boot(data.module);
+      break;
+    case 'no_core':
+      failed(data.fault, data.message);
+      break;
     case 'job':
       jobs.add(data.job);
-      wake?.();
-      void pump();
+      if (!running) void pump();
       break;
     case 'curvature':
       curvature = data.on;
@@ -174,7 +145,6 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'stop':
       jobs.stop();
-      wake?.();
       break;
     case 'drawn':
       if (running && data.id === running.id) undrawn = Math.max(0, undrawn - 1);
@@ -193,48 +163,26 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   }
 };
 
-/** @param {unknown} error */
-function failed(error) {
+// Shows that the worker lives while the core is on its way.
+const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
+
+/** @param {import('./protocol.js').LoadFault} fault @param {string} message */
+function failed(fault, message) {
+  clearInterval(beat);
   dead = true;
-  const fault = error instanceof LoadError ? error.fault : 'init';
-  post({ type: 'failed', fault, message: words(error) });
+  post({ type: 'failed', fault, message });
 }
 
-async function loadRest() {
+/** @param {WebAssembly.Module} module */
+async function boot(module) {
   try {
-    join(await loadModule(restUrl, 'second half of the sampler'));
+    raw = await init({ module_or_path: module });
+    core = new Core();
+    core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
+    post({ type: 'ready', description: JSON.parse(core.describe()) });
   } catch (error) {
-    failed(error);
+    failed('init', `The sampler did not start: ${last_words || words(error)}`);
   }
-  rest = null;
-}
-
-async function boot() {
-  const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
-  try {
-    const module = await loadModule(wasmUrl);
-    try {
-      raw = await init({ module_or_path: module });
-      whenMissing(() => {
-        post({ type: 'waiting' });
-        return moduleNow(restUrl);
-      });
-      core = new Core();
-      core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
-      rest = loadRest();
-      post({
-        type: 'ready',
-        description: /** @type {import('../types.js').Description} */ (/** @type {unknown} */ (description)),
-      });
-    } catch (error) {
-      throw new LoadError('init', `The sampler did not start: ${last_words || words(error)}`);
-    }
-  } catch (error) {
-    failed(error);
-  } finally {
-    clearInterval(beat);
-  }
+  clearInterval(beat);
   await pump();
 }
-
-void boot();

@@ -1,0 +1,26 @@
+/**
+ * Starts workers for the sampler and hands each the core. The page fetches the core, not the worker: the built page preloads
+ * it, so that it comes at the same time as the scripts, and a worker that replaces another need not fetch it again.
+ *
+ * @module
+ */
+import coreUrl from '../../wasm/core/core_bg.wasm?url';
+import { LoadError, loadModule, words } from './load.js';
+
+/** The core, fetched and compiled; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
+let core = null;
+
+/** @returns {Worker} */
+export function spawnSampler() {
+  const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'sampler' });
+  const say = (/** @type {import('./protocol.js').ToWorker} */ message) => worker.postMessage(message);
+  core ??= loadModule(coreUrl);
+  core.then(
+    (module) => say({ type: 'core', module }),
+    (error) => {
+      core = null;
+      say({ type: 'no_core', fault: error instanceof LoadError ? error.fault : 'init', message: words(error) });
+    },
+  );
+  return worker;
+}
