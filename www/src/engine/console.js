@@ -86,7 +86,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
         const report = engine.report.peek();
         // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
         const show = () => {
-          if ((viewer.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
+          if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
           else setTimeout(() => resolve(report), CAMERA_MS + 10);
         };
         // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
@@ -143,7 +143,7 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
       progress: { ...engine.progress.value },
       partial: engine.partial.value,
       empty: engine.empty.value,
-      dimmed: viewer.dimmed.to > 0,
+      dimmed: viewer.dimmer.on,
       fieldError: engine.fieldError.value,
       loading: engine.loading.value,
       loadingError: engine.loadingError.value,
@@ -171,8 +171,8 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
         });
       },
       counts: () => ({
-        frames: viewer.frames,
-        uploads: viewer.uploads,
+        frames: viewer.frames.drawn,
+        uploads: viewer.upload.writes,
         opened: viewer.keeper.opened,
         restarts: sampling.supervisor.restarts.length,
         stale: sampling.stale,

@@ -72,60 +72,62 @@ export function createEngine({ canvasHost }) {
 
   canvasHost.tabIndex = Math.max(canvasHost.tabIndex, 0);
 
-  const viewer = new Viewer({
-    host: canvasHost,
-    columns,
-    look: store.state.value.view,
-    first,
-    onDevice(device) {
-      const name = device.kind === 'canvas2d' ? 'canvas2d' : device.kind;
-      batch(() => {
-        store.backend.value = name;
-        store.adapter.value = device.renderer.adapter();
-        if (store.notice.value?.id === 'device-lost') {
-          store.notice.value = { id: 'device-lost', kind: 'info', text: 'The graphics device was lost and is back.' };
+  const viewer = new Viewer(
+    { host: canvasHost, columns, look: store.state.value.view, first },
+    {
+      onDevice(device) {
+        const name = device.kind === 'canvas2d' ? 'canvas2d' : device.kind;
+        batch(() => {
+          store.backend.value = name;
+          store.adapter.value = device.renderer.adapter();
+          if (store.notice.value?.id === 'device-lost') {
+            store.notice.value = { id: 'device-lost', kind: 'info', text: 'The graphics device was lost and is back.' };
+          }
+        });
+        if (columns.count > device.renderer.max_particles()) {
+          store.notice.value = {
+            id: 'too-many-to-draw',
+            kind: 'warn',
+            text: `The picture shows the first ${device.renderer.max_particles()} particles; the figures and exports hold all of them.`,
+          };
         }
-      });
-      if (columns.count > device.renderer.max_particles()) {
+      },
+      onLost(kind, message) {
         store.notice.value = {
-          id: 'too-many-to-draw',
+          id: 'device-lost',
           kind: 'warn',
-          text: `The picture shows the first ${device.renderer.max_particles()} particles; the figures and exports hold all of them.`,
-        };
-      }
-    },
-    onLost(kind, message) {
-      store.notice.value = {
-        id: 'device-lost',
-        kind: 'warn',
-        text: 'The graphics device was lost and is being opened again.',
-        details: `${kind}: ${message}`,
-      };
-    },
-    onFallback(kind, message) {
-      // At the start this is the ordinary way down the list of back ends; later on it is news.
-      if (store.backend.value !== 'starting') {
-        store.notice.value = {
-          id: 'fallback',
-          kind: 'warn',
-          text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
+          text: 'The graphics device was lost and is being opened again.',
           details: `${kind}: ${message}`,
         };
-      }
+      },
+      onFallback(kind, message) {
+        // At the start this is the ordinary way down the list of back ends; later on it is news.
+        if (store.backend.value !== 'starting') {
+          store.notice.value = {
+            id: 'fallback',
+            kind: 'warn',
+            text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
+            details: `${kind}: ${message}`,
+          };
+        }
+      },
+      onLegend(legend) {
+        store.legend.value = legend;
+      },
+      onReveal(reveal) {
+        store.reveal.value = reveal;
+      },
+      onCamera() {
+        camera_timer ??= setTimeout(() => {
+          camera_timer = undefined;
+          store.state.value = {
+            ...store.state.value,
+            view: { ...store.state.value.view, camera: viewer.camera.state },
+          };
+        }, CAMERA_MS);
+      },
     },
-    onLegend(legend) {
-      store.legend.value = legend;
-    },
-    onReveal(reveal) {
-      store.reveal.value = reveal;
-    },
-    onCamera() {
-      camera_timer ??= setTimeout(() => {
-        camera_timer = undefined;
-        store.state.value = { ...store.state.value, view: { ...store.state.value.view, camera: viewer.camera.state } };
-      }, CAMERA_MS);
-    },
-  });
+  );
 
   const detach = attachControls({
     host: canvasHost,
@@ -161,7 +163,7 @@ export function createEngine({ canvasHost }) {
         nearest: columns.nearest?.[index] ?? null,
       };
     }
-    if (viewer.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
+    if (viewer.look.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
   }
 
   // ---- sampling -------------------------------------------------------------------------------------------------------------
@@ -517,7 +519,11 @@ export function createEngine({ canvasHost }) {
       const { LARGEST_PICTURE_PX, png } = await files();
       const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
         Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
-      const picture = await viewer.pixels(side(width, viewer.width), side(height, viewer.height), transparent);
+      const picture = await viewer.pixels(
+        side(width, viewer.screen.width),
+        side(height, viewer.screen.height),
+        transparent,
+      );
       return png(picture.width, picture.height, picture.pixels);
     },
     async exportFile(format) {

@@ -49,6 +49,25 @@ export class Reveal {
     return this.births[level];
   }
 
+  /**
+   * Runs of particles that appear at the same time: one while nothing is being revealed, else one for each level.
+   * @param {Uint32Array} levels @param {number} first @param {number} last @param {number} now_s
+   * @returns {[number, number, number][]} first, last and second of appearance of each
+   */
+  runs(levels, first, last, now_s) {
+    if (!this.active) return [[first, last, -Infinity]];
+    /** @type {[number, number, number][]} */
+    const out = [];
+    for (let i = first; i < last; ) {
+      const level = levels[i];
+      let end = i + 1;
+      while (end < last && levels[end] === level) end += 1;
+      out.push([i, end, this.birthOf(level, now_s)]);
+      i = end;
+    }
+    return out;
+  }
+
   /** The last level that has begun to appear, −1 before the first. @param {number} now_s */
   levelAt(now_s) {
     let k = this.births.length - 1;

@@ -1,0 +1,147 @@
+/**
+ * What the graphics device holds of the columns: tells it the particles and colours that are new, and the points of a model.
+ *
+ * @module
+ */
+import { coloursOf, rangeOf } from './colouring.js';
+import { dotsOf } from './dots.js';
+import { Glide, MOST_GLIDING } from './glide.js';
+import { PALETTES } from './palettes.js';
+
+/**
+ * @typedef {import('../columns.js').Columns} Columns
+ * @typedef {import('./backends.js').Device['renderer']} Renderer
+ * @typedef {import('./style.js').Look} Look
+ */
+
+/** Change of a ramp's end, as a share of the ramp, that nobody sees: half a step of 64. */
+const RANGE_SLACK = 1 / 128;
+
+/** A range of particles: `first` up to and without `last`. */
+class Span {
+  first = Infinity;
+  last = 0;
+
+  get empty() {
+    return this.first >= this.last;
+  }
+
+  /** @param {number} first @param {number} last */
+  include(first, last) {
+    this.first = Math.min(this.first, first);
+    this.last = Math.max(this.last, last);
+  }
+}
+
+export class ParticleUpload {
+  /** @param {Columns} columns */
+  constructor(columns) {
+    this.columns = columns;
+    this.glide = new Glide();
+    /** Particles that the device has not been told. */
+    this.dirty = new Span();
+    /** Particles whose colour it has not been told. */
+    this.recoloured = new Span();
+    /** Values at the ends of the present colouring's ramp. @type {[number, number] | null} */
+    this.range = null;
+    /** Times that the device was told of particles. */
+    this.writes = 0;
+  }
+
+  /** Particles are new or have moved. @param {number} first @param {number} last */
+  changed(first, last) {
+    this.dirty.include(first, last);
+  }
+
+  /** Colours may be others. @param {number} first @param {number} last */
+  recolour(first, last) {
+    this.recoloured.include(first, last);
+  }
+
+  /** Everything is to be told again. */
+  all() {
+    this.dirty.include(0, this.columns.count);
+  }
+
+  /** Another surface, or a device that knows nothing: no particle glides from where the last was. */
+  restart() {
+    this.glide.forget();
+    this.dirty = new Span();
+    this.all();
+  }
+
+  /**
+   * Tells the device what is new.
+   * @param {Renderer} renderer
+   * @param {Look} look
+   * @param {{reveal: import('./reveal.js').Reveal, calm: boolean, now_s: number}} present
+   * @returns {number} particles that it holds
+   */
+  write(renderer, look, { reveal, calm, now_s }) {
+    const { columns, glide, dirty } = this;
+    const count = Math.min(columns.count, renderer.max_particles());
+    if (!dirty.empty || !this.recoloured.empty) this.followRange(look);
+    const moved = dirty.first < Math.min(glide.count, count);
+    if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(now_s);
+    const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
+    if (first < last) {
+      const positions = glide.active ? glide.between(columns.positions, count, now_s) : columns.positions;
+      const colours = this.colours(look, first, last);
+      for (const [from, end, birth] of reveal.runs(columns.levels, first, last, now_s)) {
+        renderer.write(
+          from,
+          positions.subarray(3 * from, 3 * end),
+          columns.normals.subarray(3 * from, 3 * end),
+          columns.radii.subarray(from, end),
+          columns.levels.subarray(from, end),
+          colours.subarray(from - first, end - first),
+          birth,
+        );
+        this.writes += 1;
+      }
+      glide.note(positions, first, last);
+    }
+    const recoloured = { first: this.recoloured.first, last: Math.min(this.recoloured.last, count) };
+    if (recoloured.first < recoloured.last) {
+      renderer.write_colours(recoloured.first, this.colours(look, recoloured.first, recoloured.last));
+      this.writes += 1;
+    }
+    this.dirty = new Span();
+    this.recoloured = new Span();
+    return count;
+  }
+
+  /** @param {Look} look @param {number} first @param {number} last */
+  colours({ colour, theme }, first, last) {
+    return coloursOf(colour, theme, this.columns, first, last, this.range);
+  }
+
+  /** The ramp's ends follow the particles; when they move by more than can be seen, every colour is another. @param {Look} look */
+  followRange({ colour }) {
+    const range = rangeOf(colour, this.columns);
+    const old = this.range;
+    const slack = RANGE_SLACK * (range ? range[1] - range[0] : 0);
+    if (range && old && Math.abs(range[0] - old[0]) <= slack && Math.abs(range[1] - old[1]) <= slack) return;
+    this.range = range;
+    if (range || old) this.recolour(0, this.columns.count);
+  }
+
+  /**
+   * Writes the model's points behind the particles, as discs that face the eye, and so anew for every picture.
+   * @param {Renderer} renderer
+   * @param {Look} look
+   * @param {import('./camera.js').View} view
+   * @param {{count: number, ratio: number}} present  particles that the device holds; canvas pixels per page pixel
+   * @returns {number} discs written
+   */
+  writePoints(renderer, { points, size, theme }, view, { count, ratio }) {
+    if (!points) return 0;
+    const { columns } = this;
+    // A dot comes forward by this much, so that the discs around it do not cut it.
+    const lift = columns.count > 0 ? columns.radii[columns.count >> 1] : 0;
+    const dots = dotsOf(points, view, { px: ratio, size, lift, palette: PALETTES[theme] });
+    if (count + dots.radii.length > renderer.max_particles()) return 0;
+    renderer.write(count, dots.positions, dots.normals, dots.radii, dots.levels, dots.colours, -Infinity);
+    return dots.radii.length;
+  }
+}

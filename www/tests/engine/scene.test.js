@@ -1,0 +1,62 @@
+import { describe, expect, test } from 'vitest';
+import { Columns } from '../../src/engine/columns.js';
+import { Dimmer } from '../../src/engine/view/dimmer.js';
+import { Scene } from '../../src/engine/view/scene.js';
+
+/** @returns {import('../../src/engine/types.js').Bounds} */
+const cube = (/** @type {number} */ side) => ({ min: [-side, -side, -side], max: [side, side, side] });
+
+describe('a fit', () => {
+  test('shows the clip box while there is no particle, all of it only where it is drawn', () => {
+    const scene = new Scene();
+    scene.bounds = cube(2);
+    const columns = new Columns();
+    expect(scene.fitBall(columns, true).radius).toBeCloseTo(2 * Math.sqrt(3));
+    expect(scene.fitBall(columns, false).radius).toBeLessThan(2 * Math.sqrt(3));
+  });
+
+  test('shows the particles with their discs, unless they are those of an earlier field', () => {
+    const scene = new Scene();
+    const columns = new Columns();
+    columns.write({
+      first: 0,
+      total: 2,
+      positions: Float32Array.of(-1, 0, 0, 1, 0, 0),
+      normals: new Float32Array(6),
+      radii: Float32Array.of(0.25, 0.25),
+      levels: new Uint32Array(2),
+      parents: new Uint32Array(2),
+    });
+    expect(scene.fitBall(columns, false)).toEqual({ centre: [0, 0, 0], radius: 1.25 });
+    columns.stale = true;
+    expect(scene.fitBall(columns, false)).toEqual(scene.boxBall(false));
+  });
+
+  test('is within planes that enclose the box on the page and the one asked for', () => {
+    const scene = new Scene();
+    scene.bounds = cube(1);
+    scene.shown = cube(3);
+    expect(scene.ball().radius).toBeCloseTo(3 * Math.sqrt(3));
+  });
+});
+
+describe('dimming', () => {
+  test('comes and goes gradually, from where it is', () => {
+    const dimmer = new Dimmer();
+    expect(dimmer.set(false, 1, false)).toBe(false);
+    expect(dimmer.set(true, 1, false)).toBe(true);
+    const half = dimmer.at(1.075, false);
+    expect(half).toBeGreaterThan(0);
+    expect(half).toBeLessThan(dimmer.at(2, false));
+    dimmer.set(false, 1.075, false);
+    expect(dimmer.at(1.075, false)).toBeCloseTo(half);
+    expect(dimmer.at(2, false)).toBe(0);
+    expect(dimmer.moving(2)).toBe(false);
+  });
+
+  test('is there at once where motion is not wanted', () => {
+    const dimmer = new Dimmer();
+    dimmer.set(true, 1, true);
+    expect(dimmer.at(1, true)).toBe(dimmer.at(9, false));
+  });
+});
