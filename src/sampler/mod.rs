@@ -31,7 +31,7 @@ use discovery::survey::{Absence, Survey, survey};
 use front::Front;
 use front::adaptive::Surface;
 use glam::Vec3;
-use neighbours::pairs::Pairs;
+use neighbours::packed::PackedNeighbours;
 use projection::{Projector, Tolerance, tolerance};
 use rand_core::{Rng, SeedableRng};
 use relaxation::Relaxation;
@@ -161,7 +161,7 @@ pub struct Sampler {
     /// The radius field of an adaptive run.
     sizing: Option<Sizing>,
     relaxation: Relaxation,
-    pairs: Pairs,
+    pairs: PackedNeighbours,
     particles: Particles,
     counts: Counts,
     moved: bool,
@@ -200,7 +200,7 @@ impl Sampler {
             front: Front::new(),
             sizing: None,
             relaxation: Relaxation::new(),
-            pairs: Pairs::default(),
+            pairs: PackedNeighbours::default(),
             particles: Particles::default(),
             counts: Counts::default(),
             moved: false,
@@ -519,7 +519,7 @@ impl Sampler {
                 }
                 Phase::Relaxation => {
                     let start = self.projector.evaluations;
-                    let mut surface = relaxation::Surface {
+                    let mut surface = relaxation::SurfaceContext {
                         field: &mut *field,
                         projector: &mut self.projector,
                         sizing: self.sizing.as_ref(),
@@ -730,9 +730,9 @@ impl Sampler {
         self.pairs.shrink();
         let law = match self.settings.sampling {
             Sampling::Uniform => {
-                relaxation::Law::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
+                relaxation::RepulsionLaw::Gaussian { radius: self.radius as f32, tolerance: self.tolerance }
             }
-            Sampling::Adaptive => relaxation::Law::Overlap {
+            Sampling::Adaptive => relaxation::RepulsionLaw::Overlap {
                 resolution: self.survey.resolution,
                 min_gradient: self.tolerance.min_gradient,
             },

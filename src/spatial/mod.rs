@@ -48,7 +48,7 @@ struct Block {
 
 /// Where a point sits in the grid; valid until the grid is cleared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place(u32);
+pub struct CellHandle(u32);
 
 /// A point found by [`CellGrid::gather`].
 #[derive(Clone, Copy, Debug)]
@@ -152,7 +152,7 @@ impl CellGrid {
     }
 
     /// Inserts a point and returns its place. `index` is handed back by queries.
-    pub fn insert(&mut self, point: Vec3, index: u32) -> Place {
+    pub fn insert(&mut self, point: Vec3, index: u32) -> CellHandle {
         let (brick_key, cell) = self.cell_of(point);
         if 2 * (self.bricks + 1) > self.table.len() {
             self.grow();
@@ -180,17 +180,17 @@ impl CellGrid {
         block.y.0[lane] = point.y;
         block.z.0[lane] = point.z;
         block.index[lane] = index;
-        Place(head * LANES as u32 + lane as u32)
+        CellHandle(head * LANES as u32 + lane as u32)
     }
 
     /// Takes the point at `place` out of all further queries. Its lane is not used again.
-    pub fn remove(&mut self, place: Place) {
+    pub fn remove(&mut self, place: CellHandle) {
         let block = &mut self.blocks[place.0 as usize / LANES];
         block.x.0[place.0 as usize % LANES] = f32::INFINITY;
     }
 
     /// Moves the point at `place` to `point` under a new index.
-    pub fn update(&mut self, place: Place, point: Vec3, index: u32) {
+    pub fn update(&mut self, place: CellHandle, point: Vec3, index: u32) {
         let (b, lane) = (place.0 as usize / LANES, place.0 as usize % LANES);
         let block = &mut self.blocks[b];
         let old = Vec3::new(block.x.0[lane], block.y.0[lane], block.z.0[lane]);

@@ -34,7 +34,7 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
 }
 
 /// Share in which particles repel each other whose normals have this cosine: all up to 60°, nothing from 120°.
-fn likeness(cosine: f32) -> f64 {
+fn same_sheet_weight(cosine: f32) -> f64 {
     (0.5 + f64::from(cosine)).clamp(0.0, 1.0)
 }
 
@@ -49,7 +49,7 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
         for &j in order[k + 1..].iter().take_while(|&&j| f64::from(position[j].x) < reach) {
             let q = f64::from(position[i].distance(position[j])) / radius;
             if q < 3.0 {
-                let share = likeness(normal[i].dot(normal[j]));
+                let share = same_sheet_weight(normal[i].dot(normal[j]));
                 sum += share * (libm::exp(-0.5 * q * q) - libm::exp(-4.5));
             }
         }

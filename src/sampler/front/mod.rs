@@ -11,7 +11,7 @@ use crate::sampler::fates::FateCounts;
 use crate::sampler::front::adaptive::{AdaptiveFront, Surface};
 use crate::sampler::front::uniform::UniformFront;
 use crate::sampler::front::uniform::gaps::{Gaps, Ground};
-use crate::sampler::neighbours::pairs::Pairs;
+use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::projection::{Projector, tolerance};
 use crate::sampler::settings::{Sampling, Settings};
 use crate::trace::Trace;
@@ -125,7 +125,7 @@ impl Front {
     }
 
     /// Takes the last seed back if it stayed alone within reach of another particle.
-    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
+    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut PackedNeighbours, particles: &mut Particles) {
         match self.sampling {
             Sampling::Uniform => self.uniform.drop_lone_seed(pairs, particles),
             Sampling::Adaptive => self.adaptive.drop_lone_seed(pairs, particles),

@@ -3,7 +3,7 @@
 
 use crate::sampler::neighbours::constants::CELL_PER_REACH;
 use crate::spatial::chains::Chains;
-use crate::spatial::{CellGrid, Neighbour, Place};
+use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use glam::Vec3;
 
 /// Ratio of the radii in a range. On a tanglecube whose radii range over 1 : 16 the front takes 2.7 µs per particle with
@@ -70,9 +70,9 @@ impl Layers {
 
 /// Where a particle sits.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Held {
+pub(crate) struct GridHandle {
     layer: u32,
-    place: Place,
+    place: CellHandle,
 }
 
 /// Grids by radius.
@@ -99,17 +99,17 @@ impl RadiusGrids {
         }
     }
 
-    pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) -> Held {
+    pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) -> GridHandle {
         let layer = self.layers.admit(radius);
-        Held { layer: layer as u32, place: self.grids[layer].insert(position, index) }
+        GridHandle { layer: layer as u32, place: self.grids[layer].insert(position, index) }
     }
 
-    pub(crate) fn remove(&mut self, held: Held) {
+    pub(crate) fn remove(&mut self, held: GridHandle) {
         self.grids[held.layer as usize].remove(held.place);
     }
 
     /// Moves a particle that keeps about its radius.
-    pub(crate) fn update(&mut self, held: Held, position: Vec3, radius: f32, index: u32) {
+    pub(crate) fn update(&mut self, held: GridHandle, position: Vec3, radius: f32, index: u32) {
         self.layers.grow(held.layer as usize, radius);
         self.grids[held.layer as usize].update(held.place, position, index);
     }

@@ -3,7 +3,7 @@
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::grids::RadiusChains;
-use crate::sampler::neighbours::pairs::Pairs;
+use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
 
 /// Most particles whose lists are made together.
@@ -14,12 +14,12 @@ const CHUNK: usize = 4;
 
 /// Where neighbours are looked for, and those found.
 #[derive(Clone)]
-pub(crate) struct Lists {
+pub(crate) struct NeighbourLists {
     grid: RadiusChains,
     /// Two particles within this share of the sum of their radii are listed.
     share: f32,
     /// The farthest that a particle can have gone since it was put into the grid.
-    pub(crate) drift: f32,
+    pub(crate) travelled: f32,
     /// Particles whose lists are made together.
     group: Vec<u32>,
     /// All around them, and their positions x, y, z, normals x, y, z and radii by chunks.
@@ -28,20 +28,20 @@ pub(crate) struct Lists {
     /// Neighbours of one of the group.
     near: Vec<u32>,
     /// Whether a particle within its reach may repel it less than in full.
-    is_bent: bool,
+    is_weighted: bool,
 }
 
-impl Lists {
+impl NeighbourLists {
     pub(crate) fn new() -> Self {
         Self {
             grid: RadiusChains::new(),
             share: 1.0,
-            drift: f32::INFINITY,
+            travelled: f32::INFINITY,
             group: Vec::new(),
             found: Vec::new(),
             chunks: Vec::new(),
             near: Vec::new(),
-            is_bent: false,
+            is_weighted: false,
         }
     }
 
@@ -55,7 +55,7 @@ impl Lists {
     ) {
         self.grid.reset(smallest, largest, reach + slack, particles);
         self.share = 0.5 * reach;
-        self.drift = 0.0;
+        self.travelled = 0.0;
     }
 
     /// Puts particle `i` into the grid.
@@ -70,7 +70,7 @@ impl Lists {
     #[inline(never)]
     pub(crate) fn make(
         &mut self,
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
         particles: &Particles,
         force: &mut [Vec4],
         i: usize,
@@ -80,9 +80,9 @@ impl Lists {
             let i = self.group[k];
             self.find(particles, i as usize);
             pairs.fill(i as usize, self.near.iter().map(|&j| (j, j < i)));
-            if self.is_bent {
+            if self.is_weighted {
                 // In the lists of the others it may stand from when it repelled them in full.
-                self.found.iter().for_each(|&j| pairs.note_bend(j as usize));
+                self.found.iter().for_each(|&j| pairs.note_weighted(j as usize));
             }
             for &j in self.near.iter().filter(|&&j| j > i) {
                 // Those whose own lists are made anew find it themselves.
@@ -103,19 +103,19 @@ impl Lists {
         self.group.clear();
         self.group.push(i as u32);
         let others =
-            self.grid.beside(positions, (p, largest), |j| j as usize != i && is_old(force[j as usize]));
+            self.grid.beside(positions, (p, largest), |j| j as usize != i && is_stale(force[j as usize]));
         for index in others.take(GROUP - 1) {
             let j = index as usize;
             self.group.push(index);
             (lo, hi) = (lo.min(positions[j]), hi.max(positions[j]));
             largest = largest.max(particles.radius[j]);
         }
-        let (share, drift, found) = (self.share, self.drift, &mut self.found);
+        let (share, travelled, found) = (self.share, self.travelled, &mut self.found);
         let (low, high) = (lo.extend(0.0), hi.extend(0.0));
         let mut count = 0;
         self.grid.visit(
             [lo, hi],
-            |other| share * (largest + other) + drift,
+            |other| share * (largest + other) + travelled,
             |index| {
                 let q = positions[index as usize].extend(0.0);
                 let beyond = (low - q).max(q - high).max(Vec4::ZERO);
@@ -152,14 +152,14 @@ impl Lists {
         let (p, n, radius) = (particles.position[i], particles.normal[i], particles.radius[i]);
         self.near.resize(self.found.len(), 0);
         let mut len = 0;
-        let mut bent = BVec4A::FALSE;
+        let mut weighted = BVec4A::FALSE;
         for (chunk, others) in self.chunks.iter().zip(self.found.chunks_exact(CHUNK)) {
             let [x, y, z, mx, my, mz, other] = chunk.map(Vec4::from_array);
             let (dx, dy, dz) = (x - p.x, y - p.y, z - p.z);
             let along = mx * n.x + my * n.y + mz * n.z;
             let reach = (other + radius) * self.share;
             let is_near = (dx * dx + dy * dy + dz * dz).cmple(reach * reach);
-            bent |= is_near & along.cmplt(Vec4::splat(FULL_COSINE));
+            weighted |= is_near & along.cmplt(Vec4::splat(FULL_COSINE));
             let mask = (is_near & along.cmpgt(Vec4::splat(LISTED_COSINE))).bitmask();
             // All are written down: a branch would be mispredicted for every other one.
             for (lane, &j) in others.iter().enumerate() {
@@ -168,12 +168,12 @@ impl Lists {
             }
         }
         self.near.truncate(len);
-        self.is_bent = bent.any();
+        self.is_weighted = weighted.any();
     }
 }
 
 /// Whether the list of a particle with this force is to be made anew.
 #[inline(always)]
-pub(crate) fn is_old(force: Vec4) -> bool {
+pub(crate) fn is_stale(force: Vec4) -> bool {
     force.w == f32::INFINITY
 }

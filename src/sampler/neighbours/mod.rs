@@ -3,4 +3,4 @@
 pub(crate) mod constants;
 pub(crate) mod grids;
 pub(crate) mod lists;
-pub(crate) mod pairs;
+pub(crate) mod packed;

@@ -8,7 +8,7 @@
 //!
 //! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
 //!   so the energy falls at every step. That holds because the energy is one function of places and normals: no pair within
-//!   range is missing from the lists, and each takes part as its normals say now ([`likeness`]). Where nearly every particle
+//!   range is missing from the lists, and each takes part as its normals say now ([`same_sheet_weight`]). Where nearly every particle
 //!   has a neighbour across a bend that the radius does not resolve, no step along these forces may lower it further; the
 //!   relaxation then ends before its last step.
 
@@ -18,11 +18,11 @@ use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::MAX_TURN;
-use crate::sampler::neighbours::lists::{Lists, is_old};
-use crate::sampler::neighbours::pairs::{Pairs, ROOM};
+use crate::sampler::neighbours::lists::{NeighbourLists, is_stale};
+use crate::sampler::neighbours::packed::{PackedNeighbours, ROOM};
 use crate::sampler::projection::{BATCH, Projector, Tolerance};
 use crate::sampler::relaxation::repulsion::{
-    Gaussian, MAX_MOVE, Overlap, Points, Repulsion, TRUSTED_CORRECTION, likeness,
+    Gaussian, MAX_MOVE, Overlap, Points, Repulsion, TRUSTED_CORRECTION, same_sheet_weight,
 };
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
@@ -57,7 +57,7 @@ enum Stage {
 
 /// What repels, and what it takes to be on the surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Law {
+pub(crate) enum RepulsionLaw {
     /// Particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
     /// Particles of many radii, on a surface that single precision resolves to `resolution`.
@@ -65,7 +65,7 @@ pub(crate) enum Law {
 }
 
 /// The surface that the particles stay on.
-pub(crate) struct Surface<'a> {
+pub(crate) struct SurfaceContext<'a> {
     pub(crate) field: &'a mut dyn Field,
     pub(crate) projector: &'a mut Projector,
     /// The radius field of an adaptive run.
@@ -104,19 +104,19 @@ impl Bundle {
 /// A relaxation under way.
 #[derive(Clone)]
 pub(crate) struct Relaxation {
-    law: Law,
+    law: RepulsionLaw,
     bounds: Bounds,
     target: u32,
     done: u32,
     stage: Stage,
     next: usize,
-    lists: Lists,
+    lists: NeighbourLists,
     /// The farthest that a particle has gone in this move.
     farthest: f32,
     /// Units done beyond the budgets so far, to be paid from the next ones.
     debt: u32,
     /// Whether a list is to be made anew.
-    is_old: bool,
+    is_stale: bool,
     /// Force on each particle, the sum of `offset * weight` over its pairs, zero when the summation begins; and in `w` the
     /// length of its way since its list was made. That is infinite if the list is to be made anew, and minus infinity from
     /// when it was until the particle moves.
@@ -144,16 +144,16 @@ pub(crate) struct Relaxation {
 impl Relaxation {
     pub(crate) fn new() -> Self {
         Self {
-            law: Law::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
+            law: RepulsionLaw::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
             bounds: Bounds::cube(1.0),
             target: 0,
             done: 0,
             stage: Stage::Done,
             next: 0,
-            lists: Lists::new(),
+            lists: NeighbourLists::new(),
             farthest: 0.0,
             debt: 0,
-            is_old: false,
+            is_stale: false,
             force: Vec::new(),
             bundle: Box::new(Bundle::new()),
             previous: Vec::new(),
@@ -180,11 +180,11 @@ impl Relaxation {
     /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short.
     pub(crate) fn begin(
         &mut self,
-        law: Law,
+        law: RepulsionLaw,
         bounds: &Bounds,
         target: u32,
         particles: usize,
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
     ) {
         self.law = law;
         self.bounds = *bounds;
@@ -193,8 +193,8 @@ impl Relaxation {
         self.failures = 0;
         if self.done == 0 {
             self.step_size = match law {
-                Law::Gaussian { .. } => Gaussian::STEP,
-                Law::Overlap { .. } => Overlap::STEP,
+                RepulsionLaw::Gaussian { .. } => Gaussian::STEP,
+                RepulsionLaw::Overlap { .. } => Overlap::STEP,
             };
         }
         // A first step that was cancelled has moved particles, and the lists of the front no longer hold.
@@ -204,15 +204,15 @@ impl Relaxation {
         fill(&mut self.force, particles, Vec4::ZERO);
         fill(&mut self.previous, particles, Vec3::ZERO);
         self.farthest = 0.0;
-        self.lists.drift = f32::INFINITY;
+        self.lists.travelled = f32::INFINITY;
         self.sum = 0.0;
         self.debt = 0;
-        self.is_old = false;
+        self.is_stale = false;
         self.steep = false;
-        let resized = if matches!(law, Law::Overlap { .. }) { particles } else { 0 };
+        let resized = if matches!(law, RepulsionLaw::Overlap { .. }) { particles } else { 0 };
         fill(&mut self.since, resized, 0.0);
         fill(&mut self.previous_radius, resized, 0.0);
-        self.ending = target == 0 && matches!(law, Law::Overlap { .. });
+        self.ending = target == 0 && matches!(law, RepulsionLaw::Overlap { .. });
         if pairs.len() == particles && is_first && !self.ending {
             self.after_lists();
         } else {
@@ -253,28 +253,28 @@ impl Relaxation {
     #[inline(never)]
     pub(crate) fn step(
         &mut self,
-        surface: &mut Surface,
-        pairs: &mut Pairs,
+        surface: &mut SurfaceContext,
+        pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         budget: u32,
     ) -> bool {
         match (self.law, surface.sizing) {
-            (Law::Gaussian { radius, tolerance }, _) => {
+            (RepulsionLaw::Gaussian { radius, tolerance }, _) => {
                 self.run(&Gaussian::new(radius, tolerance), surface, pairs, particles, budget)
             }
-            (Law::Overlap { resolution, min_gradient }, Some(sizing)) => {
+            (RepulsionLaw::Overlap { resolution, min_gradient }, Some(sizing)) => {
                 let law = Overlap { sizing, resolution, min_gradient };
                 self.run(&law, surface, pairs, particles, budget)
             }
-            (Law::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
+            (RepulsionLaw::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
         }
     }
 
     fn run<L: Repulsion>(
         &mut self,
         law: &L,
-        surface: &mut Surface,
-        pairs: &mut Pairs,
+        surface: &mut SurfaceContext,
+        pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         mut budget: u32,
     ) -> bool {
@@ -303,17 +303,17 @@ impl Relaxation {
                 }
                 Stage::Refresh => {
                     if range.start == 0 {
-                        pairs.drop_far(|i| is_old(self.force[i]));
+                        pairs.drop_far(|i| is_stale(self.force[i]));
                     }
                     for i in range {
-                        if is_old(self.force[i]) {
+                        if is_stale(self.force[i]) {
                             let made = self.lists.make(pairs, particles, &mut self.force, i);
                             let beyond = made.iter().filter(|&&j| j as usize >= last).count() as u32;
                             self.debt += beyond * REFRESH_UNITS;
                         }
                     }
                     if last == n {
-                        self.is_old = false;
+                        self.is_stale = false;
                         self.after_lists();
                     }
                 }
@@ -330,7 +330,7 @@ impl Relaxation {
                     let mut points = Points::new();
                     for range in parts(range.clone()) {
                         self.advance(law, particles, range.clone(), &mut points);
-                        let trust = if pairs.are_bent(&range) { CHECKED } else { TRUSTED_CORRECTION };
+                        let trust = if pairs.any_weighted(&range) { CHECKED } else { TRUSTED_CORRECTION };
                         self.land(law, surface, particles, range, &mut points, trust);
                     }
                     moved |= !range.is_empty();
@@ -349,11 +349,11 @@ impl Relaxation {
                             if L::RESIZES {
                                 self.since[i] = (self.since[i] - back).max(0.0);
                             }
-                            self.went(law, particles, i, back, particles.radius[i] - shrunk);
+                            self.add_travel(law, particles, i, back, particles.radius[i] - shrunk);
                             *point = particles.position[i];
                         }
                         // The normal is that of the place left.
-                        let trust = if pairs.are_bent(&range) { CHECKED } else { TRUSTED_CORRECTION };
+                        let trust = if pairs.any_weighted(&range) { CHECKED } else { TRUSTED_CORRECTION };
                         self.land(law, surface, particles, range, &mut points, trust);
                     }
                     moved = true;
@@ -410,7 +410,7 @@ impl Relaxation {
     /// Where the stage comes to with a budget, and the units that takes: the last particle may go beyond it.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
         let cost = |i: usize| match self.stage {
-            Stage::Refresh if is_old(self.force[i]) => REFRESH_UNITS,
+            Stage::Refresh if is_stale(self.force[i]) => REFRESH_UNITS,
             Stage::Polish => L::POLISH_UNITS,
             _ => 1,
         };
@@ -424,7 +424,7 @@ impl Relaxation {
 
     /// Makes all lists anew.
     fn make_lists(&mut self) {
-        self.is_old = true;
+        self.is_stale = true;
         self.force.iter_mut().for_each(|force| force.w = f32::INFINITY);
         self.enter(Stage::Grid);
     }
@@ -437,8 +437,8 @@ impl Relaxation {
     /// Goes on from complete lists: to the forces or, where the radii may differ too much, by way of their grading.
     fn after_lists(&mut self) {
         let differ = match self.law {
-            Law::Gaussian { .. } => false,
-            Law::Overlap { .. } => self.steep || self.ending || !self.has_begun(),
+            RepulsionLaw::Gaussian { .. } => false,
+            RepulsionLaw::Overlap { .. } => self.steep || self.ending || !self.has_begun(),
         };
         if differ {
             self.enter(Stage::Grade);
@@ -449,10 +449,10 @@ impl Relaxation {
 
     /// Goes on from new places, by way of new lists where the old ones may miss a pair.
     fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) {
-        self.lists.drift += core::mem::take(&mut self.farthest);
-        if !self.is_old {
+        self.lists.travelled += core::mem::take(&mut self.farthest);
+        if !self.is_stale {
             self.after_lists();
-        } else if self.lists.drift < L::SLACK * law.radius(particles, 0) {
+        } else if self.lists.travelled < L::SLACK * law.radius(particles, 0) {
             self.enter(Stage::Refresh);
         } else {
             self.enter(Stage::Grid);
@@ -462,14 +462,21 @@ impl Relaxation {
     /// Notes that particle `i` has gone some way and grown: two particles of which each has used up half of its skin may
     /// have come within range without being listed. A turn of the normal counts as some way.
     #[inline]
-    fn went<L: Repulsion>(&mut self, law: &L, particles: &Particles, i: usize, distance: f32, grown: f32) {
+    fn add_travel<L: Repulsion>(
+        &mut self,
+        law: &L,
+        particles: &Particles,
+        i: usize,
+        distance: f32,
+        grown: f32,
+    ) {
         self.farthest = larger(self.farthest, distance);
         let mut way = self.force[i].w + distance;
         if L::RESIZES {
             way += 0.5 * L::RANGE * grown.max(0.0);
         }
         if way > 0.5 * L::SKIN * law.radius(particles, i) {
-            self.is_old = true;
+            self.is_stale = true;
             way = f32::INFINITY;
         }
         self.force[i].w = way;
@@ -477,7 +484,13 @@ impl Relaxation {
 
     /// Adds the repulsion between each particle of a bundle and its listed neighbours to the forces on both, and to the
     /// energy.
-    fn repel<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles, range: Range<usize>) {
+    fn repel<L: Repulsion>(
+        &mut self,
+        law: &L,
+        pairs: &PackedNeighbours,
+        particles: &Particles,
+        range: Range<usize>,
+    ) {
         let Bundle { offset, mean, weight, energy, other } = &mut *self.bundle;
         // A list has at most the room it has: the remainders only tell the compiler that.
         let mut count = 0;
@@ -504,12 +517,12 @@ impl Relaxation {
             of_weight.write_to_slice(&mut weight[first..first + 4]);
             of_energy.write_to_slice(&mut energy[first..first + 4]);
         }
-        if pairs.are_bent(&range) {
+        if pairs.any_weighted(&range) {
             let mut first = 0;
             for (&end, i) in end.iter().zip(range.clone()) {
                 for k in first..end {
                     let other = particles.normal[other[k] as usize];
-                    let share = likeness(particles.normal[i].dot(other));
+                    let share = same_sheet_weight(particles.normal[i].dot(other));
                     weight[k] *= share;
                     energy[k] *= share;
                 }
@@ -534,13 +547,13 @@ impl Relaxation {
     }
 
     /// The same for the far pairs.
-    fn repel_far<L: Repulsion>(&mut self, law: &L, pairs: &Pairs, particles: &Particles) {
+    fn repel_far<L: Repulsion>(&mut self, law: &L, pairs: &PackedNeighbours, particles: &Particles) {
         for &[i, j] in pairs.far() {
             let (i, j) = (i as usize, j as usize);
             let offset = particles.position[i] - particles.position[j];
             let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
             let (weight, energy) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
-            let share = likeness(particles.normal[i].dot(particles.normal[j]));
+            let share = same_sheet_weight(particles.normal[i].dot(particles.normal[j]));
             let push = offset.extend(0.0) * (weight.x * share);
             self.force[i] += push;
             self.force[j] -= push;
@@ -598,7 +611,7 @@ impl Relaxation {
     fn land<L: Repulsion>(
         &mut self,
         law: &L,
-        surface: &mut Surface,
+        surface: &mut SurfaceContext,
         particles: &mut Particles,
         range: Range<usize>,
         points: &mut Points,
@@ -628,7 +641,7 @@ impl Relaxation {
                     particles.radius[i] = points.radius[k];
                     self.since[i] = points.since[k];
                 }
-                self.went(law, particles, i, distance, grown);
+                self.add_travel(law, particles, i, distance, grown);
                 particles.position[i] = position;
                 particles.normal[i] = normal;
             }

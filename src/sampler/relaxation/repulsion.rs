@@ -20,7 +20,7 @@ const MAX_NEWTON: u32 = 6;
 /// must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
 /// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
 #[inline(always)]
-pub(crate) fn likeness(cosine: f32) -> f32 {
+pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 

@@ -1,6 +1,6 @@
 //! Radius laws: how large a particle may be where the surface has given curvatures (paper §5).
 //!
-//! A law gives a radius between nothing and infinity; [`Law`] clamps it to the smallest and largest radius of the run.
+//! A law gives a radius between nothing and infinity; [`SizingLaw`] clamps it to the smallest and largest radius of the run.
 //! Where the surface has no curvature (see [`Curvature::is_defined`]: cone points, creases, places where f ends) every law
 //! gives the smallest radius, which is also the limit as the curvature grows on the way there.
 
@@ -73,7 +73,7 @@ enum Kind {
 
 /// The law of a run, with its clamp and the factor on all radii with which a count is met.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Law {
+pub(crate) struct SizingLaw {
     kind: Kind,
     /// Smallest and largest radius before the factor.
     least: f32,
@@ -81,7 +81,7 @@ pub(crate) struct Law {
     factor: f32,
 }
 
-impl Law {
+impl SizingLaw {
     /// The law that `settings` ask for in a box with this diagonal.
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
         let scale = settings.curvature_scale;
@@ -164,7 +164,7 @@ mod tests {
     fn every_law_stays_in_its_clamp_and_scales_with_its_factor() {
         for radius_law in [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures] {
             let settings = Settings { radius_law, ..Settings::default() };
-            let law = Law::new(&settings, 2.0);
+            let law = SizingLaw::new(&settings, 2.0);
             let larger = law.scaled(3.0);
             let nowhere = bent(f32::NAN, f32::NAN);
             assert_eq!(law.radius(&nowhere), law.least(), "{radius_law:?}");

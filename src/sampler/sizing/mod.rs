@@ -13,7 +13,7 @@ use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::settings::Settings;
-use crate::sampler::sizing::laws::Law;
+use crate::sampler::sizing::laws::SizingLaw;
 use glam::Vec3;
 
 /// Grid cells along the longest side of the box: as the survey's, so that a cell of the surface holds some of its points.
@@ -32,7 +32,7 @@ const CELL_AREA: f64 = 2.0 * SQRT_3;
 /// The radius field of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Sizing {
-    law: Law,
+    law: SizingLaw,
     /// Slope L.
     slope: f32,
     /// Points of the surface with what they stand for.
@@ -69,7 +69,7 @@ impl Sizing {
             .map(|i| Site { position: survey.position[i], curvature: curvature[i], weight: survey.weight[i] })
             .collect();
         let mut sizing = Self {
-            law: Law::new(settings, bounds.diagonal()),
+            law: SizingLaw::new(settings, bounds.diagonal()),
             slope: settings.grading as f32,
             site,
             envelope: Envelope::new(bounds, survey.position.iter().copied()),

@@ -25,8 +25,8 @@ use crate::sampler::fates::FateCounts;
 use crate::sampler::front::adaptive::arcs::{Base, Guess, MAX_CHILDREN, Ring, Room};
 use crate::sampler::front::adaptive::placement::{Landed, Placement, Proposal, Spot};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE, OVERLAP_RANGE, OVERLAP_SKIN};
-use crate::sampler::neighbours::grids::{Held, RadiusGrids};
-use crate::sampler::neighbours::pairs::Pairs;
+use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
+use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::projection::{BATCH, Circle, Landing, Projector, tolerance};
 use crate::sampler::settings::{Placement as Method, Settings};
 use crate::sampler::sizing::Sizing;
@@ -72,7 +72,7 @@ struct Child {
     slot: u32,
     /// Number among the children of its parent.
     number: u32,
-    held: Held,
+    held: GridHandle,
     /// Place of its parent in the level.
     of: u32,
     /// Distance to the nearest collision when it was placed.
@@ -113,7 +113,7 @@ pub(crate) struct Surface<'a> {
     pub(crate) projector: &'a mut Projector,
     /// The radius field, which adaptive fronts need.
     pub(crate) sizing: Option<&'a Sizing>,
-    pub(crate) pairs: &'a mut Pairs,
+    pub(crate) pairs: &'a mut PackedNeighbours,
     pub(crate) particles: &'a mut Particles,
 }
 
@@ -147,7 +147,7 @@ pub(crate) struct AdaptiveFront {
     origin: Vec3,
     stage: Stage,
     next: usize,
-    seed_place: Held,
+    seed_place: GridHandle,
     parents: Parents,
     /// Particles before the level under way.
     first: usize,
@@ -191,7 +191,7 @@ impl AdaptiveFront {
             origin: Vec3::ZERO,
             stage: Stage::Place,
             next: 0,
-            seed_place: Held::default(),
+            seed_place: GridHandle::default(),
             parents: Parents::default(),
             first: 0,
             settled: 0,
@@ -304,7 +304,7 @@ impl AdaptiveFront {
 
     /// Takes the last seed back if it stayed alone and touches another particle, of whatever sheet: see the uniform front.
     #[inline(never)]
-    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
+    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut PackedNeighbours, particles: &mut Particles) {
         let last = particles.len() - 1;
         if particles.parent[last] != Particles::NO_PARENT {
             return;
@@ -632,7 +632,7 @@ impl AdaptiveFront {
     fn read_surroundings(
         &mut self,
         found: &[Neighbour],
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
         particles: &Particles,
         parent: usize,
     ) -> bool {
@@ -643,7 +643,7 @@ impl AdaptiveFront {
         self.ring.clear();
         self.touching.clear();
         let mut alone = true;
-        let mut is_bent = false;
+        let mut is_weighted = false;
         let list = found.iter().map(|near| {
             let j = near.index as usize;
             if j == parent {
@@ -661,13 +661,13 @@ impl AdaptiveFront {
             let reach = LISTED * both;
             let along = other.dot(normal);
             let is_listed = (j < parent) & (near.distance_sq <= reach * reach);
-            is_bent |= is_listed & (along < FULL_COSINE);
+            is_weighted |= is_listed & (along < FULL_COSINE);
             (near.index, is_listed & (along > LISTED_COSINE))
         });
         if pairs.len() == parent {
             pairs.push(list);
-            if is_bent {
-                found.iter().for_each(|near| pairs.note_bend(near.index as usize));
+            if is_weighted {
+                found.iter().for_each(|near| pairs.note_weighted(near.index as usize));
             }
         } else {
             list.for_each(drop);

@@ -9,7 +9,7 @@ use crate::field::Field;
 use crate::math::{Bounds, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::neighbours::constants::{FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE};
-use crate::sampler::neighbours::pairs::Pairs;
+use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::projection::{Circle, Landing, Projector, Tolerance};
 use crate::spatial::{CellGrid, Neighbour};
 use glam::Vec2;
@@ -46,7 +46,7 @@ pub(crate) struct Ground<'a> {
     pub(crate) bounds: Bounds,
     pub(crate) max_particles: usize,
     pub(crate) grid: &'a mut CellGrid,
-    pub(crate) pairs: &'a mut Pairs,
+    pub(crate) pairs: &'a mut PackedNeighbours,
     pub(crate) particles: &'a mut Particles,
 }
 
@@ -124,15 +124,15 @@ impl Gaps {
         if self.found.iter().filter(same_sheet).any(|near| near.distance_sq < clear * clear) {
             return;
         }
-        let mut is_bent = false;
+        let mut is_weighted = false;
         ground.pairs.push(self.found.iter().map(|near| {
             let along = ground.particles.normal[near.index as usize].dot(normal);
-            is_bent |= along < FULL_COSINE;
+            is_weighted |= along < FULL_COSINE;
             (near.index, along > LISTED_COSINE)
         }));
-        if is_bent {
-            self.found.iter().for_each(|near| ground.pairs.note_bend(near.index as usize));
-            ground.pairs.note_bend(ground.particles.len());
+        if is_weighted {
+            self.found.iter().for_each(|near| ground.pairs.note_weighted(near.index as usize));
+            ground.pairs.note_weighted(ground.particles.len());
         }
         let level = ground.particles.level[i] + 1;
         ground.grid.insert(position, ground.particles.len() as u32);

@@ -24,9 +24,9 @@ use crate::sampler::front::uniform::surroundings::{MAX_RISE_SQ, Shape, Surroundi
 use crate::sampler::neighbours::constants::{
     CELL_PER_REACH, FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE,
 };
-use crate::sampler::neighbours::pairs::Pairs;
+use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::projection::{BATCH, Circle, Landing, Projector, Tolerance};
-use crate::spatial::{CellGrid, Neighbour, Place};
+use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use glam::Vec3;
 
 /// Directions of the six slots in the frame (V̂⁰, N̂ × V̂⁰): paper §4.2.
@@ -47,7 +47,7 @@ const DRIFT_ROOM: f32 = 0.2;
 struct Child {
     circle: Circle,
     slot: u32,
-    place: Place,
+    place: CellHandle,
     /// Distance to the nearest particle, of whatever sheet, when it was found free; at most what was looked at.
     clearance: f32,
 }
@@ -76,7 +76,7 @@ pub(crate) struct UniformFront {
     around: Surroundings,
     stage: Stage,
     next: usize,
-    seed_place: Place,
+    seed_place: CellHandle,
     /// Particles of the level under way.
     level: core::ops::Range<usize>,
     /// Particles before this index are final; provisional children stand from here on.
@@ -106,7 +106,7 @@ impl UniformFront {
             around: Surroundings::default(),
             stage: Stage::Place,
             next: 0,
-            seed_place: Place::default(),
+            seed_place: CellHandle::default(),
             level: 0..0,
             settled: 0,
             children: Vec::new(),
@@ -206,7 +206,7 @@ impl UniformFront {
 
     /// Takes the last seed back if it stayed alone and any other particle, of whatever sheet, is within 2r: a lone
     /// particle there is the far side of something too small for the radius.
-    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut Pairs, particles: &mut Particles) {
+    pub(crate) fn drop_lone_seed(&mut self, pairs: &mut PackedNeighbours, particles: &mut Particles) {
         let last = particles.len() - 1;
         if particles.parent[last] == Particles::NO_PARENT {
             self.grid.gather(particles.position[last], 2.0 * self.radius, &mut self.found);
@@ -241,7 +241,7 @@ impl UniformFront {
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         mut budget: u32,
     ) -> u32 {
@@ -300,7 +300,7 @@ impl UniformFront {
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         parent: usize,
     ) {
@@ -389,25 +389,25 @@ impl UniformFront {
     fn read_surroundings(
         &mut self,
         found: &[Neighbour],
-        pairs: &mut Pairs,
+        pairs: &mut PackedNeighbours,
         particles: &Particles,
         parent: usize,
     ) -> bool {
         let repulsion = (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius;
         let normal = particles.normal[parent];
         self.around.clear();
-        let mut is_bent = false;
+        let mut is_weighted = false;
         pairs.push(found.iter().map(|near| {
             let j = near.index as usize;
             let other = particles.normal[j];
             self.around.push(near.offset, other, j < self.settled);
             let along = other.dot(normal);
             let is_listed = (j < parent) & (near.distance_sq <= repulsion * repulsion);
-            is_bent |= is_listed & (along < FULL_COSINE);
+            is_weighted |= is_listed & (along < FULL_COSINE);
             (near.index, is_listed & (along > LISTED_COSINE))
         }));
-        if is_bent {
-            found.iter().for_each(|near| pairs.note_bend(near.index as usize));
+        if is_weighted {
+            found.iter().for_each(|near| pairs.note_weighted(near.index as usize));
         }
         let spacing = 2.0 * self.radius;
         // The normals of children under way are only predicted, but they belong to this front.

@@ -14,21 +14,21 @@ const BLOCK: usize = BATCH;
 /// Lists by particle. A neighbour stands as its distance back in the order of the particles, which is that of the front:
 /// those around a particle are of its own level or the few before, so that 16 bits are enough.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Pairs {
+pub(crate) struct PackedNeighbours {
     /// Distances back to the neighbours; 0 after the last.
     near: Vec<[u16; ROOM]>,
     /// Larger and smaller index of the pairs that find no room there: in crowds, and where fronts meet that are far apart
     /// in the order.
     far: Vec<[u32; 2]>,
     /// By blocks of particles, whether one may have a pair that does not repel in full.
-    is_bent: Vec<bool>,
+    is_weighted: Vec<bool>,
 }
 
-impl Pairs {
+impl PackedNeighbours {
     pub(crate) fn clear(&mut self) {
         self.near.clear();
         self.far.clear();
-        self.is_bent.clear();
+        self.is_weighted.clear();
     }
 
     /// Makes room for exactly `particles` lists.
@@ -38,17 +38,18 @@ impl Pairs {
 
     /// Notes that particle `i` may have a pair that does not repel in full.
     #[cold]
-    pub(crate) fn note_bend(&mut self, i: usize) {
+    pub(crate) fn note_weighted(&mut self, i: usize) {
         let block = i / BLOCK;
-        if block >= self.is_bent.len() {
-            self.is_bent.resize(block + 1, false);
+        if block >= self.is_weighted.len() {
+            self.is_weighted.resize(block + 1, false);
         }
-        self.is_bent[block] = true;
+        self.is_weighted[block] = true;
     }
 
     /// Whether one of these particles may have a pair that does not repel in full.
-    pub(crate) fn are_bent(&self, range: &Range<usize>) -> bool {
-        (range.start / BLOCK..range.end.div_ceil(BLOCK)).any(|block| self.is_bent.get(block) == Some(&true))
+    pub(crate) fn any_weighted(&self, range: &Range<usize>) -> bool {
+        (range.start / BLOCK..range.end.div_ceil(BLOCK))
+            .any(|block| self.is_weighted.get(block) == Some(&true))
     }
 
     /// Gives back the room beyond the lists there are.
@@ -133,7 +134,7 @@ impl Pairs {
 mod tests {
     use super::*;
 
-    fn all_of(pairs: &Pairs, i: usize) -> Vec<usize> {
+    fn all_of(pairs: &PackedNeighbours, i: usize) -> Vec<usize> {
         let far = pairs.far().iter().filter(|pair| pair[0] as usize == i).map(|pair| pair[1] as usize);
         let mut all: Vec<usize> = pairs.near(i).chain(far).collect();
         all.sort_unstable();
@@ -144,7 +145,7 @@ mod tests {
     fn lists_hold_what_was_put_last() {
         // Farther back than 16 bits reach, and more neighbours than a list has room for.
         let first = 70_000;
-        let mut pairs = Pairs::default();
+        let mut pairs = PackedNeighbours::default();
         pairs.extend_to(first);
         for i in 0..40 {
             pairs.push((0..13).map(|k| (k * 1_741, k < i % 11)));
