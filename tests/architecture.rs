@@ -1,95 +1,140 @@
 //! Holds the sources to the module graph of the crate's documentation, and to files of a readable length.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Who may use whom. A module is named by its path under the crate; the longest entry that fits a file counts. What is
-/// not listed may not be used, and a module that is not listed has no place in the graph yet.
-const MAY_USE: &[(&str, &[&str])] = &[
-    ("math", &[]),
-    // Long work in pieces: of any kind.
-    ("pieces", &[]),
-    ("json", &["math"]),
-    ("field", &["math"]),
-    ("differential", &["math", "field"]),
-    // From a file to a field. The core that samples is built without it.
-    ("pointcloud", &["math", "field", "spatial"]),
-    // Particles and the search among them know no field: they hold whatever made them.
-    ("spatial", &["math", "pieces"]),
-    ("particles", &["math"]),
-    // Triangles over particles, whoever made them.
-    ("mesh", &["math", "spatial", "particles"]),
-    ("trace", &["math", "particles"]),
-    ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh", "trace"]),
-    // The methods that the paper compares its own with stand on the sampler's survey, sizes and way to the surface.
-    ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
-    // Figures about a set of particles must not depend on what made them.
-    ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
-    ("export", &["math", "spatial", "particles", "mesh", "quality"]),
+/// What a module may use of the modules beside it, room by room. A room is a folder of modules, the crate itself the outermost.
+type Room = (&'static str, &'static [(&'static str, &'static [&'static str])]);
+
+/// Who may use whom in the rooms whose order is a decision. A module of a listed room that is not listed has no place in it
+/// yet; what is not listed may not be used. Parents, which declare their modules, may be used by them.
+const ROOMS: [Room; 3] = [
     (
-        "session",
+        "",
         &[
-            "math",
-            "pieces",
-            "json",
-            "field",
-            "differential",
-            "spatial",
-            "particles",
-            "trace",
-            "mesh",
-            "sampler",
-            "quality",
-            "export",
+            ("math", &[]),
+            // Long work in slices: of any kind.
+            ("pieces", &[]),
+            ("json", &["math"]),
+            ("field", &["math"]),
+            ("differential", &["math", "field"]),
+            // From a file to a field. The core that samples is built without it.
+            ("pointcloud", &["math", "field", "spatial"]),
+            // Particles, meshes of them and the search among them know no field: they hold whatever made them.
+            ("spatial", &["math", "pieces"]),
+            ("particles", &["math"]),
+            ("trace", &["math", "particles"]),
+            ("mesh", &["math", "spatial", "particles"]),
+            ("sampler", &["math", "field", "differential", "spatial", "particles", "trace"]),
+            // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
+            ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
+            // Figures about a set of particles must not depend on what made them.
+            ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
+            ("export", &["math", "spatial", "particles", "quality"]),
+            (
+                "session",
+                &[
+                    "math",
+                    "pieces",
+                    "json",
+                    "field",
+                    "differential",
+                    "spatial",
+                    "particles",
+                    "trace",
+                    "sampler",
+                    "quality",
+                    "export",
+                ],
+            ),
+            // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
+            ("render", &["math"]),
+            // Each half of the bindings is compiled without the others' modules.
+            ("web/core", &["json", "field", "sampler", "session"]),
+            ("web/points", &["json", "math", "pointcloud"]),
+            ("web/render", &["render"]),
         ],
     ),
-    // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
-    ("render", &["math"]),
-    ("web/core", &["json", "field", "sampler", "session"]),
-    ("web/points", &["json", "math", "pointcloud"]),
-    ("web/render", &["render"]),
+    (
+        "sampler",
+        &[
+            ("settings", &[]),
+            ("fates", &[]),
+            ("phase", &[]),
+            ("projection", &[]),
+            ("neighbours", &["projection"]),
+            ("discovery", &["projection"]),
+            ("sizing", &["settings", "projection", "discovery"]),
+            ("front", &["settings", "fates", "projection", "neighbours", "discovery", "sizing"]),
+            ("relaxation", &["projection", "neighbours", "sizing"]),
+            ("message", &["discovery", "phase"]),
+        ],
+    ),
+    ("field", &[("formula", &[]), ("gallery", &["formula"]), ("model", &[]), ("rbf", &[]), ("scaled", &[])]),
 ];
 
-/// Files that only declare and re-export modules.
-const ROOTS: [&str; 2] = ["lib", "web"];
+/// Rooms whose modules still use each other in a circle.
+const CIRCULAR: [&str; 2] = ["quality", "field/rbf"];
 
 /// The longest file that is still read in one go.
 const MAX_LINES: usize = 800;
 
 #[test]
-fn modules_use_only_what_the_graph_allows() {
-    let src = root().join("src");
-    let files: Vec<PathBuf> =
-        files_under(&src, &["rs"]).into_iter().filter(|file| !file.starts_with(src.join("bin"))).collect();
-    assert!(!files.is_empty(), "no source found under {}", src.display());
-    let modules: BTreeSet<String> = files.iter().map(|file| module_of(&src, file)[0].clone()).collect();
+fn modules_use_only_what_their_room_allows() {
     let mut faults = Vec::new();
-    for file in &files {
-        let path = module_of(&src, file);
-        let name = path.join("/");
-        if ROOTS.contains(&name.as_str()) {
-            continue;
-        }
-        let entry = MAY_USE
+    for Use { room, user, used } in uses_between_siblings() {
+        let Some((_, members)) = ROOMS.iter().find(|(name, _)| *name == room) else { continue };
+        let path = user.join("/");
+        let entry = members
             .iter()
-            .filter(|(module, _)| name == *module || name.starts_with(&format!("{module}/")))
+            .filter(|(module, _)| path == *module || path.starts_with(&format!("{module}/")))
             .max_by_key(|(module, _)| module.len());
-        let Some((_, allowed)) = entry else {
-            faults.push(format!("src/{name}: this module has no entry in the graph; say what it may use"));
-            continue;
-        };
-        let source = fs::read_to_string(file).expect("a listed file can be read");
-        for used in modules_used(&without_tests(&code_only(&source)), path.len()) {
-            if used == path[0] || allowed.contains(&used.as_str()) {
-                continue;
+        match entry {
+            None => faults.push(format!("{room}/{path}: has no entry in the room; say what it may use")),
+            Some((_, allowed)) if !allowed.contains(&used.as_str()) => {
+                faults.push(format!("{room}/{path}: uses `{used}`, which the room does not allow"));
             }
-            let fault = if modules.contains(&used) {
-                format!("src/{name}: uses `{used}`, which the graph does not allow")
-            } else {
-                format!("src/{name}: `crate::{used}` hides which module it comes from; name the module")
-            };
-            faults.push(fault);
+            Some(_) => {}
+        }
+    }
+    assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+}
+
+#[test]
+fn rooms_name_only_modules_that_exist() {
+    let modules: BTreeSet<String> = sources().into_iter().map(|(path, _)| path.join("/")).collect();
+    let mut faults = Vec::new();
+    for (room, members) in ROOMS {
+        let names = members.iter().flat_map(|(name, allowed)| allowed.iter().chain([name]));
+        for name in names.copied().collect::<BTreeSet<_>>() {
+            let path = if room.is_empty() { name.to_owned() } else { format!("{room}/{name}") };
+            if !modules.contains(&path) {
+                faults.push(format!("{path}: no such module"));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
+}
+
+#[test]
+fn no_room_has_a_circle_of_uses() {
+    let mut rooms: BTreeMap<String, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
+    for Use { room, mut user, used } in uses_between_siblings() {
+        let module = user.swap_remove(0);
+        rooms.entry(room).or_default().entry(module).or_default().insert(used);
+    }
+    let mut faults = Vec::new();
+    for (room, edges) in rooms.iter().filter(|(room, _)| !CIRCULAR.contains(&room.as_str())) {
+        for module in edges.keys() {
+            let mut reached = BTreeSet::new();
+            let mut open = vec![module];
+            while let Some(next) = open.pop() {
+                open.extend(edges.get(next).into_iter().flatten().filter(|&used| reached.insert(used)));
+            }
+            if reached.contains(module) {
+                faults.push(format!("{room}/{module}: uses itself by way of {reached:?}"));
+            }
         }
     }
     assert!(faults.is_empty(), "\n{}\n", faults.join("\n"));
@@ -124,7 +169,8 @@ fn uses_are_found_in_every_form() {
         use crate::math::Lanes;
         use crate::{field::{Field, gallery}, spatial, particles::Particles as P};
         use super::super::sampler::Front;
-        use super::sibling;
+        use super::sibling::{self, Item};
+        pub(super) use self::child::Thing;
         // use crate::commented;
         /* crate::also_commented */
         const TEXT: &str = "crate::quoted";
@@ -135,15 +181,75 @@ fn uses_are_found_in_every_form() {
         #[allow(clippy::disallowed_methods, reason = "…")]
         mod tests { use crate::tested; }
     "#;
-    let found = modules_used(&without_tests(&code_only(source)), 2);
+    let module = ["a".to_owned(), "b".to_owned()];
+    let mut found: Vec<String> =
+        paths_used(&without_tests(&code_only(source)), &module).iter().map(|path| path.join("::")).collect();
+    found.sort();
     assert_eq!(
-        found.iter().map(String::as_str).collect::<Vec<_>>(),
-        ["field", "math", "particles", "sampler", "session", "spatial"]
+        found,
+        [
+            "a::b::child::Thing",
+            "a::sibling::Item",
+            "a::sibling::self",
+            "field::Field",
+            "field::gallery",
+            "math::Lanes",
+            "particles::Particles",
+            "sampler::Front",
+            "session::f",
+            "spatial",
+        ]
     );
 }
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every module of the library with its source, comments and tests taken out. The command-line tool is a crate of its own.
+fn sources() -> Vec<(Vec<String>, String)> {
+    let src = root().join("src");
+    let files = files_under(&src, &["rs"]).into_iter().filter(|file| !file.starts_with(src.join("bin")));
+    let sources: Vec<(Vec<String>, String)> = files
+        .map(|file| {
+            let source = fs::read_to_string(&file).expect("a listed file can be read");
+            (module_of(&src, &file), without_tests(&code_only(&source)))
+        })
+        .filter(|(path, _)| path.last().is_some_and(|name| name != "lib" && name != "tests"))
+        .collect();
+    assert!(!sources.is_empty(), "no source found under {}", src.display());
+    sources
+}
+
+/// A use of one module of a room by another.
+struct Use {
+    /// The room in which the paths of the two part.
+    room: String,
+    /// The module that uses, below the room.
+    user: Vec<String>,
+    /// The module of the room that is used, or that holds what is used.
+    used: String,
+}
+
+/// Every use between modules of which none is the other's parent.
+fn uses_between_siblings() -> Vec<Use> {
+    let sources = sources();
+    let modules: BTreeSet<&Vec<String>> = sources.iter().map(|(path, _)| path).collect();
+    let mut uses = Vec::new();
+    for (user, source) in &sources {
+        for mut used in paths_used(source, user) {
+            while !used.is_empty() && !modules.contains(&used) {
+                used.pop();
+            }
+            let shared = user.iter().zip(&used).take_while(|(a, b)| a == b).count();
+            if shared < user.len() && shared < used.len() {
+                let room = user[..shared].join("/");
+                uses.push(Use { room, user: user[shared..].to_vec(), used: used.swap_remove(shared) });
+            }
+        }
+    }
+    assert!(!uses.is_empty(), "no module uses another");
+    uses
 }
 
 /// The module path of a file: `src/a/b.rs` and `src/a/b/mod.rs` are `[a, b]`.
@@ -276,53 +382,65 @@ fn without_tests(code: &str) -> String {
     kept.to_owned()
 }
 
-/// The names that follow the crate's root in paths, in a file `depth` modules below it. Macros are not counted: they
-/// live at the root.
-fn modules_used(code: &str, depth: usize) -> BTreeSet<String> {
-    let up = format!("{}::", vec!["super"; depth].join("::"));
-    let mut found = BTreeSet::new();
-    for prefix in ["crate::", up.as_str()] {
-        for (at, _) in code.match_indices(prefix) {
+/// The paths that a file of the module `module` names from the crate's root, `super` or `self`, resolved to the root.
+fn paths_used(code: &str, module: &[String]) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    for root in ["crate::", "super::", "self::"] {
+        for (at, _) in code.match_indices(root) {
             let before = &code[..at];
-            if is_word(before.chars().next_back().as_ref()) || before.ends_with("super::") {
+            if before.ends_with("::") || is_word(before.chars().next_back().as_ref()) {
                 continue;
             }
-            let after = code[at + prefix.len()..].trim_start();
-            if let Some(group) = after.strip_prefix('{') {
-                found.extend(heads_of_group(group));
-            } else {
-                let name = word(after);
-                if !after[name.len()..].starts_with('!') && name != "super" && !name.is_empty() {
-                    found.insert(name.to_owned());
+            for path in use_tree(&code[at..]) {
+                let mut base = if path[0] == "crate" { Vec::new() } else { module.to_vec() };
+                let mut rest = &path[usize::from(path[0] != "super")..];
+                while rest.first().is_some_and(|name| name == "super") {
+                    base.pop();
+                    rest = &rest[1..];
                 }
+                found.push([&base, rest].concat());
             }
         }
     }
     found
 }
 
-/// The first names of the members of a `{…}` group whose opening brace has been read.
-fn heads_of_group(group: &str) -> Vec<String> {
-    let mut heads = Vec::new();
-    let mut depth = 1;
-    let mut at_head = true;
+/// The paths of the use tree at the start of `code`: `a::{b, c::d}` is `a::b` and `a::c::d`.
+fn use_tree(code: &str) -> Vec<Vec<String>> {
+    let code = code.trim_start();
+    if let Some(group) = code.strip_prefix('{') {
+        return members_of_group(group).into_iter().flat_map(use_tree).collect();
+    }
+    let name = word(code);
+    if name.is_empty() {
+        return vec![Vec::new()];
+    }
+    match code[name.len()..].strip_prefix("::") {
+        Some(rest) => use_tree(rest).into_iter().map(|path| [vec![name.to_owned()], path].concat()).collect(),
+        None => vec![vec![name.to_owned()]],
+    }
+}
+
+/// The members of a `{…}` group whose opening brace has been read.
+fn members_of_group(group: &str) -> Vec<&str> {
+    let mut members = Vec::new();
+    let (mut depth, mut start) = (1, 0);
     for (at, c) in group.char_indices() {
         match c {
             '{' => depth += 1,
             '}' => depth -= 1,
-            ',' if depth == 1 => at_head = true,
-            _ if at_head && depth == 1 && !c.is_whitespace() => {
-                heads.push(word(&group[at..]).to_owned());
-                at_head = false;
-            }
             _ => {}
+        }
+        if depth == 0 || depth == 1 && c == ',' {
+            members.push(&group[start..at]);
+            start = at + 1;
         }
         if depth == 0 {
             break;
         }
     }
-    heads.retain(|head| !head.is_empty() && head != "self");
-    heads
+    members.retain(|member| !member.trim().is_empty());
+    members
 }
 
 fn word(text: &str) -> &str {
