@@ -14,6 +14,7 @@ mod formula_functions;
 mod formula_properties;
 mod front;
 mod gallery;
+mod half_edge;
 mod json;
 #[cfg(feature = "points")]
 mod models;

@@ -1,0 +1,132 @@
+//! From a list of triangles to half-edges.
+
+use super::{HalfEdges, NONE, next};
+
+/// Why triangles are not a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BuildError {
+    /// A corner is not below the number of vertices, or a triangle has a vertex twice.
+    #[error("triangle {triangle} has a corner that does not exist, or one corner twice")]
+    Triangle {
+        /// The triangle, by its place in the list.
+        triangle: usize,
+    },
+    /// Two triangles run along the same edge in the same direction: more than two meet there, or their orientations disagree.
+    #[error("more than one triangle runs from vertex {from} to vertex {to}")]
+    Edge {
+        /// Where the edge begins.
+        from: u32,
+        /// Where it ends.
+        to: u32,
+    },
+    /// The triangles at a vertex form more than one fan.
+    #[error("the triangles at vertex {vertex} form more than one fan")]
+    Fan {
+        /// The vertex.
+        vertex: u32,
+    },
+}
+
+impl HalfEdges {
+    /// The surface of some triangles over `vertices` vertices, counter-clockwise seen from outside. Face `f` is triangle `f`.
+    ///
+    /// Vertices in no triangle have no half-edge. Edges of one triangle form the border.
+    ///
+    /// Cost: linear, and n log n where a vertex has very many triangles.
+    ///
+    /// # Errors
+    ///
+    /// If the triangles are not an oriented surface with one fan at each vertex.
+    pub fn from_triangles(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, BuildError> {
+        for (triangle, &[a, b, c]) in triangles.iter().enumerate() {
+            let is_within = [a, b, c].iter().all(|&v| (v as usize) < vertices);
+            if !is_within || a == b || b == c || c == a {
+                return Err(BuildError::Triangle { triangle });
+            }
+        }
+        let origin: Vec<u32> = triangles.iter().flatten().copied().collect();
+        let mut mesh = Self {
+            twin: vec![NONE; origin.len()],
+            outgoing: vec![NONE; vertices],
+            origin,
+            ..Self::default()
+        };
+        mesh.pair()?;
+        mesh.choose_outgoing()?;
+        Ok(mesh)
+    }
+
+    /// Finds the twins: the half-edges are sorted into one bucket for the smaller end of each, and within it by the larger.
+    fn pair(&mut self) -> Result<(), BuildError> {
+        let mut start = vec![0_u32; self.outgoing.len() + 1];
+        let ends = |mesh: &Self, h: u32| {
+            let (a, b) = (mesh.origin(h), mesh.target(h));
+            (a.min(b), a.max(b))
+        };
+        let half_edges = self.origin.len() as u32;
+        for h in 0..half_edges {
+            start[ends(self, h).0 as usize + 1] += 1;
+        }
+        for v in 0..self.outgoing.len() {
+            start[v + 1] += start[v];
+        }
+        let mut fill = start.clone();
+        // The larger end above, the half-edge below.
+        let mut buckets = vec![0_u64; self.origin.len()];
+        for h in 0..half_edges {
+            let (low, high) = ends(self, h);
+            buckets[fill[low as usize] as usize] = u64::from(high) << 32 | u64::from(h);
+            fill[low as usize] += 1;
+        }
+        for range in start.windows(2) {
+            let bucket = &mut buckets[range[0] as usize..range[1] as usize];
+            bucket.sort_unstable();
+            for at in 1..bucket.len() {
+                if bucket[at - 1] >> 32 != bucket[at] >> 32 {
+                    continue;
+                }
+                let (g, h) = (bucket[at - 1] as u32, bucket[at] as u32);
+                let is_third = self.twin(g) != NONE;
+                if is_third || self.origin(g) == self.origin(h) {
+                    return Err(BuildError::Edge { from: self.origin(h), to: self.target(h) });
+                }
+                self.twin[g as usize] = h;
+                self.twin[h as usize] = g;
+            }
+        }
+        Ok(())
+    }
+
+    /// Chooses the half-edge kept for each vertex, and sees to it that its faces form one fan.
+    fn choose_outgoing(&mut self) -> Result<(), BuildError> {
+        let mut faces_at = vec![0_u32; self.outgoing.len()];
+        for h in 0..self.origin.len() as u32 {
+            let v = self.origin(h) as usize;
+            faces_at[v] += 1;
+            if self.outgoing[v] == NONE || self.twin(h) == NONE {
+                self.outgoing[v] = h;
+            }
+        }
+        for (vertex, &faces) in (0..).zip(&faces_at) {
+            if self.around(vertex).take(faces as usize + 1).count() != faces as usize {
+                return Err(BuildError::Fan { vertex });
+            }
+        }
+        Ok(())
+    }
+
+    /// The first half-edge of the fan in which `h` is one that leaves a vertex: the one without a twin, or `h` itself.
+    pub(super) fn first_of_fan(&self, h: u32) -> u32 {
+        let mut at = h;
+        loop {
+            let twin = self.twin(at);
+            if twin == NONE {
+                return at;
+            }
+            at = next(twin);
+            if at == h {
+                return h;
+            }
+        }
+    }
+}

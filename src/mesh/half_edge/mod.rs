@@ -1,0 +1,315 @@
+//! A triangle surface as half-edges: who is next to whom, and the operations that change it.
+//!
+//! Face `f` has the half-edges `3f`, `3f + 1` and `3f + 2`, counter-clockwise seen from outside, so that the next and the
+//! previous one follow from the number alone. What is stored is where each half-edge begins, its twin in the face on the
+//! other side, and one half-edge that leaves each vertex. The surface knows no positions: whoever owns the particles decides
+//! what to change.
+//!
+//! # Invariants
+//!
+//! [`HalfEdges::check`] holds every operation to these:
+//!
+//! * Twins are each other's twins and run between the same two vertices in opposite directions. A half-edge without a twin
+//!   lies on the border.
+//! * The faces at a vertex form one fan. At a border vertex the half-edge kept for the vertex is the first of the fan, the one
+//!   without a twin, so that a walk counter-clockwise meets every face.
+//! * No two half-edges run from the same vertex to the same other, and no face has a vertex twice.
+//!
+//! Source of the structure: the directed edges of S. Campagna, L. Kobbelt and H.-P. Seidel, "Directed Edges: A Scalable
+//! Representation for Triangle Meshes", Journal of Graphics Tools 3(4), 1998.
+
+mod build;
+mod edit;
+mod subdivide;
+
+pub use build::BuildError;
+pub use subdivide::{Part, Subdivision};
+
+/// No half-edge, vertex or face.
+pub const NONE: u32 = u32::MAX;
+
+/// A surface of triangles.
+#[derive(Clone, Debug, Default)]
+pub struct HalfEdges {
+    /// The vertex at which a half-edge begins; [`NONE`] for those of a face that was removed.
+    origin: Vec<u32>,
+    /// The half-edge on the other side; [`NONE`] at the border.
+    twin: Vec<u32>,
+    /// A half-edge that leaves the vertex; [`NONE`] for a vertex without faces.
+    outgoing: Vec<u32>,
+    free_faces: Vec<u32>,
+    free_vertices: Vec<u32>,
+    /// What was changed since the journal was begun, newest last.
+    journal: Vec<Change>,
+    is_recording: bool,
+}
+
+/// One change, with what it takes to take it back.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    /// The half-edge began at this vertex.
+    Origin(u32, u32),
+    /// The half-edge had this twin.
+    Twin(u32, u32),
+    /// The vertex had this half-edge.
+    Outgoing(u32, u32),
+    /// A face was removed.
+    FaceFreed,
+    /// This face was used again.
+    FaceTaken(u32),
+    /// A face was added at the end.
+    FaceAdded,
+    /// A vertex was removed.
+    VertexFreed,
+    /// This vertex was used again.
+    VertexTaken(u32),
+    /// A vertex was added at the end.
+    VertexAdded,
+}
+
+/// The half-edge that follows `h` in its face.
+#[inline(always)]
+#[must_use]
+pub fn next(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The half-edge before `h` in its face.
+#[inline(always)]
+#[must_use]
+pub fn previous(h: u32) -> u32 {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
+impl HalfEdges {
+    /// Vertex numbers lie below this; some may have been removed.
+    #[must_use]
+    pub fn vertex_slots(&self) -> usize {
+        self.outgoing.len()
+    }
+
+    /// Half-edge numbers lie below this; some may have been removed.
+    #[must_use]
+    pub fn half_edge_slots(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// Number of faces.
+    #[must_use]
+    pub fn faces(&self) -> usize {
+        self.origin.len() / 3 - self.free_faces.len()
+    }
+
+    /// Whether the vertex is there and has a face.
+    #[inline]
+    #[must_use]
+    pub fn has_vertex(&self, v: u32) -> bool {
+        self.outgoing[v as usize] != NONE
+    }
+
+    /// Whether the half-edge belongs to a face that is there.
+    #[inline]
+    #[must_use]
+    pub fn has_half_edge(&self, h: u32) -> bool {
+        self.origin[h as usize] != NONE
+    }
+
+    /// The vertex at which `h` begins.
+    #[inline(always)]
+    #[must_use]
+    pub fn origin(&self, h: u32) -> u32 {
+        self.origin[h as usize]
+    }
+
+    /// The vertex at which `h` ends.
+    #[inline(always)]
+    #[must_use]
+    pub fn target(&self, h: u32) -> u32 {
+        self.origin[next(h) as usize]
+    }
+
+    /// The half-edge on the other side; [`NONE`] at the border.
+    #[inline(always)]
+    #[must_use]
+    pub fn twin(&self, h: u32) -> u32 {
+        self.twin[h as usize]
+    }
+
+    /// A half-edge that leaves `v`, the first of the fan at a border vertex; [`NONE`] for a vertex without faces.
+    #[inline(always)]
+    #[must_use]
+    pub fn outgoing(&self, v: u32) -> u32 {
+        self.outgoing[v as usize]
+    }
+
+    /// Whether `v` lies on the border.
+    #[inline]
+    #[must_use]
+    pub fn is_border(&self, v: u32) -> bool {
+        let h = self.outgoing(v);
+        h != NONE && self.twin(h) == NONE
+    }
+
+    /// The half-edges that leave `v`, counter-clockwise, one for each of its faces. A border vertex has one neighbour more:
+    /// the origin of the half-edge before the last.
+    #[inline]
+    pub fn around(&self, v: u32) -> Around<'_> {
+        let first = self.outgoing(v);
+        Around { mesh: self, first, at: first }
+    }
+
+    /// The neighbours of `v`, counter-clockwise.
+    #[inline]
+    pub fn neighbours(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
+        let mut around = self.around(v);
+        let mut last = NONE;
+        core::iter::from_fn(move || {
+            if let Some(h) = around.next() {
+                last = previous(h);
+                return Some(self.target(h));
+            }
+            // Behind the last face of an open fan.
+            let end = core::mem::replace(&mut last, NONE);
+            (end != NONE && self.twin(end) == NONE).then(|| self.origin(end))
+        })
+    }
+
+    /// Number of neighbours of `v`.
+    #[must_use]
+    pub fn valence(&self, v: u32) -> usize {
+        self.neighbours(v).count()
+    }
+
+    /// The half-edge from `a` to `b`, if there is one.
+    #[must_use]
+    pub fn find(&self, a: u32, b: u32) -> Option<u32> {
+        self.around(a).find(|&h| self.target(h) == b)
+    }
+
+    /// Whether `a` and `b` are neighbours.
+    #[must_use]
+    pub fn is_adjacent(&self, a: u32, b: u32) -> bool {
+        self.neighbours(a).any(|other| other == b)
+    }
+
+    /// The half-edges of all faces that are there, each edge once: by the half-edge of the smaller number, or by the one there is.
+    pub fn edges(&self) -> impl Iterator<Item = u32> + '_ {
+        // At the border the twin is the largest number.
+        (0..self.origin.len() as u32).filter(|&h| self.has_half_edge(h) && h < self.twin(h))
+    }
+
+    /// The faces that are there, by their vertices.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.origin.chunks_exact(3).filter(|corners| corners[0] != NONE).map(|c| [c[0], c[1], c[2]])
+    }
+
+    /// Euler number V − E + F; vertices without faces do not count.
+    #[must_use]
+    pub fn euler(&self) -> i64 {
+        let vertices = self.outgoing.iter().filter(|&&h| h != NONE).count() as i64;
+        vertices - self.edges().count() as i64 + self.faces() as i64
+    }
+
+    /// Bytes held on the heap.
+    #[must_use]
+    pub fn heap_bytes(&self) -> usize {
+        4 * (self.origin.capacity()
+            + self.twin.capacity()
+            + self.outgoing.capacity()
+            + self.free_faces.capacity()
+            + self.free_vertices.capacity())
+            + size_of::<Change>() * self.journal.capacity()
+    }
+
+    /// Holds the surface to the invariants of the module's documentation.
+    ///
+    /// Cost: linear, as long as no vertex has very many faces.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, and where, in words.
+    pub fn check(&self) -> Result<(), String> {
+        let slots = self.origin.len() as u32;
+        let mut faces_at = vec![0_usize; self.outgoing.len()];
+        let mut is_free = vec![false; self.origin.len() / 3];
+        self.free_faces.iter().for_each(|&f| is_free[f as usize] = true);
+        for f in 0..slots / 3 {
+            let corners: [u32; 3] = core::array::from_fn(|k| self.origin(3 * f + k as u32));
+            let is_there = corners[0] != NONE;
+            if is_there == is_free[f as usize] {
+                return Err(format!("face {f} is both there and free, or neither"));
+            }
+            if !is_there {
+                continue;
+            }
+            if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
+                return Err(format!("face {f} has a vertex twice: {corners:?}"));
+            }
+            for &v in &corners {
+                if v as usize >= self.outgoing.len() || !self.has_vertex(v) {
+                    return Err(format!("face {f} has the vertex {v}, which is not there"));
+                }
+                faces_at[v as usize] += 1;
+            }
+            for h in 3 * f..3 * f + 3 {
+                let t = self.twin(h);
+                if t != NONE && (t >= slots || self.twin(t) != h) {
+                    return Err(format!("the twin {t} of half-edge {h} has another twin"));
+                }
+                if t != NONE && (self.origin(t) != self.target(h) || self.target(t) != self.origin(h)) {
+                    return Err(format!("half-edge {h} and its twin {t} run between different vertices"));
+                }
+            }
+        }
+        if let Some(v) = self.free_vertices.iter().find(|&&v| self.has_vertex(v)) {
+            return Err(format!("vertex {v} is both there and free"));
+        }
+        (0..)
+            .zip(faces_at)
+            .filter(|&(v, _)| self.has_vertex(v))
+            .try_for_each(|(v, faces)| self.check_fan(v, faces))
+    }
+
+    /// Holds the fan at `v`, which has so many faces, to the invariants.
+    fn check_fan(&self, v: u32, faces: usize) -> Result<(), String> {
+        if self.origin(self.outgoing(v)) != v {
+            return Err(format!("the half-edge of vertex {v} leaves another"));
+        }
+        let fan = self.around(v).take(faces + 1).count();
+        if fan != faces {
+            return Err(format!("the fan at vertex {v} has {fan} of its {faces} faces"));
+        }
+        let is_open = self.around(v).any(|h| self.twin(previous(h)) == NONE);
+        if is_open != self.is_border(v) {
+            return Err(format!("the half-edge of the border vertex {v} is not the first of its fan"));
+        }
+        let neighbours: Vec<u32> = self.neighbours(v).collect();
+        if neighbours.iter().enumerate().any(|(k, other)| neighbours[..k].contains(other)) {
+            return Err(format!("vertex {v} has a neighbour twice: {neighbours:?}"));
+        }
+        Ok(())
+    }
+}
+
+/// The half-edges that leave a vertex: see [`HalfEdges::around`].
+#[derive(Clone, Debug)]
+pub struct Around<'a> {
+    mesh: &'a HalfEdges,
+    first: u32,
+    at: u32,
+}
+
+impl Iterator for Around<'_> {
+    type Item = u32;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<u32> {
+        let here = self.at;
+        if here == NONE {
+            return None;
+        }
+        let left = self.mesh.twin(previous(here));
+        self.at = if left == self.first { NONE } else { left };
+        Some(here)
+    }
+}
