@@ -61,3 +61,19 @@ export function createStore() {
 }
 
 /** @typedef {ReturnType<typeof createStore>} Store */
+
+/** Changes a part of the shareable state. @param {Store} store @param {Partial<import('./types.js').State>} patch */
+export function change({ state }, patch) {
+  state.value = { ...state.value, ...patch };
+}
+
+/** Changes how the state looks. @param {Store} store @param {Partial<import('./types.js').ViewState>} patch */
+export function changeView(store, patch) {
+  change(store, { view: { ...store.state.value.view, ...patch } });
+}
+
+/** What the core says of itself. @param {Store} store @throws before the core has arrived */
+export function description({ description }) {
+  if (!description.value) throw new Error('The core is not there yet.');
+  return description.value;
+}

@@ -225,6 +225,27 @@ export function sanitize(raw, description, has_file = false) {
 }
 
 /**
+ * A state with some of it changed: another surface, or a formula in place of a model, brings its own parameters and box.
+ * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} has_file
+ * @returns {{state: State, reset: string[]}}
+ */
+export function mergeState(now, patch, description, has_file) {
+  const another =
+    typeof patch.surface === 'string'
+      ? patch.surface !== now.surface
+      : typeof patch.formula === 'string' && fromPoints(description, now.surface);
+  const base = another ? { ...defaultState(description), view: now.view, settings: now.settings } : now;
+  const raw = {
+    ...base,
+    // The surface named brings its own.
+    formula: patch.surface ? undefined : now.formula,
+    ...patch,
+    view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) },
+  };
+  return sanitize(raw, description, has_file);
+}
+
+/**
  * The value a setting would take, or undefined when there is no such setting or no way to read the value.
  * @param {Description} description @param {string} name @param {unknown} value
  * @returns {number | string | undefined}

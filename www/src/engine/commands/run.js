@@ -1,0 +1,30 @@
+/**
+ * Commands that start and stop the sampler.
+ *
+ * @module
+ */
+import { completeSettings } from '../share/state.js';
+import { description } from '../store.js';
+
+/** Relaxation steps that one command may ask for. */
+const MOST_STEPS = 1000;
+
+/** @typedef {Pick<import('../types.js').EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */
+
+/** @param {import('../index.js').Parts} parts @returns {RunCommands} */
+export function runCommands({ store, runs, look }) {
+  return {
+    run() {
+      look.allLevels();
+      runs.resample({ grow: true });
+    },
+    stop: () => runs.stop(),
+    generateOnly() {
+      const settings = { ...completeSettings(description(store), store.state.value.settings), relax_steps: 0 };
+      runs.resample({ grow: true, settings });
+    },
+    relax(steps) {
+      if (steps > 0) runs.sampling.relax(Math.min(MOST_STEPS, Math.round(steps)));
+    },
+  };
+}

@@ -1,0 +1,52 @@
+/**
+ * Commands that take something off the page: a link, a picture, a file.
+ *
+ * @module
+ */
+import { surfaceOf } from '../share/state.js';
+import { description } from '../store.js';
+import { FILE_SURFACE } from '../types.js';
+
+/** Writing files is not part of the first picture: fetched once the sampler is there, so that it is there when it is wanted. */
+export const fetchExports = () => import('../share/exports.js');
+
+/** @typedef {Pick<import('../types.js').EngineCommands, 'shareUrl' | 'loadUrl' | 'savePng' | 'exportFile'>} ShareCommands */
+
+/** @param {import('../index.js').Parts} parts @returns {ShareCommands} */
+export function shareCommands({ store, columns, picture: { viewer }, runs, address }) {
+  return {
+    async shareUrl() {
+      if (store.state.value.surface === FILE_SURFACE) {
+        store.notice.value = {
+          id: 'share-file',
+          kind: 'info',
+          text: `A link cannot hold the points of ${store.model.value?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`,
+        };
+      }
+      return address.url();
+    },
+    loadUrl: (hash) => address.load(hash),
+    async savePng({ width, height, transparent = false } = {}) {
+      const { LARGEST_PICTURE_PX, png } = await fetchExports();
+      const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
+        Math.min(LARGEST_PICTURE_PX, Math.max(1, Math.round(wanted ?? own)));
+      const { screen } = viewer;
+      const shot = await viewer.pixels(side(width, screen.width), side(height, screen.height), transparent);
+      return png(shot.width, shot.height, shot.pixels);
+    },
+    async exportFile(format) {
+      const { shown } = runs.sampling;
+      if (!shown) throw new Error('There is no surface.');
+      const what = titleOf(shown.request.field);
+      const { csv, ply } = await fetchExports();
+      return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
+    },
+  };
+
+  /** A field in words. @param {import('../types.js').FieldRequest} field */
+  function titleOf(field) {
+    const model = field.points && runs.loader.client.get(field.points)?.info.info;
+    if (model) return `${model.name}, interpolated from ${model.centres} points`;
+    return `f = ${field.formula ?? surfaceOf(description(store), field.surface ?? '')?.formula}`;
+  }
+}

@@ -1,0 +1,98 @@
+/**
+ * Commands that change what is sampled: surface, formula, parameters, clip box, settings.
+ *
+ * @module
+ */
+import { shapeOf } from '../points/loader.js';
+import { fromPoints, modelOf, surfaceOf, validBounds, validSetting } from '../share/state.js';
+import { change, description } from '../store.js';
+import { FILE_SURFACE } from '../types.js';
+
+/** After so long without a key a name that may be the beginning of another counts as written. */
+const NAME_MS = 1000;
+
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setSetting' | 'resetSetting'>} InputCommands */
+
+/** @param {import('../index.js').Parts} parts @returns {SurfaceCommands} */
+export function surfaceCommands({ store, runs, look, framing }) {
+  const { state } = store;
+  return {
+    setSurface(id) {
+      const about = store.description.value;
+      const surface = surfaceOf(about, id);
+      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.has_file)) return;
+      look.allLevels();
+      change(store, shapeOf(id, surface?.formula));
+      runs.choose({ grow: true, fit: true });
+    },
+    openFile(file) {
+      // A formula that waits for its end would take the file's place.
+      runs.forgetLater();
+      return runs.loader.openFile(file);
+    },
+    cancelLoading: () => runs.loader.cancel(),
+    setFormula(text, { unfinished = false } = {}) {
+      const { surface, formula } = state.value;
+      if (text === formula) return;
+      // A model has no formula to change: the one typed starts from the default surface.
+      const fresh = fromPoints(store.description.value, surface);
+      change(store, fresh ? shapeOf(description(store).default_surface, text) : { formula: text });
+      framing.written();
+      framing.hold();
+      if (unfinished) runs.chooseLater(NAME_MS);
+      else runs.choose();
+    },
+    restore(shape) {
+      const another = shape.surface !== state.value.surface;
+      if (another) look.allLevels();
+      change(store, shape);
+      look.show();
+      runs.choose({ grow: another, fit: another });
+    },
+  };
+}
+
+/** @param {import('../index.js').Parts} parts @returns {InputCommands} */
+export function inputCommands({ store, runs, look }) {
+  const { state } = store;
+  /** @param {boolean} live */
+  const resample = (live) => (live ? runs.resampleLive() : runs.resample());
+  return {
+    setParameter(name, value, { live = false } = {}) {
+      if (!Number.isFinite(value)) return;
+      change(store, { parameters: { ...state.value.parameters, [name]: value } });
+      resample(live);
+    },
+    resetParameter(name) {
+      const { [name]: _, ...parameters } = state.value.parameters;
+      change(store, { parameters });
+      runs.resample();
+    },
+    declareParameter(name) {
+      const { declared } = state.value;
+      if (declared.some((p) => p.name === name)) return;
+      change(store, { declared: [...declared, { name, label: name, value: 1, min: -2, max: 2, step: 0.01 }] });
+      runs.resample();
+    },
+    setBounds(bounds, { live = false } = {}) {
+      const valid = bounds === null ? null : validBounds(bounds);
+      if (valid === undefined) return;
+      change(store, { bounds: valid });
+      look.show();
+      resample(live);
+    },
+    setSetting(name, value, { live = false } = {}) {
+      const about = store.description.value;
+      const valid = about ? validSetting(about, name, value) : undefined;
+      if (valid === undefined) return;
+      change(store, { settings: { ...state.value.settings, [name]: valid } });
+      resample(live);
+    },
+    resetSetting(name) {
+      const { [name]: _, ...settings } = state.value.settings;
+      change(store, { settings });
+      runs.resample();
+    },
+  };
+}

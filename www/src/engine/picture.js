@@ -1,0 +1,143 @@
+/**
+ * The picture on the page: the viewer, the hands on it, and what they tell the signals.
+ *
+ * @module
+ */
+import { batch } from '@preact/signals-core';
+import { NO_PARENT } from './columns.js';
+import { CAMERA_MS } from './console.js';
+import { changeView } from './store.js';
+import { attachControls } from './view/controls.js';
+import { Viewer } from './view/viewer.js';
+
+/**
+ * @typedef {import('./columns.js').Columns} Columns
+ * @typedef {import('./store.js').Store} Store
+ * @typedef {import('./types.js').Vec3} Vec3
+ */
+/**
+ * @typedef {object} Picture
+ * @property {Viewer} viewer
+ * @property {(index: number | null, x: number, y: number) => void} hover  tells of a particle under a point of the host, or of none
+ * @property {() => void} close
+ */
+
+/**
+ * @param {object} parts
+ * @param {HTMLElement} parts.host
+ * @param {Store} parts.store
+ * @param {Columns} parts.columns
+ * @param {import('./view/backends.js').BackendKind | null} parts.first  the way of drawing to begin with
+ * @returns {Picture}
+ */
+export function createPicture({ host, store, columns, first }) {
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let cameraTimer;
+  host.tabIndex = Math.max(host.tabIndex, 0);
+
+  const viewer = new Viewer(
+    { host, columns, look: store.state.value.view, first },
+    {
+      ...deviceEvents(store, columns),
+      onLegend(legend) {
+        store.legend.value = legend;
+      },
+      onReveal(reveal) {
+        store.reveal.value = reveal;
+      },
+      onCamera() {
+        cameraTimer ??= setTimeout(() => {
+          cameraTimer = undefined;
+          changeView(store, { camera: viewer.camera.state });
+        }, CAMERA_MS);
+      },
+    },
+  );
+
+  /** @type {Picture['hover']} */
+  const hover = (index, x, y) => {
+    if (index !== null) store.hover.value = { ...particle(columns, index), x, y };
+    else if (store.hover.value) store.hover.value = null;
+    if (viewer.look.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
+  };
+
+  const detach = attachControls({
+    host,
+    camera: viewer.camera,
+    currentView: () => viewer.currentView(),
+    moved: () => viewer.moved(),
+    fit: () => viewer.fit(),
+    point(x, y, tapped) {
+      const index = viewer.pick(x, y);
+      if (index !== null || tapped || store.hover.value) hover(index, x, y);
+    },
+    leave: () => hover(null, 0, 0),
+  });
+
+  return {
+    viewer,
+    hover,
+    close() {
+      clearTimeout(cameraTimer);
+      detach();
+      viewer.destroy();
+    },
+  };
+}
+
+/** What a person is told of the graphics device. @param {Store} store @param {Columns} columns */
+function deviceEvents(store, columns) {
+  return {
+    onDevice(/** @type {import('./view/backends.js').Device} */ { kind, renderer }) {
+      batch(() => {
+        store.backend.value = kind;
+        store.adapter.value = renderer.adapter();
+        if (store.notice.value?.id === 'device-lost') {
+          store.notice.value = { id: 'device-lost', kind: 'info', text: 'The graphics device was lost and is back.' };
+        }
+      });
+      if (columns.count > renderer.max_particles()) {
+        store.notice.value = {
+          id: 'too-many-to-draw',
+          kind: 'warn',
+          text: `The picture shows the first ${renderer.max_particles()} particles; the figures and exports hold all of them.`,
+        };
+      }
+    },
+    onLost(/** @type {string} */ kind, /** @type {string} */ message) {
+      store.notice.value = {
+        id: 'device-lost',
+        kind: 'warn',
+        text: 'The graphics device was lost and is being opened again.',
+        details: `${kind}: ${message}`,
+      };
+    },
+    onFallback(/** @type {string} */ kind, /** @type {string} */ message) {
+      // At the start this is the ordinary way down the list of back ends; later on it is news.
+      if (store.backend.value === 'starting') return;
+      store.notice.value = {
+        id: 'fallback',
+        kind: 'warn',
+        text: `Drawing with ${kind === 'webgpu' ? 'WebGPU' : 'WebGL2'} failed; the picture is drawn another way.`,
+        details: `${kind}: ${message}`,
+      };
+    },
+  };
+}
+
+/** What there is to tell of one particle. @param {Columns} columns @param {number} index */
+function particle(columns, index) {
+  const triple = (/** @type {Float32Array} */ column) =>
+    /** @type {Vec3} */ ([...column.subarray(3 * index, 3 * index + 3)]);
+  return {
+    index,
+    level: columns.levels[index],
+    parent: columns.parents[index] === NO_PARENT ? null : columns.parents[index],
+    position: triple(columns.positions),
+    normal: triple(columns.normals),
+    radius: columns.radii[index],
+    residual: columns.residual?.[index] ?? null,
+    valence: columns.valence?.[index] ?? null,
+    nearest: columns.nearest?.[index] ?? null,
+  };
+}
