@@ -124,6 +124,18 @@ export class Columns {
     this.curved = Math.max(this.curved, from + values.length / 2);
   }
 
+  /**
+   * The figures of the report, one value per particle. Those of other particles are left out.
+   * @param {{valence: Uint8Array, nearest: Float32Array, residual: Float32Array, component: Uint32Array}} figures
+   */
+  writeFigures({ valence, nearest, residual, component }) {
+    if (valence.length !== this.count) return;
+    this.valence = valence;
+    this.nearest = nearest;
+    this.residual = residual;
+    this.component = component.length === this.count ? component : null;
+  }
+
   /** Newer fates of the slots of particles from `from` on. @param {number} from @param {Uint32Array} slots */
   writeSlots(from, slots) {
     if (from + slots.length > this.count) return;

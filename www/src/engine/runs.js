@@ -10,7 +10,7 @@ import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
 
 /**
- * @typedef {import('./sampling/client.js').SampleRequest} SampleRequest
+ * @typedef {import('./sampling/run-state.js').SampleRequest} SampleRequest
  * @typedef {import('./store.js').Store} Store
  * @typedef {{grow?: boolean, fit?: boolean, settings?: import('./types.js').Settings}} RunOptions
  */
@@ -29,7 +29,7 @@ export class Runs {
    * @param {object} parts
    * @param {Store} parts.store
    * @param {import('./columns.js').Columns} parts.columns
-   * @param {import('./sampling/client.js').Picture} parts.picture
+   * @param {import('./sampling/presenter.js').Picture} parts.picture
    * @param {() => void} parts.onReady  the core is there for the first time
    */
   constructor({ store, columns, picture, onReady }) {

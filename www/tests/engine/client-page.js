@@ -5,7 +5,7 @@ import { SamplingClient } from '../../src/engine/sampling/client.js';
 import { createStore } from '../../src/engine/store.js';
 import { description } from './description.js';
 
-/** @typedef {import('../../src/engine/sampling/client.js').SampleRequest} SampleRequest */
+/** @typedef {import('../../src/engine/sampling/run-state.js').SampleRequest} SampleRequest */
 
 /** @type {any[]} */
 export let workers = [];

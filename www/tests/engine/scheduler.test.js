@@ -22,7 +22,7 @@ describe('latest wins', () => {
       clock.ms = (k * 1000) / 120;
       scheduler.submit(live(k));
       // The worker takes 40 ms for each job.
-      if (scheduler.running && clock.ms - scheduler.running.since_ms >= 40) scheduler.ended(scheduler.running.id);
+      if (scheduler.running && clock.ms - scheduler.running.sinceMs >= 40) scheduler.ended(scheduler.running.id);
       most = Math.max(most, sent.length);
     }
     while (scheduler.running) scheduler.ended(scheduler.running.id);

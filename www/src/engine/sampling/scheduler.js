@@ -25,12 +25,12 @@ const FEWEST = 500;
  * @template {{live: boolean}} T
  */
 export class Scheduler {
-  /** @param {(id: number, request: T) => void} dispatch @param {() => number} now_ms */
-  constructor(dispatch, now_ms = () => performance.now()) {
+  /** @param {(id: number, request: T) => void} dispatch @param {() => number} nowMs */
+  constructor(dispatch, nowMs = () => performance.now()) {
     this.dispatch = dispatch;
-    this.now_ms = now_ms;
-    this.last_id = 0;
-    /** @type {{id: number, request: T, since_ms: number} | null} */
+    this.nowMs = nowMs;
+    this.lastId = 0;
+    /** @type {{id: number, request: T, sinceMs: number} | null} */
     this.running = null;
     /** @type {T | null} */
     this.waiting = null;
@@ -39,7 +39,7 @@ export class Scheduler {
   /** @param {T} request */
   submit(request) {
     const { running } = this;
-    if (running?.request.live && request.live && this.now_ms() - running.since_ms < PATIENCE_MS) {
+    if (running?.request.live && request.live && this.nowMs() - running.sinceMs < PATIENCE_MS) {
       this.waiting = request;
       return;
     }
@@ -49,9 +49,9 @@ export class Scheduler {
 
   /** @param {T} request */
   send(request) {
-    this.last_id += 1;
-    this.running = { id: this.last_id, request, since_ms: this.now_ms() };
-    this.dispatch(this.last_id, request);
+    this.lastId += 1;
+    this.running = { id: this.lastId, request, sinceMs: this.nowMs() };
+    this.dispatch(this.lastId, request);
   }
 
   /**

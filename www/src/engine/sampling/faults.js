@@ -1,0 +1,67 @@
+/**
+ * What a person is told when the sampler fails.
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('../types.js').Notice} Notice
+ * @typedef {import('./run-state.js').RunRequest} RunRequest
+ * @typedef {import('./supervisor.js').Crash} Crash
+ */
+
+/**
+ * The worker was replaced; the run it was at is made again, or was given up.
+ * @param {Crash} crash @param {RunRequest | null} lost @param {{again: boolean, version: string}} context
+ * @returns {Notice}
+ */
+export function restartNotice(crash, lost, { again, version }) {
+  const what = crash.cause === 'hang' ? 'The sampler fell silent' : 'The sampler stopped on an error';
+  const harmless = again || !lost;
+  const outcome = harmless ? 'Nothing was lost.' : 'The same input stopped it twice: change the formula or a setting.';
+  return {
+    id: crash.cause,
+    kind: harmless ? 'warn' : 'error',
+    text: `${what} and was restarted. ${outcome}`,
+    details: crashReport(crash, lost, version),
+  };
+}
+
+/** @param {Crash} crash @param {RunRequest | null} lost @param {string} version @param {() => void} run @returns {Notice} */
+export const safeModeNotice = (crash, lost, version, run) => ({
+  id: 'safe-mode',
+  kind: 'error',
+  text: 'The sampler failed four times within a minute and is now off. The picture, your formula and the exports stay.',
+  details: crashReport(crash, lost, version),
+  action: { label: 'Start it again', run },
+});
+
+/** @param {string} text @param {() => void} run @returns {Notice} */
+export const loadNotice = (text, run) => ({
+  id: 'load',
+  kind: 'error',
+  text,
+  details: text,
+  action: { label: 'Try again', run },
+});
+
+/** The settings were refused. @param {string} words @returns {Notice} */
+export const refusalNotice = (words) => ({
+  id: 'size',
+  kind: 'error',
+  text: `${words.charAt(0).toUpperCase()}${words.slice(1)}.`,
+});
+
+/** A report worth copying. @param {Crash} crash @param {RunRequest | null} lost @param {string} version  of the core */
+function crashReport(crash, lost, version) {
+  return [
+    `Marching Particles ${version}: the sampler ${crash.cause === 'hang' ? 'fell silent' : 'stopped on an error'}`,
+    crash.message,
+    crash.stack,
+    `job: ${lost ? JSON.stringify(lost) : 'none'}`,
+    `restarts in the last minute: ${crash.restarts}`,
+    typeof navigator === 'undefined' ? '' : navigator.userAgent,
+  ]
+    .filter(Boolean)
+    .join('\n');
+}
