@@ -7,6 +7,8 @@
 
 /** Parent index of a seed, as the core writes it. */
 export const NO_PARENT = 0xffffffff;
+/** Slot fates as the core numbers them. */
+export const FATE = { open: 0, parent: 1, added: 2, matched: 3, notConverged: 4, outside: 5, undefined: 6, capped: 7 };
 /** Set in `slots` where the surface has a singular point within 2r of the particle. */
 export const SINGULAR = 1 << 30;
 /** Level of what is drawn with the particles and is none of them. */

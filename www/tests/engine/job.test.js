@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import { nextBudget, runJob } from '../../src/engine/sampling/job.js';
+import { nextBudget } from '../../src/engine/bundle/budget.js';
+import { runJob } from '../../src/engine/sampling/job.js';
 import { Jobs } from '../../src/engine/sampling/jobs.js';
 import { fakeCore } from './fake-core.js';
 

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { loadModule } from '../../src/engine/sampling/load.js';
+import { loadModule } from '../../src/engine/bundle/load.js';
 
 // The smallest module: a header and nothing else.
 const EMPTY = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0);

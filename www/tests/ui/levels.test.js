@@ -1,6 +1,5 @@
 import { beforeAll, describe, expect, test } from 'vitest';
-import { Columns, NO_PARENT } from '../../src/engine/columns.js';
-import { FATE } from '../../src/engine/view/colouring.js';
+import { Columns, FATE, NO_PARENT } from '../../src/engine/columns.js';
 import { setLocale } from '../../src/ui/format.js';
 import { facing } from '../../src/ui/levels/facing.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';

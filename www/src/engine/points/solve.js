@@ -4,8 +4,8 @@
  *
  * @module
  */
-import { nextBudget } from '../sampling/job.js';
-import { words } from '../sampling/load.js';
+import { nextBudget } from '../bundle/budget.js';
+import { words } from '../bundle/load.js';
 
 /**
  * @typedef {import('./protocol.js').Order} Order

@@ -5,7 +5,7 @@
  */
 import init, { Points } from '../../wasm/points/points.js';
 import wasmUrl from '../../wasm/points/points_bg.wasm?url';
-import { loadModule, words } from '../sampling/load.js';
+import { loadModule, words } from '../bundle/load.js';
 import { solve } from './solve.js';
 
 /**

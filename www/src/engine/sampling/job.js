@@ -4,6 +4,7 @@
  *
  * @module
  */
+import { nextBudget } from '../bundle/budget.js';
 import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
@@ -46,8 +47,6 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {() => boolean} room  whether the page has drawn what it was sent
  */
 
-/** A step of the loop should take about this long: short enough for a Stop, long enough that its overhead is lost in it. */
-const STEP_MS = 6;
 /**
  * The first budget of a phase, in work units; the pace then follows the machine. A unit of the slowest sampling, the paper's own
  * placement on a model, takes a third of a millisecond: a Stop is heard within 100 ms also then.
@@ -55,19 +54,12 @@ const STEP_MS = 6;
 const FIRST_BUDGET = 256;
 /** The same of a measurement, whose pieces take up to a tenth of a millisecond. */
 const FIRST_PIECES = 32;
-const LARGEST_BUDGET = 1 << 22;
 /** One picture at 60 Hz. */
 const PICTURE_MS = 15;
 /** Which of the four clocks a phase of the core runs on. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
   if (phase === 'relaxation') return 'relaxation';
   return phase === 'generation' ? 'generation' : 'seeding';
-}
-
-/** The budget that would have taken the wanted time, changed by no more than a factor of four down and two up. */
-export function nextBudget(/** @type {number} */ budget, /** @type {number} */ took_ms, target_ms = STEP_MS) {
-  const factor = Math.min(2, Math.max(0.25, target_ms / Math.max(took_ms, 0.05)));
-  return Math.round(Math.min(LARGEST_BUDGET, Math.max(1, budget * factor)));
 }
 
 /** Columns of no particle. */

@@ -97,7 +97,7 @@
  * @property {Float32Array} residual
  * @property {Uint32Array} component
  */
-/** Why the sampler could not be loaded. @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault */
+/** @typedef {import('../bundle/load.js').LoadFault} LoadFault */
 /**
  * @typedef {{type: 'ready', description: Description}
  *   | {type: 'failed', fault: LoadFault, message: string}

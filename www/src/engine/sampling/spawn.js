@@ -5,7 +5,7 @@
  * @module
  */
 import coreUrl from '../../wasm/core/core_bg.wasm?url';
-import { LoadError, loadModule, words } from './load.js';
+import { LoadError, loadModule, words } from '../bundle/load.js';
 
 /** The core, fetched and compiled; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;

@@ -5,9 +5,9 @@
  * @module
  */
 import init, { Core } from '../../wasm/core/core.js';
+import { words } from '../bundle/load.js';
 import { curvatureColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
-import { words } from './load.js';
 import { BEAT_MS } from './protocol.js';
 
 /**

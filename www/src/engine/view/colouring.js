@@ -3,6 +3,7 @@
  *
  * @module
  */
+import { FATE } from '../columns.js';
 import { hexFromPacked } from './oklab.js';
 import { CYCLE, PALETTES, PIECES } from './palettes.js';
 
@@ -12,9 +13,6 @@ import { CYCLE, PALETTES, PIECES } from './palettes.js';
  * @typedef {import('../types.js').Legend} Legend
  * @typedef {import('./palettes.js').Theme} Theme
  */
-
-/** Slot fates as the core numbers them. */
-export const FATE = { open: 0, parent: 1, added: 2, matched: 3, notConverged: 4, outside: 5, undefined: 6, capped: 7 };
 
 /** Slots of a particle: six around one of a uniform run, as many as there is room for around one of an adaptive run. */
 const SLOTS = 6;

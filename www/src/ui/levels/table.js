@@ -1,6 +1,5 @@
 /** What each generation level holds and how it came about, read from the particles; and that in words. Pure. */
-import { NO_PARENT } from '../../engine/columns.js';
-import { FATE } from '../../engine/view/colouring.js';
+import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
 /** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'last_level'>} Particles */

@@ -4,7 +4,7 @@
  * @module
  */
 
-/** @typedef {import('./protocol.js').LoadFault} LoadFault */
+/** Why a bundle could not be loaded. @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault */
 
 /** A module with one 128-bit constant: valid exactly where SIMD is. */
 const SIMD_PROBE = new Uint8Array([
