@@ -69,6 +69,10 @@ const ROOMS: [Room; 3] = [
             ("front", &["settings", "fates", "projection", "neighbours", "discovery", "sizing"]),
             ("relaxation", &["projection", "neighbours", "sizing"]),
             ("message", &["discovery", "phase"]),
+            ("progress", &["fates", "phase"]),
+            ("attempt", &["settings", "projection", "discovery", "sizing"]),
+            // The state machine, which alone knows every room.
+            ("run", &["settings", "phase", "attempt", "discovery", "front", "relaxation"]),
         ],
     ),
     ("field", &[("formula", &[]), ("gallery", &["formula"]), ("model", &[]), ("rbf", &[]), ("scaled", &[])]),

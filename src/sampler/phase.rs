@@ -1,4 +1,4 @@
-//! What a run is doing, and why it ended.
+//! The phases of a run: their public names, and the state that each of them carries.
 
 use serde::Serialize;
 
@@ -39,4 +39,89 @@ pub enum StopReason {
     Undefined,
     /// The radius is too large for the surface: no child fits.
     OneParticle,
+}
+
+/// The present phase and the state that only this phase has.
+///
+/// ```text
+/// Idle ──▶ Seeding ◀──▶ Generation ◀──▶ Search ──▶ Filling
+///             ▲                            │          │
+///             └──── the count is missed ───┴──────────┤
+///                                                     ▼
+///                      Done ◀── Marking ◀──────── Relaxation
+/// ```
+///
+/// `Sampler::next` makes every transition. A run that is cancelled, or that needs no relaxation, goes to `Marking` at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PhaseState {
+    /// There is no run.
+    Idle,
+    /// Looks for a survey point that no particle covers.
+    Seeding(SurveyCursor),
+    /// Grows a front from a seed. Afterwards the seeding goes on from the cursor; there is none where a witness of the search
+    /// was the seed.
+    Generation(Option<SurveyCursor>),
+    /// Looks for a witness that no particle covers.
+    Search,
+    /// Fills the gaps that the fronts have left.
+    Filling,
+    /// Moves the particles to more even distances.
+    Relaxation,
+    /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
+    Marking(StopReason),
+    /// The run has ended.
+    Done(StopReason),
+}
+
+impl PhaseState {
+    /// The name that the phase has outside.
+    pub(super) fn name(self) -> Phase {
+        match self {
+            Self::Idle => Phase::Idle,
+            Self::Seeding(_) => Phase::Seeding,
+            Self::Generation(_) | Self::Filling => Phase::Generation,
+            Self::Search => Phase::Search,
+            Self::Relaxation => Phase::Relaxation,
+            Self::Marking(_) | Self::Done(_) => Phase::Done,
+        }
+    }
+
+    /// Why the run has ended, if it has.
+    pub(super) fn stop_reason(self) -> Option<StopReason> {
+        match self {
+            Self::Marking(reason) | Self::Done(reason) => Some(reason),
+            _ => None,
+        }
+    }
+}
+
+/// The order in which the survey's points are tried as seeds: one chosen at random, then the others in grid order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurveyCursor {
+    first: usize,
+    tried: usize,
+    count: usize,
+}
+
+impl SurveyCursor {
+    /// Starts with one of the `count` points, chosen by the number `random`.
+    pub(super) fn new(count: usize, random: u64) -> Self {
+        let first = if count == 0 { 0 } else { (random % count as u64) as usize };
+        Self { first, tried: 0, count }
+    }
+}
+
+impl Iterator for SurveyCursor {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        let point = match self.tried {
+            k if k >= self.count => return None,
+            0 => self.first,
+            k if k <= self.first => k - 1,
+            k => k,
+        };
+        self.tried += 1;
+        Some(point)
+    }
 }

@@ -28,6 +28,8 @@ const NO_CROSSING: f32 = -1.0;
 /// What a survey found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
+    /// What the field was multiplied by, so that its gradient can be squared in single precision.
+    pub(crate) factor: f32,
     /// Points of the surface, spread over it, in grid order.
     pub(crate) position: Vec<Vec3>,
     /// Unit normals there.

@@ -176,11 +176,6 @@ impl Front {
         true
     }
 
-    /// Whether the front has come to the gaps.
-    pub(crate) fn is_filling(&self) -> bool {
-        self.filling
-    }
-
     /// Ends the front where it is: what is not final is dropped.
     pub(crate) fn stop(&mut self, particles: &mut Particles) {
         match self.sampling {

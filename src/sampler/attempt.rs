@@ -1,0 +1,145 @@
+//! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
+
+use crate::math::SQRT_3;
+use crate::sampler::discovery::survey::Survey;
+use crate::sampler::projection::{Tolerance, tolerance};
+use crate::sampler::settings::{Settings, SizeMode};
+use crate::sampler::sizing::Sizing;
+
+/// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
+/// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
+const PACKING: f64 = 1.08;
+
+/// The same for the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces.
+const ADAPTIVE_PACKING: f64 = 1.02;
+
+/// A wanted count above this is approached through a pilot run, which measures the packing.
+const PILOT_FROM: f64 = 8_000.0;
+/// Size of a pilot run as a share of the wanted count.
+const PILOT_SHARE: f64 = 1.0 / 20.0;
+/// Fewest particles of a pilot run.
+const LEAST_PILOT: f64 = 1_500.0;
+
+/// Columns are reserved for the expected count times this.
+const RESERVE: f64 = 1.05;
+
+/// A wanted count counts as met within this share.
+pub(crate) const COUNT_TOLERANCE: f64 = 0.03;
+
+/// Attempts at meeting a wanted count.
+const MAX_ATTEMPTS: u32 = 4;
+
+/// One attempt at covering the surface.
+#[derive(Clone)]
+pub(super) struct Attempt {
+    /// Repulsion radius. Of an adaptive run it is the one at which as many particles of equal radius would cover the surface.
+    pub(super) radius: f64,
+    /// The radius field of an adaptive run.
+    pub(super) sizing: Option<Sizing>,
+    /// Estimated area of the surface.
+    area: f64,
+    /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
+    packing: f64,
+    /// Whether this attempt only measures the packing.
+    is_pilot: bool,
+    /// Attempts completed before this one.
+    completed: u32,
+}
+
+impl Default for Attempt {
+    fn default() -> Self {
+        Self { radius: 1.0, sizing: None, area: 0.0, packing: PACKING, is_pilot: false, completed: 0 }
+    }
+}
+
+impl Attempt {
+    /// The first attempt on a surface of the estimated `area` in a box of the given `diagonal`.
+    pub(super) fn first(settings: &Settings, area: f64, diagonal: f64, sizing: Option<Sizing>) -> Self {
+        let packing = if sizing.is_some() { ADAPTIVE_PACKING } else { PACKING };
+        let mut attempt = Self { radius: 1.0, sizing, area, packing, is_pilot: false, completed: 0 };
+        attempt.radius = settings.radius_share * diagonal;
+        if settings.size_mode == SizeMode::Count {
+            let wanted = f64::from(settings.count);
+            attempt.is_pilot = wanted > PILOT_FROM;
+            let first = if attempt.is_pilot { (wanted * PILOT_SHARE).max(LEAST_PILOT) } else { wanted };
+            let radius = (attempt.count_times_radius_sq() / first).sqrt();
+            if radius > 0.0 {
+                attempt.radius = radius;
+            }
+        }
+        let uniform = attempt.count_times_radius_sq() / (attempt.radius * attempt.radius);
+        if let Some(sizing) = &mut attempt.sizing
+            && settings.size_mode == SizeMode::Count
+        {
+            sizing.scale_to(uniform / packing);
+        }
+        attempt.follow_sizing();
+        attempt
+    }
+
+    /// The number of particles of radius r that are expected, times r².
+    fn count_times_radius_sq(&self) -> f64 {
+        // Hexagonal packing: each particle takes 2√3 r².
+        self.area * self.packing / (2.0 * SQRT_3)
+    }
+
+    /// Takes the radius from the radius field, if there is one.
+    fn follow_sizing(&mut self) {
+        let Some(sizing) = &self.sizing else { return };
+        let radius = (self.area / (2.0 * SQRT_3 * sizing.predicted_count())).sqrt();
+        // There is none where there is no surface.
+        if radius > 0.0 && radius.is_finite() {
+            self.radius = radius;
+        }
+    }
+
+    /// Particles that the run is expected to have, whatever its limit.
+    pub(super) fn predicted_count(&self, settings: &Settings) -> f64 {
+        match settings.size_mode {
+            SizeMode::Radius => (self.count_times_radius_sq() / (self.radius * self.radius)).round(),
+            SizeMode::Count => f64::from(settings.count),
+        }
+    }
+
+    /// Particles that this attempt is expected to place.
+    pub(super) fn expected_count(&self) -> f64 {
+        self.area * self.packing / (2.0 * SQRT_3 * self.radius * self.radius)
+    }
+
+    /// Particles to reserve room for.
+    pub(super) fn reserved(count: f64, settings: &Settings) -> usize {
+        (count * RESERVE).min(f64::from(settings.max_particles)) as usize
+    }
+
+    /// Smallest and largest radius of a particle.
+    pub(super) fn radii(&self) -> [f32; 2] {
+        match &self.sizing {
+            Some(sizing) => [sizing.smallest(), sizing.largest()],
+            None => [self.radius as f32; 2],
+        }
+    }
+
+    /// What counts as being on the surface.
+    pub(super) fn tolerance(&self, survey: &Survey) -> Tolerance {
+        tolerance(self.radius as f32, survey.resolution, survey.gradient_scale)
+    }
+
+    /// Notes that this attempt has covered the surface with `count` particles. Says whether another one, with the radius as
+    /// now corrected, should come nearer to the wanted count.
+    pub(super) fn is_corrected(&mut self, settings: &Settings, count: usize) -> bool {
+        self.completed += 1;
+        let miss = count as f64 / f64::from(settings.count);
+        let is_met = !self.is_pilot && (miss - 1.0).abs() <= COUNT_TOLERANCE;
+        if settings.size_mode == SizeMode::Radius || is_met || self.completed >= MAX_ATTEMPTS {
+            return false;
+        }
+        self.packing *= count as f64 / self.expected_count();
+        self.radius *= miss.sqrt();
+        if let Some(sizing) = &mut self.sizing {
+            sizing.scale(miss.sqrt());
+        }
+        self.follow_sizing();
+        self.is_pilot = false;
+        true
+    }
+}

@@ -1,0 +1,111 @@
+//! What a run tells its caller: the answer to the start, the state after a step, and the counts.
+
+use super::{Sampler, StopReason};
+use crate::sampler::fates::FateCounts;
+use crate::sampler::phase::{Phase, PhaseState};
+use serde::Serialize;
+
+/// Cost of a relaxation step per particle, as a share of what it costs to place the particle.
+const RELAXATION_STEP_COST: f64 = 0.25;
+
+/// What [`Sampler::start`] found out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Start {
+    /// Repulsion radius of the run.
+    pub radius: f64,
+    /// Particles to expect.
+    pub predicted_count: u64,
+    /// Estimated area of the surface in the box.
+    pub area: f64,
+    /// Things the user should know, in words.
+    pub warnings: Vec<String>,
+}
+
+/// State after a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct Progress {
+    /// Current phase.
+    pub phase: Phase,
+    /// Particles in the columns that will stay.
+    pub particles: usize,
+    /// Generation level under way.
+    pub level: u32,
+    /// Relaxation steps done.
+    pub relax_step: u32,
+    /// Relaxation steps asked for.
+    pub relax_steps: u32,
+    /// Field evaluations so far, all phases.
+    pub evaluations: u64,
+    /// Estimated share of the work done.
+    pub fraction: f64,
+    /// Set once the run has ended.
+    pub stop_reason: Option<StopReason>,
+    /// A sentence for the user where the reason needs one.
+    pub message: Option<String>,
+    /// Repulsion radius.
+    pub radius: f64,
+    /// Whether particles that were there before this step have moved or gone.
+    pub moved: bool,
+}
+
+/// Evaluations by phase, and what became of the children.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Counts {
+    /// Evaluations of the survey.
+    pub seeding_evaluations: u64,
+    /// Evaluations of the fronts, all attempts at a wanted count.
+    pub generation_evaluations: u64,
+    /// Evaluations of the fronts of the last attempt, which placed the particles.
+    pub front_evaluations: u64,
+    /// Evaluations of the relaxation.
+    pub relaxation_evaluations: u64,
+    /// Fates of the children of the last attempt.
+    pub fates: FateCounts,
+    /// Particles placed in gaps between fronts.
+    pub gaps_filled: u64,
+    /// Fronts started, each from a seed of its own.
+    pub seeds: u32,
+    /// Seeds that stayed alone beside other particles and were taken back.
+    pub left_out: u32,
+}
+
+impl Sampler {
+    /// The state as of now. [`Progress::moved`] tells of what has changed since the last step.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let particles = match self.phase {
+            PhaseState::Generation(_) | PhaseState::Filling => self.front.settled(self.particles.len()),
+            _ => self.particles.len(),
+        };
+        Progress {
+            phase: self.phase.name(),
+            particles,
+            level: self.particles.level[..particles].last().copied().unwrap_or(0),
+            relax_step: self.relaxation.steps_done(),
+            relax_steps: self.settings.relax_steps,
+            evaluations: self.projector.evaluations,
+            fraction: self.fraction(particles),
+            stop_reason: self.phase.stop_reason(),
+            message: self.message(),
+            radius: self.attempt.radius,
+            moved: self.moved,
+        }
+    }
+
+    /// Estimated share of the run that is done, with so many `particles` placed for good.
+    fn fraction(&self, particles: usize) -> f64 {
+        let relax_steps = f64::from(self.settings.relax_steps);
+        let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
+        match self.phase {
+            PhaseState::Idle => 0.0,
+            PhaseState::Seeding(_) | PhaseState::Generation(_) | PhaseState::Search | PhaseState::Filling => {
+                generation * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
+            }
+            PhaseState::Relaxation => {
+                let relaxed = f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0);
+                generation + (1.0 - generation) * relaxed
+            }
+            PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! The state machine of a run: the work of every phase, and the transitions between them.
+
+use super::Sampler;
+use crate::field::Field;
+use crate::sampler::attempt::Attempt;
+use crate::sampler::discovery::seeds::Place;
+use crate::sampler::discovery::singular;
+use crate::sampler::discovery::survey::Absence;
+use crate::sampler::front::adaptive::Surface;
+use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
+use crate::sampler::relaxation;
+use crate::sampler::settings::{GapPolicy, Sampling};
+use glam::Vec3;
+use rand_core::{Rng, SeedableRng};
+
+/// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
+/// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
+const SEARCH_SLICE: u32 = 8_192;
+/// The same of the relaxation, whose stages differ tenfold in the time of a unit.
+const RELAXATION_SLICE: u32 = 16_384;
+
+/// What makes the state machine go on.
+pub(super) enum Input<'a> {
+    /// A run starts: its field has been surveyed and its radius is known.
+    Start,
+    /// There is no memory for the run.
+    Refuse,
+    /// The caller asks for so many more relaxation steps.
+    Relax(u32),
+    /// The caller ends the run.
+    Cancel,
+    /// The caller gives a budget, of which `left` is what is left.
+    Work { field: &'a mut dyn Field, left: &'a mut u32 },
+}
+
+impl Sampler {
+    /// Makes the transition that the input asks for: the only place where the phase changes.
+    pub(super) fn next(&mut self, input: Input) {
+        let phase = self.phase;
+        self.phase = match input {
+            Input::Start => self.begin_attempt(),
+            Input::Refuse => PhaseState::Idle,
+            Input::Relax(steps) => match phase {
+                PhaseState::Marking(_) | PhaseState::Done(_) if self.particles.len() > 1 => {
+                    self.relax_again(steps)
+                }
+                _ => phase,
+            },
+            Input::Cancel => match phase {
+                PhaseState::Idle | PhaseState::Marking(_) | PhaseState::Done(_) => phase,
+                PhaseState::Seeding(_)
+                | PhaseState::Generation(_)
+                | PhaseState::Search
+                | PhaseState::Filling => {
+                    self.front.stop(&mut self.particles);
+                    PhaseState::Marking(StopReason::Cancelled)
+                }
+                PhaseState::Relaxation => {
+                    self.moved |= self.relaxation.abandon(&mut self.particles);
+                    PhaseState::Marking(StopReason::Cancelled)
+                }
+            },
+            Input::Work { field, left } => match phase {
+                PhaseState::Idle | PhaseState::Done(_) => phase,
+                PhaseState::Seeding(cursor) => self.find_seed(field, left, cursor),
+                PhaseState::Generation(after) => self.grow(field, left, after),
+                PhaseState::Search => self.search_components(field, left),
+                PhaseState::Filling => self.fill(field, left),
+                PhaseState::Relaxation => self.relax_particles(field, left),
+                PhaseState::Marking(reason) => self.mark(field, reason),
+            },
+        };
+    }
+
+    /// Empties the columns and prepares fronts of the present radius.
+    fn begin_attempt(&mut self) -> PhaseState {
+        self.moved = true;
+        self.particles.clear();
+        self.pairs.clear();
+        // Growing by doubling would hold twice the columns, and four times while they are copied.
+        let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
+        self.particles.reserve(expected);
+        self.pairs.reserve(expected);
+        let radii = (self.attempt.radius as f32, self.attempt.radii());
+        self.front.reset(&self.settings, radii, &self.survey, &self.bounds, expected);
+        self.counts.seeds = 0;
+        self.counts.left_out = 0;
+        self.counts.front_evaluations = 0;
+        self.seeds.restart();
+        let random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed).next_u64();
+        PhaseState::Seeding(SurveyCursor::new(self.survey.position.len(), random))
+    }
+
+    /// Looks for the next survey point that no particle covers and starts a front there.
+    fn find_seed(&mut self, field: &mut dyn Field, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
+        while *left > 0 {
+            let Some(i) = cursor.next() else { return PhaseState::Search };
+            *left -= 1;
+            let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
+            let start = self.projector.evaluations;
+            let is_seed =
+                !self.front.is_covered(field, &mut self.projector, &self.particles, (position, normal))
+                    && self.survey.is_zero(field, &mut self.projector, i);
+            self.counts.seeding_evaluations += self.projector.evaluations - start;
+            if is_seed && let Some(next) = self.begin_front(field, position, normal, Some(cursor)) {
+                return next;
+            }
+        }
+        PhaseState::Seeding(cursor)
+    }
+
+    /// Starts a front, after which the seeding goes on from the cursor. Where the limit on particles is reached the search is
+    /// next; where the surface has no radius an adaptive front cannot start, and there is no transition.
+    fn begin_front(
+        &mut self,
+        field: &mut dyn Field,
+        position: Vec3,
+        normal: Vec3,
+        after: Option<SurveyCursor>,
+    ) -> Option<PhaseState> {
+        if self.particles.len() >= self.settings.max_particles as usize {
+            self.front.cap();
+            return Some(PhaseState::Search);
+        }
+        let mut surface = Surface {
+            field,
+            projector: &mut self.projector,
+            sizing: self.attempt.sizing.as_ref(),
+            pairs: &mut self.pairs,
+            particles: &mut self.particles,
+        };
+        self.front.add_seed(&mut surface, position, normal).then(|| {
+            self.counts.seeds += 1;
+            PhaseState::Generation(after)
+        })
+    }
+
+    /// Lets the front grow until it has met itself, another one or the box everywhere.
+    fn grow(&mut self, field: &mut dyn Field, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
+        self.step_front(field, left);
+        if !self.front.is_done() {
+            return PhaseState::Generation(after);
+        }
+        let placed = self.particles.len();
+        self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
+        self.counts.left_out += u32::from(self.particles.len() < placed);
+        match after {
+            Some(cursor) if !self.front.capped() => PhaseState::Seeding(cursor),
+            _ => PhaseState::Search,
+        }
+    }
+
+    fn step_front(&mut self, field: &mut dyn Field, left: &mut u32) {
+        let start = self.projector.evaluations;
+        let mut surface = Surface {
+            field,
+            projector: &mut self.projector,
+            sizing: self.attempt.sizing.as_ref(),
+            pairs: &mut self.pairs,
+            particles: &mut self.particles,
+        };
+        *left = self.front.step(&mut surface, *left);
+        let evaluations = self.projector.evaluations - start;
+        self.counts.generation_evaluations += evaluations;
+        self.counts.front_evaluations += evaluations;
+    }
+
+    /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
+    /// but for the gaps.
+    fn search_components(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
+        if self.front.capped() {
+            return self.end_generation();
+        }
+        let tolerance = self.attempt.tolerance(&self.survey);
+        let slice = (*left).min(SEARCH_SLICE);
+        let unused = self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, slice);
+        if unused == 0 {
+            *left = 0;
+            return PhaseState::Search;
+        }
+        *left -= slice - unused;
+        while *left > 0 {
+            let (witness, unused) = self.seeds.next(*left);
+            *left = unused;
+            let Some(seed) = witness else {
+                let has_gaps = self.settings.gaps == GapPolicy::Fill && self.front.fill();
+                return if has_gaps { PhaseState::Filling } else { self.end_generation() };
+            };
+            let mut near = self.seeds.take_near();
+            self.front.near(&self.particles, seed.position, seed.normal, &mut near);
+            let start = self.projector.evaluations;
+            let place = self.seeds.place(field, &mut self.projector, &self.particles, seed, near, tolerance);
+            self.counts.seeding_evaluations += self.projector.evaluations - start;
+            if place == Place::Bare
+                && let Some(next) = self.begin_front(field, seed.position, seed.normal, None)
+            {
+                return next;
+            }
+        }
+        PhaseState::Search
+    }
+
+    /// Fills gaps until none is left that a particle fits into.
+    fn fill(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
+        self.step_front(field, left);
+        if !self.front.is_done() || self.front.fill() { PhaseState::Filling } else { self.end_generation() }
+    }
+
+    /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
+    fn end_generation(&mut self) -> PhaseState {
+        let count = self.particles.len();
+        if count == 0 {
+            return PhaseState::Marking(match self.survey.absence {
+                Absence::Constant => StopReason::Constant,
+                Absence::Undefined => StopReason::Undefined,
+                _ => StopReason::NoSurface,
+            });
+        }
+        if !self.front.capped() && self.attempt.is_corrected(&self.settings, count) {
+            return self.begin_attempt();
+        }
+        if self.front.fates().added == 0 && !self.front.capped() {
+            PhaseState::Marking(StopReason::OneParticle)
+        } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
+            PhaseState::Marking(self.reason_for_end())
+        } else {
+            self.begin_relaxation()
+        }
+    }
+
+    fn begin_relaxation(&mut self) -> PhaseState {
+        self.front.release();
+        self.particles.shrink();
+        self.pairs.shrink();
+        let tolerance = self.attempt.tolerance(&self.survey);
+        let law = match self.settings.sampling {
+            Sampling::Uniform => {
+                relaxation::RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance }
+            }
+            Sampling::Adaptive => relaxation::RepulsionLaw::Overlap {
+                resolution: self.survey.resolution,
+                min_gradient: tolerance.min_gradient,
+            },
+        };
+        let (steps, count) = (self.settings.relax_steps, self.particles.len());
+        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.pairs);
+        PhaseState::Relaxation
+    }
+
+    /// Goes on relaxing the particles of a finished run.
+    fn relax_again(&mut self, steps: u32) -> PhaseState {
+        self.settings.relax_steps = self.relaxation.steps_done() + steps;
+        self.begin_relaxation()
+    }
+
+    fn relax_particles(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
+        let start = self.projector.evaluations;
+        let mut surface = relaxation::SurfaceContext {
+            field,
+            projector: &mut self.projector,
+            sizing: self.attempt.sizing.as_ref(),
+        };
+        let slice = (*left).min(RELAXATION_SLICE);
+        self.moved |= self.relaxation.step(&mut surface, &mut self.pairs, &mut self.particles, slice);
+        *left = 0;
+        self.counts.relaxation_evaluations += self.projector.evaluations - start;
+        if self.relaxation.is_done() {
+            PhaseState::Marking(self.reason_for_end())
+        } else {
+            PhaseState::Relaxation
+        }
+    }
+
+    fn reason_for_end(&self) -> StopReason {
+        if self.front.capped() { StopReason::Cap } else { StopReason::Complete }
+    }
+
+    /// Marks the particles next to singular points, where there are any.
+    fn mark(&mut self, field: &mut dyn Field, reason: StopReason) -> PhaseState {
+        if !self.seeds.singular().is_empty() {
+            singular::mark(field, self.seeds.singular(), &mut self.particles);
+            self.moved = true;
+        }
+        PhaseState::Done(reason)
+    }
+}
