@@ -61,28 +61,28 @@ declare module '*/render.js' {
   export class Renderer {
     static create(
       canvas: HTMLCanvasElement,
-      on_lost: (reason: string, message: string) => void,
-      on_error: (message: string) => void,
+      onLost: (reason: string, message: string) => void,
+      onError: (message: string) => void,
     ): Promise<Renderer>;
     backend(): string;
     adapter(): string;
     max_particles(): number;
-    resize(width_px: number, height_px: number): void;
+    resize(widthPx: number, heightPx: number): void;
     write(
       first: number,
       positions: Float32Array,
       normals: Float32Array,
       radii: Float32Array,
       colours: Uint32Array,
-      birth_s: number,
+      birthS: number,
     ): void;
     write_colours(first: number, colours: Uint32Array): void;
     set_count(n: number): void;
     set_view(view: Float32Array): void;
     set_style(json: string): void;
-    draw(time_s: number): string;
-    picture_size(width_px: number, height_px: number): Uint32Array;
-    read_pixels(width_px: number, height_px: number, transparent: boolean): Promise<Uint8Array<ArrayBuffer>>;
+    draw(timeS: number): string;
+    picture_size(widthPx: number, heightPx: number): Uint32Array;
+    read_pixels(widthPx: number, heightPx: number, transparent: boolean): Promise<Uint8Array<ArrayBuffer>>;
     destroy(): void;
     free(): void;
   }

@@ -31,7 +31,7 @@ export class Columns {
   constructor() {
     this.count = 0;
     /** The last generation level that there is. */
-    this.last_level = 0;
+    this.lastLevel = 0;
     /** Whether these are the particles of an earlier field, shown for want of others: the present one has no surface. */
     this.stale = false;
     /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
@@ -58,7 +58,7 @@ export class Columns {
   /** Another run begins. @param {boolean} [adaptive] */
   clear(adaptive = false) {
     this.count = 0;
-    this.last_level = 0;
+    this.lastLevel = 0;
     this.stale = false;
     this.curved = 0;
     this.adaptive = adaptive;
@@ -109,7 +109,7 @@ export class Columns {
     this.parents.set(piece.parents, first);
     this.slots.fill(0, Math.max(first, this.count), first + n);
     this.count = total;
-    for (const level of piece.levels) if (level > this.last_level) this.last_level = level;
+    for (const level of piece.levels) if (level > this.lastLevel) this.lastLevel = level;
     if (n > 0) this.forget();
     return true;
   }

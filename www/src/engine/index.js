@@ -52,7 +52,7 @@ export function createEngine({ canvasHost }) {
       fetchExports().catch(() => {});
     },
   });
-  const address = new Address({ store, hasFile: () => runs.loader.has_file, apply: applyState });
+  const address = new Address({ store, hasFile: () => runs.loader.hasFile, apply: applyState });
   const look = new Look({ store, viewer, runs });
   const framing = new Framing({ store, columns, viewer, look });
 
@@ -90,7 +90,7 @@ export function createEngine({ canvasHost }) {
     sampling: runs.sampling,
     columns,
     applyState(patch) {
-      const { state, reset } = mergeState(store.state.value, patch, description(store), runs.loader.has_file);
+      const { state, reset } = mergeState(store.state.value, patch, description(store), runs.loader.hasFile);
       applyState(state);
       return reset;
     },

@@ -85,10 +85,10 @@ export class Runs {
     this.resample(options);
   }
 
-  /** The same after a pause, unless something else is asked for meanwhile. @param {number} pause_ms */
-  chooseLater(pause_ms) {
+  /** The same after a pause, unless something else is asked for meanwhile. @param {number} pauseMs */
+  chooseLater(pauseMs) {
     this.forgetLater();
-    this.timer = setTimeout(() => this.choose(), pause_ms);
+    this.timer = setTimeout(() => this.choose(), pauseMs);
   }
 
   /** What was to come after a pause comes no more. */
@@ -135,8 +135,8 @@ export class Runs {
         label: 'Sample them anyway',
         run: () => {
           store.notice.value = null;
-          const max_particles = validSetting(description(store), 'max_particles', raised) ?? limit;
-          change(store, { settings: { ...store.state.value.settings, max_particles } });
+          const maxParticles = validSetting(description(store), 'max_particles', raised) ?? limit;
+          change(store, { settings: { ...store.state.value.settings, max_particles: maxParticles } });
           this.sampling.sample(this.request({ confirmed: true, grow: true }));
         },
       },

@@ -383,7 +383,7 @@
  * @property {(patch: Partial<ViewState>) => void} setView
  * @property {() => void} fit
  * @property {(factor: number) => void} zoom  > 1 comes nearer
- * @property {(dx_rad: number, dy_rad: number) => void} orbit
+ * @property {(dxRad: number, dyRad: number) => void} orbit
  * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the canvas host covered by panels: the surface is centred in what is left
  * @property {() => Promise<string>} shareUrl
  * @property {(hash: string) => Promise<void>} loadUrl

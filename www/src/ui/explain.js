@@ -41,10 +41,10 @@ function ensure() {
   return made;
 }
 
-/** @param {() => void} act @param {number} delay_ms */
-function later(act, delay_ms) {
+/** @param {() => void} act @param {number} delayMs */
+function later(act, delayMs) {
   clearTimeout(timer);
-  timer = window.setTimeout(act, delay_ms);
+  timer = window.setTimeout(act, delayMs);
 }
 
 function hide() {

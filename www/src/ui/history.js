@@ -51,7 +51,7 @@ export class History {
     this.at = -1;
     /** What the newest entry changed, while more of the same may follow. @type {string | null} */
     this.open = null;
-    this.last_ms = 0;
+    this.lastMs = 0;
   }
 
   get canUndo() {
@@ -64,16 +64,16 @@ export class History {
 
   /**
    * @param {Shape} shape
-   * @param {number} now_ms
+   * @param {number} nowMs
    * @param {boolean} [faulty] the entry before holds a formula with an error: nothing to come back to
    */
-  record(shape, now_ms, faulty = false) {
+  record(shape, nowMs, faulty = false) {
     const present = this.entries[this.at];
     if (present && JSON.stringify(present) === JSON.stringify(shape)) return;
     const what = present ? difference(present, shape) : null;
     const goesOn =
-      what !== null && what === this.open && (now_ms - this.last_ms < PAUSE_MS || (faulty && what === 'formula'));
-    this.last_ms = now_ms;
+      what !== null && what === this.open && (nowMs - this.lastMs < PAUSE_MS || (faulty && what === 'formula'));
+    this.lastMs = nowMs;
     this.open = what;
     this.entries.length = this.at + 1;
     if (goesOn) this.entries[this.at] = shape;

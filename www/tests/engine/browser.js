@@ -150,12 +150,12 @@ export function spots(page, width = 600, height = 450) {
         if (!drawn[start]) continue;
         const open = [start];
         drawn[start] = 0;
-        let [area, sum_x, sum_y] = [0, 0, 0];
+        let [area, sumX, sumY] = [0, 0, 0];
         for (let at = open.pop(); at !== undefined; at = open.pop()) {
           area += 1;
           const x = at % pw;
-          sum_x += x;
-          sum_y += Math.floor(at / pw);
+          sumX += x;
+          sumY += Math.floor(at / pw);
           for (const [next, inside] of /** @type {[number, boolean][]} */ ([
             [at - 1, x > 0],
             [at + 1, x < pw - 1],
@@ -167,7 +167,7 @@ export function spots(page, width = 600, height = 450) {
             open.push(next);
           }
         }
-        found.push({ area, off: Math.hypot(sum_x / area - pw / 2, sum_y / area - ph / 2) });
+        found.push({ area, off: Math.hypot(sumX / area - pw / 2, sumY / area - ph / 2) });
       }
       return { found: found.sort((p, q) => q.area - p.area), black, white };
     },

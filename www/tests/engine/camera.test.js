@@ -10,7 +10,7 @@ const state = { target: /** @type {Vec3} */ ([0.3, -0.2, 0.1]), distance: 6, yaw
 
 /** Pixel and depth of a world point. @param {View} view @param {readonly number[]} p @param {number} w @param {number} h */
 function project(view, p, w = size[0], h = size[1]) {
-  const m = view.clip_from_world;
+  const m = view.clipFromWorld;
   const c = [0, 1, 2, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
   return { x: (0.5 + c[0] / c[3] / 2) * w, y: (0.5 - c[1] / c[3] / 2) * h, depth: c[2] / c[3] };
 }
@@ -108,7 +108,7 @@ describe('the camera', () => {
   test('keeps the point under the cursor while zooming', () => {
     const camera = new Camera(state);
     const before = viewOf(camera.state, ...size, scene);
-    const at = { view: before, x_px: 650, y_px: 120, width_px: 800, height_px: 600 };
+    const at = { view: before, xPx: 650, yPx: 120, widthPx: 800, heightPx: 600 };
     const ray = rayThrough(before, 650, 120, ...size);
     const along =
       state.distance / (ray[0] * before.forward[0] + ray[1] * before.forward[1] + ray[2] * before.forward[2]);
@@ -173,10 +173,10 @@ describe('the camera', () => {
     const view = viewOf(camera.state, ...size, ball);
     const c = project(view, ball.centre);
     // A ball's outline is seen under asin(radius / distance).
-    const outline_px = Math.tan(Math.asin(ball.radius / camera.state.distance)) / view.world_per_px;
+    const outlinePx = Math.tan(Math.asin(ball.radius / camera.state.distance)) / view.worldPerPx;
     expect(c.x).toBeCloseTo(400, 3);
-    expect(outline_px).toBeLessThan(300);
-    expect(outline_px).toBeGreaterThan(270);
+    expect(outlinePx).toBeLessThan(300);
+    expect(outlinePx).toBeGreaterThan(270);
   });
 
   test('refuses to zoom to nothing, through the target or away for ever', () => {

@@ -13,7 +13,7 @@ describe('a formula with a fault', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(reportMessage(1, 7));
     told.length = 0;
     client.sample(request('x+'));
@@ -53,7 +53,7 @@ describe('a formula with a fault', () => {
     say(columnsMessage(1, 7));
     expect(columns.count).toBe(7);
     expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     expect(store.busy.value).toBe(false);
     expect(told.at(-1)).toBe('fit');
     say(reportMessage(1, 7));
@@ -77,7 +77,7 @@ describe('a formula with a fault', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     client.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     expect(store.busy.value).toBe(false);
@@ -139,7 +139,7 @@ describe('the surface that stays', () => {
       accept(3);
       expect(store.field.value?.formula).toBe('y');
       say(columnsMessage(3, 9));
-      say(done(3, 'complete', 9, { report_follows: true }));
+      say(done(3, 'complete', 9, { reportFollows: true }));
       say(reportMessage(3, 9));
       expect(store.report.value?.count).toBe(9);
       expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
@@ -157,7 +157,7 @@ describe('the surface that stays', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(reportMessage(1, 7));
     client.relax(1);
     say(columnsMessage(2, 7));
@@ -192,7 +192,7 @@ describe('the surface that stays', () => {
       accept(1);
       say(columnsMessage(1, 7));
       if (end === 'crash') {
-        say(done(1, 'complete', 7, { report_follows: true }));
+        say(done(1, 'complete', 7, { reportFollows: true }));
         say(reportMessage(1, 7));
       }
       client.sample(request('y'));
@@ -241,7 +241,7 @@ describe('the surface that stays', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     client.sample(request('y'));
     accept(2, 'y');
     say(crash);
@@ -256,7 +256,7 @@ describe('the surface that stays', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(reportMessage(1, 7));
     client.sample(request('x'));
     accept(2);
@@ -270,7 +270,7 @@ describe('the surface that stays', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(reportMessage(1, 7));
     client.sample(request('y'));
     accept(2, 'y');
@@ -289,7 +289,7 @@ describe('the surface that stays', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(reportMessage(1, 7));
     client.sample(request('y'));
     accept(2, 'y');
@@ -332,7 +332,7 @@ describe('a worker that fails', () => {
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { report_follows: true }));
+    say(done(1, 'complete', 7, { reportFollows: true }));
     say(crash);
     expect(jobs()).toMatchObject([{ field: { formula: 'x' }, grow: false }]);
     expect(store.busy.value).toBe(true);
@@ -386,7 +386,7 @@ describe('a worker that fails', () => {
     expect(client.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
     accept(4);
     say(columnsMessage(4, 7));
-    say(done(4, 'complete', 7, { report_follows: true }));
+    say(done(4, 'complete', 7, { reportFollows: true }));
     say(reportMessage(4, 7));
     say(crash);
     expect(jobs()).toHaveLength(0);

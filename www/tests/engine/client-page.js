@@ -48,9 +48,9 @@ export const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n
   radii: new Float32Array(n),
   levels: new Uint32Array(n),
   parents: new Uint32Array(n),
-  slots_from: 0,
+  slotsFrom: 0,
   slots: new Uint32Array(n),
-  curvature_from: 0,
+  curvatureFrom: 0,
   curvature: new Float32Array(0),
   progress: progress(n),
 });
@@ -67,7 +67,7 @@ export const done = (
   seconds,
   predicted: n,
   message: '',
-  report_follows: false,
+  reportFollows: false,
   ...more,
 });
 

@@ -53,7 +53,7 @@ describe('a model from points', () => {
 
 test('the curvature is asked for while it is shown, of a new worker again', () => {
   const { client, say } = page();
-  const asked_for = () =>
+  const askedFor = () =>
     workers
       .at(-1)
       .posted.filter((/** @type {any} */ m) => m.type === 'curvature')
@@ -61,13 +61,13 @@ test('the curvature is asked for while it is shown, of a new worker again', () =
   client.showCurvature(false);
   client.showCurvature(true);
   client.showCurvature(true);
-  expect(asked_for()).toEqual([true]);
+  expect(askedFor()).toEqual([true]);
   client.sample(request('x'));
   say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
   say({ type: 'ready', description });
-  expect(asked_for()).toEqual([true]);
+  expect(askedFor()).toEqual([true]);
   client.showCurvature(false);
-  expect(asked_for()).toEqual([true, false]);
+  expect(askedFor()).toEqual([true, false]);
 });
 
 describe('a run', () => {
@@ -80,7 +80,7 @@ describe('a run', () => {
     say(columnsMessage(1, 5));
     expect(columns.count).toBe(5);
     expect(workers[0].posted.at(-1)).toEqual({ type: 'drawn', id: 1 });
-    say(done(1, 'complete', 5, { report_follows: true }));
+    say(done(1, 'complete', 5, { reportFollows: true }));
     expect(store.busy.value).toBe(false);
     expect(store.progress.value.phase).toBe('quality');
     expect(store.report.value).toBe(null);
@@ -194,12 +194,12 @@ describe('a run', () => {
   test('that needs more particles than agreed is asked about, once', () => {
     const { client, say, jobs, accept } = page();
     client.sample(request('x'));
-    expect(jobs()[0].ask_above).toBe(1000);
+    expect(jobs()[0].askAbove).toBe(1000);
     accept(1);
     say(done(1, 'ask', 0, { predicted: 50_000 }));
     expect(asked).toEqual([50_000]);
     client.sample(request('x', { confirmed: true }));
-    expect(jobs()[1].ask_above).toBeGreaterThan(1e9);
+    expect(jobs()[1].askAbove).toBeGreaterThan(1e9);
   });
 });
 
@@ -208,7 +208,7 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   client.sample(request('x'));
   accept(1);
   say(columnsMessage(1, 7));
-  say(done(1, 'complete', 7, { report_follows: true }));
+  say(done(1, 'complete', 7, { reportFollows: true }));
   say(reportMessage(1, 7));
   client.sample(request('x'));
   accept(2);

@@ -64,7 +64,7 @@ describe('columns', () => {
 
   test('know their last level, also where the last particles are of an earlier one', () => {
     const columns = sphere(100);
-    expect(columns.last_level).toBe(9);
+    expect(columns.lastLevel).toBe(9);
     const one = {
       positions: new Float32Array(3),
       normals: new Float32Array(3),
@@ -72,9 +72,9 @@ describe('columns', () => {
       parents: new Uint32Array(1),
     };
     columns.write({ first: 100, total: 101, ...one, levels: Uint32Array.of(4) });
-    expect(columns.last_level).toBe(9);
+    expect(columns.lastLevel).toBe(9);
     columns.clear();
-    expect(columns.last_level).toBe(0);
+    expect(columns.lastLevel).toBe(0);
   });
 
   test('grow piece by piece and are overwritten in place', () => {
@@ -137,7 +137,7 @@ describe('picking', () => {
   /** The definition: every disc of such a size, one by one. @param {number[]} eye @param {number[]} ray @param {number} scale */
   function oracle(eye, ray, scale) {
     let best = null;
-    let best_t = Infinity;
+    let bestT = Infinity;
     for (let i = 0; i < columns.count; i += 1) {
       const p = [...columns.positions.subarray(3 * i, 3 * i + 3)];
       const n = [...columns.normals.subarray(3 * i, 3 * i + 3)];
@@ -148,8 +148,8 @@ describe('picking', () => {
           n,
         ) / dot(ray, n);
       const hit = eye.map((e, k) => e + t * ray[k] - p[k]);
-      if (t > 0 && t < best_t && dot(hit, hit) <= (columns.radii[i] * scale) ** 2) {
-        best_t = t;
+      if (t > 0 && t < bestT && dot(hit, hit) <= (columns.radii[i] * scale) ** 2) {
+        bestT = t;
         best = i;
       }
     }
@@ -166,7 +166,7 @@ describe('picking', () => {
     expect(near).toBeGreaterThan(1900);
     // The sphere's levels go from the far pole to the near one.
     expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, 3)).toBeLessThan(16);
-    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.last_level)).toBe(near);
+    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.lastLevel)).toBe(near);
   });
 
   test('finds the disc that the definition finds, from anywhere, and in a gap one around it', () => {
@@ -301,6 +301,6 @@ describe('motion', () => {
     expect(reveal.birthOf(4, 500)).toBe(500);
     expect(reveal.levelAt(births[2])).toBe(2);
     expect(reveal.levelAt(99)).toBe(-1);
-    expect(reveal.end_s()).toBe(500);
+    expect(reveal.endS()).toBe(500);
   });
 });

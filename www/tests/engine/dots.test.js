@@ -14,11 +14,11 @@ test('a dot is as large on the screen wherever it is, and faces the eye', () => 
     const at = [0, 1, 2].map((k) => points[3 * (j >> 1) + k]);
     const depth = [0, 1, 2].reduce((sum, k) => sum + (at[k] - view.eye[k]) * view.forward[k], 0);
     // Ink at odd places, its casing before it; the renderer multiplies by the disc size.
-    expect((dots.radii[j] * 0.92) / (view.world_per_px * depth)).toBeCloseTo(j & 1 ? 1.7 : 2.6, 4);
+    expect((dots.radii[j] * 0.92) / (view.worldPerPx * depth)).toBeCloseTo(j & 1 ? 1.7 : 2.6, 4);
     expect(dots.colours[j]).toBe(j & 1 ? palette.ink : palette.casing);
-    const to_eye = [0, 1, 2].map((k) => view.eye[k] - dots.positions[3 * j + k]);
-    const length = Math.hypot(...to_eye);
-    for (const k of [0, 1, 2]) expect(dots.normals[3 * j + k]).toBeCloseTo(to_eye[k] / length, 5);
+    const toEye = [0, 1, 2].map((k) => view.eye[k] - dots.positions[3 * j + k]);
+    const length = Math.hypot(...toEye);
+    for (const k of [0, 1, 2]) expect(dots.normals[3 * j + k]).toBeCloseTo(toEye[k] / length, 5);
     const lifted = Math.hypot(...at.map((v, k) => v - dots.positions[3 * j + k]));
     expect(lifted).toBeGreaterThan(0.0199);
     if (j & 1) expect(lifted).toBeGreaterThan(0.02);

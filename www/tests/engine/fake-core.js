@@ -7,17 +7,11 @@
  * @param {object} [options]
  * @param {number} [options.particles]
  * @param {number} [options.relax_steps]
- * @param {number} [options.us_per_unit]
+ * @param {number} [options.usPerUnit]
  * @param {number} [options.pieces]  of a measurement
- * @param {number} [options.us_per_piece]
+ * @param {number} [options.usPerPiece]
  */
-export function fakeCore({
-  particles = 1000,
-  relax_steps = 2,
-  us_per_unit = 10,
-  pieces = 1000,
-  us_per_piece = 50,
-} = {}) {
+export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pieces = 1000, usPerPiece = 50 } = {}) {
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -103,13 +97,13 @@ export function fakeCore({
       if (count < target) {
         const n = Math.min(budget, target - count);
         count += n;
-        clock.ms += (n * us_per_unit) / 1000;
+        clock.ms += (n * usPerUnit) / 1000;
         if (count === target && steps === 0) stop = 'complete';
         return progress();
       }
       step += 1;
       moves += 1;
-      clock.ms += (count * us_per_unit) / 1000;
+      clock.ms += (count * usPerUnit) / 1000;
       if (step >= steps) stop = 'complete';
       return progress(true);
     },
@@ -141,7 +135,7 @@ export function fakeCore({
       calls.push('measure');
       const n = Math.min(budget, pieces - measured);
       measured += n;
-      clock.ms += (n * us_per_piece) / 1000;
+      clock.ms += (n * usPerPiece) / 1000;
       return measured === pieces ? JSON.stringify({ count, digest: 'd' }) : undefined;
     },
     valence: () => new Uint8Array(count).fill(6),

@@ -16,7 +16,7 @@ const sampleJob = (part = {}) => ({
   settings: {},
   grow: true,
   live: false,
-  ask_above: Infinity,
+  askAbove: Infinity,
   ...part,
 });
 
@@ -37,7 +37,7 @@ async function run(
     core,
     job,
     {
-      now_ms: () => core.clock.ms,
+      nowMs: () => core.clock.ms,
       pause: async () => {
         core.clock.ms += 1;
       },
@@ -56,7 +56,7 @@ const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type ===
 
 describe('a job', () => {
   test('pieces join up to the core’s own columns, in order and without a gap', async () => {
-    const core = fakeCore({ particles: 20_000, relax_steps: 3, us_per_unit: 5 });
+    const core = fakeCore({ particles: 20_000, relax_steps: 3, usPerUnit: 5 });
     const { posted } = await run(core, sampleJob());
     const pieces = of(posted, 'columns');
     expect(pieces.length).toBeGreaterThan(4);
@@ -79,12 +79,12 @@ describe('a job', () => {
     const core = fakeCore({ particles: 5000, relax_steps: 0 });
     const { posted } = await run(core, sampleJob({ settings: { relax_steps: 0 } }));
     const last = of(posted, 'columns').at(-1);
-    expect(last?.slots_from).toBe(0);
+    expect(last?.slotsFrom).toBe(0);
     expect(last?.slots).toHaveLength(5000);
   });
 
   test('time is booked on the phase that spent it', async () => {
-    const core = fakeCore({ particles: 10_000, relax_steps: 2, us_per_unit: 10 });
+    const core = fakeCore({ particles: 10_000, relax_steps: 2, usPerUnit: 10 });
     const { posted } = await run(core, sampleJob());
     const [report] = of(posted, 'report');
     // The first step runs on the seeding clock: until it returns, nothing else is known.
@@ -109,8 +109,8 @@ describe('a job', () => {
   });
 
   test('no single step outlasts a stop by more than 50 ms, on a fast machine and on a slow one', async () => {
-    for (const us_per_unit of [0.05, 1, 20]) {
-      const core = fakeCore({ particles: 200_000, relax_steps: 0, us_per_unit });
+    for (const usPerUnit of [0.05, 1, 20]) {
+      const core = fakeCore({ particles: 200_000, relax_steps: 0, usPerUnit });
       let longest = 0;
       const step = core.step.bind(core);
       core.step = (budget) => {
@@ -120,7 +120,7 @@ describe('a job', () => {
         return out;
       };
       await run(core, sampleJob({ settings: { relax_steps: 0 }, live: true }));
-      expect(longest, `at ${us_per_unit} µs per unit`).toBeLessThan(50);
+      expect(longest, `at ${usPerUnit} µs per unit`).toBeLessThan(50);
     }
   });
 
@@ -135,8 +135,8 @@ describe('a job', () => {
   });
 
   test('a measurement ends no call later than 50 ms after it began, on a fast machine and on a slow one', async () => {
-    for (const us_per_piece of [5, 50, 1000]) {
-      const core = fakeCore({ pieces: 5000, us_per_piece });
+    for (const usPerPiece of [5, 50, 1000]) {
+      const core = fakeCore({ pieces: 5000, usPerPiece });
       let longest = 0;
       const measure = core.measure.bind(core);
       core.measure = (budget) => {
@@ -147,23 +147,23 @@ describe('a job', () => {
       };
       const { posted } = await run(core, sampleJob());
       expect(of(posted, 'report')).toHaveLength(1);
-      expect(longest, `at ${us_per_piece} µs per piece`).toBeLessThan(50);
+      expect(longest, `at ${usPerPiece} µs per piece`).toBeLessThan(50);
     }
   });
 
   test('a newer job ends a measurement, and a long one lets itself be heard', async () => {
-    const core = fakeCore({ pieces: 100_000, us_per_piece: 50 });
+    const core = fakeCore({ pieces: 100_000, usPerPiece: 50 });
     const { posted, memory } = await run(core, sampleJob(), {
       interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null),
     });
-    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'complete', report_follows: true });
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'complete', reportFollows: true });
     expect(of(posted, 'beat')).toHaveLength(3);
     expect(of(posted, 'report')).toHaveLength(0);
     expect(memory.held).toBe(7);
   });
 
   test('a page that does not draw is not flooded', async () => {
-    const core = fakeCore({ particles: 200_000, relax_steps: 5, us_per_unit: 5 });
+    const core = fakeCore({ particles: 200_000, relax_steps: 5, usPerUnit: 5 });
     const { posted } = await run(core, sampleJob(), { room: (p) => of(p, 'columns').length < 2 });
     // Two while it runs, and the final state.
     expect(of(posted, 'columns')).toHaveLength(3);
@@ -177,21 +177,21 @@ describe('a job', () => {
     expect(of(posted, 'columns')).toHaveLength(1);
     expect(of(posted, 'columns')[0]).toMatchObject({ first: 0, total: 20_000 });
     expect(of(posted, 'report')).toHaveLength(0);
-    expect(of(posted, 'done')[0].report_follows).toBe(false);
+    expect(of(posted, 'done')[0].reportFollows).toBe(false);
   });
 
   test('a live job that is stopped is the last of its drag, and is reported', async () => {
     const { posted } = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), {
       interrupt: () => 'stop',
     });
-    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: false });
+    expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'stopped', reportFollows: false });
     let calls = 0;
     const interrupt = () => {
       calls += 1;
       return calls > 5 ? 'stop' : null;
     };
     const later = await run(fakeCore({ particles: 1_000_000 }), sampleJob({ live: true, grow: false }), { interrupt });
-    expect(of(later.posted, 'done')[0]).toMatchObject({ outcome: 'stopped', report_follows: true });
+    expect(of(later.posted, 'done')[0]).toMatchObject({ outcome: 'stopped', reportFollows: true });
     expect(of(later.posted, 'report')).toHaveLength(1);
   });
 
@@ -203,13 +203,13 @@ describe('a job', () => {
 
   test('more particles than agreed are asked about first', async () => {
     const core = fakeCore({ particles: 500_000 });
-    const { posted } = await run(core, sampleJob({ ask_above: 200_000 }));
+    const { posted } = await run(core, sampleJob({ askAbove: 200_000 }));
     expect(of(posted, 'done')[0]).toMatchObject({ outcome: 'ask', predicted: 500_000 });
     expect(core.calls).not.toContain('step');
   });
 
   test('brings the curvature only while it is shown: once per particle as they come, and of all when they rest', async () => {
-    const core = fakeCore({ particles: 20_000, relax_steps: 3, us_per_unit: 5 });
+    const core = fakeCore({ particles: 20_000, relax_steps: 3, usPerUnit: 5 });
     expect((await run(core, sampleJob())).posted.some((m) => m.type === 'columns' && m.curvature.length > 0)).toBe(
       false,
     );
@@ -217,14 +217,14 @@ describe('a job', () => {
     const { posted } = await run(core, sampleJob(), { curvature: () => true });
     let have = 0;
     for (const piece of of(posted, 'columns')) {
-      expect(piece.curvature_from).toBeLessThanOrEqual(have);
-      have = Math.max(have, piece.curvature_from + piece.curvature.length / 2);
+      expect(piece.curvatureFrom).toBeLessThanOrEqual(have);
+      have = Math.max(have, piece.curvatureFrom + piece.curvature.length / 2);
     }
     expect(have).toBe(20_000);
     const last = of(posted, 'columns')
       .filter((piece) => piece.curvature.length > 0)
       .at(-1);
-    expect(last?.curvature_from).toBe(0);
+    expect(last?.curvatureFrom).toBe(0);
     expect(last?.curvature).toEqual(core.curvature(0));
     expect(core.calls.filter((call) => call === 'curvature 0').length).toBeLessThanOrEqual(3);
   });
@@ -234,7 +234,7 @@ describe('a job', () => {
     const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'beat') });
     const types = posted.map((m) => m.type);
     expect(types.slice(types.indexOf('beat'))).toEqual(['beat', 'columns', 'report']);
-    expect(posted.at(-2)).toMatchObject({ type: 'columns', first: 500, total: 500, curvature_from: 0, progress: null });
+    expect(posted.at(-2)).toMatchObject({ type: 'columns', first: 500, total: 500, curvatureFrom: 0, progress: null });
   });
 
   test('relaxing goes on from the particles at hand, and only from those', async () => {
@@ -271,7 +271,7 @@ async function work(core, first, meanwhile = () => {}) {
       core,
       job,
       {
-        now_ms: () => core.clock.ms,
+        nowMs: () => core.clock.ms,
         pause: async () => {
           core.clock.ms += 1;
           meanwhile(jobs, posted);

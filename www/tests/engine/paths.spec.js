@@ -68,11 +68,11 @@ test('a drag turns the surface, a wheel comes nearer, F shows all of it again', 
   const box = /** @type {{x: number, y: number, width: number, height: number}} */ (await host.boundingBox());
   // The part that no panel covers.
   const [x, y] = await page.evaluate(() => {
-    const host_element = document.querySelector('#canvas-host');
+    const hostElement = document.querySelector('#canvas-host');
     for (let v = 0.1; v < 0.9; v += 0.1) {
       for (let u = 0.1; u < 0.9; u += 0.1) {
         const at = [innerWidth * u, innerHeight * v];
-        if (host_element?.contains(document.elementFromPoint(at[0], at[1]))) return at;
+        if (hostElement?.contains(document.elementFromPoint(at[0], at[1]))) return at;
       }
     }
     return [0, 0];

@@ -60,7 +60,7 @@ function fakePoints() {
 async function answers(order) {
   /** @type {FromPoints[]} */
   const posted = [];
-  await solve(fakePoints(), order, { now_ms: () => 0, pause: async () => {}, post: (message) => posted.push(message) });
+  await solve(fakePoints(), order, { nowMs: () => 0, pause: async () => {}, post: (message) => posted.push(message) });
   return posted;
 }
 
@@ -162,10 +162,10 @@ describe('the client', () => {
     const { workers, client } = make();
     const first = client.load('a', { model: 'a' });
     const second = client.load('b', { model: 'b' });
-    expect(await first).toEqual({ given_up: true });
+    expect(await first).toEqual({ givenUp: true });
     expect(workers.map((w) => w.ended)).toEqual([true, false]);
     client.giveUp();
-    expect(await second).toEqual({ given_up: true });
+    expect(await second).toEqual({ givenUp: true });
     expect(workers[1].ended).toBe(true);
   });
 
@@ -266,7 +266,7 @@ describe('a wish for a model', () => {
     workers[0].say({ type: 'solved', solved: solved() });
     await opening;
     expect(store.state.value).toMatchObject({ surface: FILE_SURFACE, formula: '', bounds: null });
-    expect(loader.has_file).toBe(true);
+    expect(loader.hasFile).toBe(true);
     expect(sample).toHaveBeenCalledTimes(1);
     const first = loader.key();
     const again = loader.openFile(file('dog.ply'));

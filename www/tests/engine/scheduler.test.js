@@ -110,7 +110,7 @@ describe('coarse to fine', () => {
     const cost = new CostModel();
     cost.record({ seconds: seconds(8000), particles: 8000, relax_steps: 10, size: radius });
     for (let k = 0; k < 20; k += 1) cost.recordPicture(8000, 34 + 160);
-    expect(cost.draw_us).toBeCloseTo(20, 1);
+    expect(cost.drawUs).toBeCloseTo(20, 1);
     const plan = planLive(settings, diagonal, cost);
     expect(plan.coarse).toBe(true);
     expect(cost.expected(plan.settings, diagonal)).toBeLessThan(3000);
@@ -160,8 +160,8 @@ describe('coarse to fine', () => {
 
     test.each(['chord_error', 'max_curvature', 'sum_of_curvatures'])(
       'scales every radius by one factor: %s',
-      (radius_law) => {
-        const now = { ...adaptive, radius_law };
+      (radiusLaw) => {
+        const now = { ...adaptive, radius_law: radiusLaw };
         const cost = new CostModel();
         cost.record({ seconds: slow(20_000), particles: 20_000, relax_steps: 10, size: sizeOf(now, diagonal) });
         const plan = planLive(now, diagonal, cost);

@@ -7,7 +7,7 @@ const canvas = (page) =>
   page.evaluate(() => {
     const element = /** @type {HTMLCanvasElement} */ (document.querySelector('#canvas-host canvas'));
     const { width, height } = element.getBoundingClientRect();
-    return { width: element.width, height: element.height, css_width: width, css_height: height };
+    return { width: element.width, height: element.height, cssWidth: width, cssHeight: height };
   });
 
 /** Tells the page that its tab is hidden, or shown again. @param {import('@playwright/test').Page} page @param {boolean} hidden */
@@ -75,7 +75,7 @@ test('a window in motion ends with a canvas of its size', async ({ page }) => {
     await expect
       .poll(async () => {
         const now = await canvas(page);
-        return [now.css_width, now.css_height, now.width, now.height];
+        return [now.cssWidth, now.cssHeight, now.width, now.height];
       })
       .toEqual([width, height, width, height]);
   }
@@ -120,7 +120,7 @@ test('a window taken to a screen of another pixel ratio is drawn in its pixels',
 test('a window wider than the device can draw is drawn smaller, in proportion', async ({ page }) => {
   await open(page);
   await page.setViewportSize({ width: 9000, height: 300 });
-  await expect.poll(async () => (await canvas(page)).css_width).toBe(9000);
+  await expect.poll(async () => (await canvas(page)).cssWidth).toBe(9000);
   // The page has its size before the canvas has one of its own.
   await expect
     .poll(async () => {

@@ -31,14 +31,14 @@ const place = (page) =>
 /**
  * Two fingers, from and to these distances from the middle, in steps.
  * @param {import('@playwright/test').Page} page
- * @param {[number, number]} at @param {number} from_px @param {number} to_px @param {[number, number]} [carry]  way of the middle
+ * @param {[number, number]} at @param {number} fromPx @param {number} toPx @param {[number, number]} [carry]  way of the middle
  */
-async function pinch(page, at, from_px, to_px, carry = [0, 0]) {
+async function pinch(page, at, fromPx, toPx, carry = [0, 0]) {
   const session = await page.context().newCDPSession(page);
   const fingers = (/** @type {number} */ t) =>
     [-1, 1].map((side, id) => ({
       id,
-      x: at[0] + carry[0] * t + side * (from_px + (to_px - from_px) * t),
+      x: at[0] + carry[0] * t + side * (fromPx + (toPx - fromPx) * t),
       y: at[1] + carry[1] * t,
     }));
   await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: fingers(0) });

@@ -4,7 +4,7 @@ import { Reveal } from '../../src/engine/view/reveal.js';
 import { firstLook } from '../../src/engine/view/style.js';
 import { ParticleUpload } from '../../src/engine/view/upload.js';
 
-const now_s = 10;
+const nowS = 10;
 
 /** Columns of so many particles, of growing radius and two to a level. @param {number} n */
 function columnsOf(n) {
@@ -37,7 +37,7 @@ function device(most = 1000) {
 
 /** @param {import('../../src/engine/types.js').ColourMode} colour */
 const look = (colour) => ({ ...firstLook(/** @type {any} */ ({ colour, size: 1 })) });
-const present = () => ({ reveal: new Reveal(), calm: true, now_s });
+const present = () => ({ reveal: new Reveal(), calm: true, nowS });
 
 describe('a device', () => {
   test('is told once what is new, and nothing while nothing is', () => {
@@ -80,7 +80,7 @@ describe('a device', () => {
     const upload = new ParticleUpload(columnsOf(6));
     upload.restart();
     const reveal = new Reveal();
-    reveal.begin(now_s);
+    reveal.begin(nowS);
     upload.write(renderer, look('level'), { ...present(), reveal });
     expect(told).toEqual(['particles 0..2', 'particles 2..4', 'particles 4..6']);
   });

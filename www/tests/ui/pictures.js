@@ -40,7 +40,7 @@ const ids = await page.evaluate(() => {
 for (const id of ids) {
   if (wanted.length > 0 && !wanted.includes(id)) continue;
   const bytes = await page.evaluate(
-    async ({ id, drawn, size, view_rad, initial, rounds }) => {
+    async ({ id, drawn, size, viewRad, initial, rounds }) => {
       const mp = /** @type {any} */ (window).marchingParticles;
       await mp.set({
         surface: id,
@@ -65,7 +65,7 @@ for (const id of ids) {
             Math.abs(cp * z - cy * sp * x - sy * sp * y) / depth,
           );
         }
-        near *= reach / (0.97 * Math.tan(view_rad / 2));
+        near *= reach / (0.97 * Math.tan(viewRad / 2));
       }
       mp.engine.zoom(distance / near);
       const png = await mp.engine.savePng({ width: drawn, height: drawn, transparent: true });
@@ -75,7 +75,7 @@ for (const id of ids) {
       const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.82 });
       return [...new Uint8Array(await webp.arrayBuffer())];
     },
-    { id, drawn: DRAWN_PX, size: PICTURE_PX, view_rad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS },
+    { id, drawn: DRAWN_PX, size: PICTURE_PX, viewRad: FIELD_OF_VIEW_RAD, initial, rounds: FRAMING_ROUNDS },
   );
   await writeFile(`${folder}gallery/${id}.webp`, new Uint8Array(bytes));
   console.log(`${id} ${bytes.length} bytes`);
@@ -87,7 +87,7 @@ if (wanted.length > 0) {
 }
 
 const dots = await page.evaluate(
-  async ({ share, size, view_rad, initial }) => {
+  async ({ share, size, viewRad, initial }) => {
     const mp = /** @type {any} */ (window).marchingParticles;
     await mp.set({
       surface: mp.engine.description.value.default_surface,
@@ -109,7 +109,7 @@ const dots = await page.evaluate(
     for (let i = 0; i < count; i += 1) {
       const position = [0, 1, 2].map((k) => positions[3 * i + k] - target[k]);
       const depth = distance - along(position, back);
-      const scale = size / (2 * Math.tan(view_rad / 2) * depth);
+      const scale = size / (2 * Math.tan(viewRad / 2) * depth);
       const [x, y] = [along(position, right) * scale, -along(position, up) * scale];
       const normal = [...normals.slice(3 * i, 3 * i + 3)];
       const toEye = [0, 1, 2].map((k) => back[k] * distance - position[k]);
@@ -118,7 +118,7 @@ const dots = await page.evaluate(
     }
     return { front };
   },
-  { share: POSTER_SHARE, size: POSTER_PX, view_rad: FIELD_OF_VIEW_RAD, initial },
+  { share: POSTER_SHARE, size: POSTER_PX, viewRad: FIELD_OF_VIEW_RAD, initial },
 );
 
 // One path per class of foreshortening: a dot is a line of no length with a round cap.

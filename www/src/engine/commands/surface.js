@@ -21,7 +21,7 @@ export function surfaceCommands({ store, runs, look, framing }) {
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
-      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.has_file)) return;
+      if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
       look.allLevels();
       change(store, shapeOf(id, surface?.formula));
       runs.choose({ grow: true, fit: true });

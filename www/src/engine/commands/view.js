@@ -24,9 +24,9 @@ export function viewCommands({ store, picture, look }) {
       viewer.camera.zoom(factor);
       viewer.moved();
     },
-    orbit(dx_rad, dy_rad) {
+    orbit(dxRad, dyRad) {
       viewer.camera.rest();
-      viewer.camera.orbit(dx_rad, dy_rad);
+      viewer.camera.orbit(dxRad, dyRad);
       viewer.moved();
     },
     setInsets: (insets) => viewer.set({ insets }),

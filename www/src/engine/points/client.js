@@ -18,7 +18,7 @@
  * @property {((event: {message?: string}) => void) | null} onerror
  */
 /** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
-/** How an order ended; `given_up` by the page. @typedef {{solved: Solved} | {refusal: Refusal} | {given_up: true}} Outcome */
+/** How an order ended; `givenUp` by the page. @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Outcome */
 
 /**
  * A worker that says nothing for so long is ended. Reading a large file is one step, and a person can give up at any time, so
@@ -111,6 +111,6 @@ export class PointsClient {
   }
 
   giveUp() {
-    this.end?.({ given_up: true });
+    this.end?.({ givenUp: true });
   }
 }

@@ -40,23 +40,23 @@ export class ModelLoader {
       },
     });
     /** The file opened last, by the name of its solved model. */
-    this.file_key = '';
+    this.fileKey = '';
     this.files = 0;
     /** The shape that was sampled last. @type {Shape | null} */
     this.last = null;
     /** The order under way. */
-    this.order_id = 0;
+    this.orderId = 0;
   }
 
-  get has_file() {
-    return this.file_key !== '';
+  get hasFile() {
+    return this.fileKey !== '';
   }
 
   /** The name of the state's solved model; undefined for a formula. */
   key() {
     const { surface } = this.store.state.value;
     if (!fromPoints(this.store.description.value, surface)) return undefined;
-    return surface === FILE_SURFACE ? this.file_key : surface;
+    return surface === FILE_SURFACE ? this.fileKey : surface;
   }
 
   /** Whether the state's surface can be sampled now. */
@@ -115,7 +115,7 @@ export class ModelLoader {
     const key = `file ${this.files}`;
     const { state } = this.store;
     await this.order(FILE_SURFACE, file.name, key, { file }, () => {
-      this.file_key = key;
+      this.fileKey = key;
       state.value = { ...state.value, ...shapeOf(FILE_SURFACE) };
       this.sample({ grow: true, fit: true });
     });
@@ -128,14 +128,14 @@ export class ModelLoader {
    */
   async order(id, name, key, order, done) {
     const { loading, loadingError } = this.store;
-    this.order_id += 1;
-    const mine = this.order_id;
+    this.orderId += 1;
+    const mine = this.orderId;
     batch(() => {
       loadingError.value = null;
       loading.value = { id, name, stage: 'starting', label: 'Starting', fraction: 0 };
     });
     const outcome = await this.client.load(key, order);
-    if (this.order_id !== mine) return false;
+    if (this.orderId !== mine) return false;
     // In one go, so that nobody sees neither the loading nor the run.
     batch(() => {
       loading.value = null;

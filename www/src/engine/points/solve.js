@@ -31,7 +31,7 @@ const USUAL_CENTRES = 0;
 /**
  * @param {PointsLike} points
  * @param {Order} order
- * @param {{now_ms: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) => void}} env
+ * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromPoints, transfer?: Transferable[]) => void}} env
  */
 export async function solve(points, order, env) {
   /** @param {{kind: string, message: string, line?: number | null}} error */
@@ -51,11 +51,11 @@ export async function solve(points, order, env) {
   }
   if (!begun.ok) return refuse(begun.error);
   for (let budget = FIRST_BUDGET; ; ) {
-    const before = env.now_ms();
+    const before = env.nowMs();
     const step = JSON.parse(points.step(budget));
     if (!step.ok) return refuse(step.error);
     if (step.done) break;
-    budget = nextBudget(budget, env.now_ms() - before, STEP_MS);
+    budget = nextBudget(budget, env.nowMs() - before, STEP_MS);
     env.post({ type: 'progress', stage: step.stage, label: step.label ?? '', fraction: step.fraction });
     await env.pause();
   }

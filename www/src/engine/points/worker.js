@@ -17,10 +17,10 @@ import { solve } from './solve.js';
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
 /** The last words of the bundle's panic hook, which writes to the console. */
-let last_words = '';
+let lastWords = '';
 const say = console.error.bind(console);
 console.error = (...parts) => {
-  last_words = parts.map(String).join(' ').slice(0, 4000);
+  lastWords = parts.map(String).join(' ').slice(0, 4000);
   say(...parts);
 };
 
@@ -36,14 +36,14 @@ self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
   }
   try {
     await solve(points, order, {
-      now_ms: () => performance.now(),
+      nowMs: () => performance.now(),
       pause: () => new Promise((resolve) => setTimeout(resolve)),
       post,
     });
   } catch (error) {
     post({
       type: 'crashed',
-      message: last_words || words(error),
+      message: lastWords || words(error),
       stack: error instanceof Error ? (error.stack ?? '').slice(0, 4000) : '',
     });
   }

@@ -184,7 +184,7 @@ export class SamplingClient {
       grow,
       live,
       points: (field.points !== undefined && this.solved(field.points)) || null,
-      ask_above: unasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
+      askAbove: unasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
     };
   }
 
@@ -294,12 +294,12 @@ export class SamplingClient {
 
   /** @param {import('./protocol.js').DoneMessage} message @param {Run} run */
   ended(message, run) {
-    const { outcome, progress, report_follows } = message;
+    const { outcome, progress, reportFollows } = message;
     const { request } = run;
     const particles = progress?.particles ?? 0;
     const surface = tookPlace(outcome, particles);
     batch(() => {
-      this.happened({ type: 'done', outcome, particles, reportFollows: report_follows });
+      this.happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
       if (surface) {
         this.presenter.end(message, run, particles);
         this.learn(message, run, particles);

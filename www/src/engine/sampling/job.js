@@ -39,7 +39,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  */
 /**
  * @typedef {object} Surroundings
- * @property {() => number} now_ms
+ * @property {() => number} nowMs
  * @property {() => Promise<void>} pause  lets messages in
  * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
  * @property {() => 'stop' | 'replace' | null} interrupt
@@ -86,9 +86,9 @@ export function curvatureColumn(core, id) {
       first: total,
       total,
       ...none(),
-      slots_from: total,
+      slotsFrom: total,
       slots: new Uint32Array(0),
-      curvature_from: 0,
+      curvatureFrom: 0,
       curvature,
       progress: null,
     },
@@ -112,20 +112,20 @@ export async function runJob(core, job, env, memory) {
   let progress = null;
   let predicted = 0;
 
-  /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [report_follows] */
-  const done = (outcome, message = '', report_follows = false) =>
-    env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, report_follows });
+  /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [reportFollows] */
+  const done = (outcome, message = '', reportFollows = false) =>
+    env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, reportFollows });
 
   if (job.kind === 'sample') {
     memory.held = 0;
     // The search for the surface begins with the start, and on a model most of it is there.
-    const before = env.now_ms();
+    const before = env.nowMs();
     const start = JSON.parse(core.start(JSON.stringify(job.settings)));
-    seconds.seeding += (env.now_ms() - before) / 1000;
+    seconds.seeding += (env.nowMs() - before) / 1000;
     if (!start.ok) return done('refused', String(start.error?.message ?? start.error));
     predicted = start.predicted_count ?? 0;
     env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings ?? [] });
-    if (predicted > job.ask_above) {
+    if (predicted > job.askAbove) {
       core.cancel();
       return done('ask');
     }
@@ -139,12 +139,12 @@ export async function runJob(core, job, env, memory) {
   const sent = {
     count: job.kind === 'sample' ? 0 : core.count(),
     stale: false,
-    slots_from: 0,
+    slotsFrom: 0,
     settled: false,
     curved: 0,
-    picture_ms: -Infinity,
+    pictureMs: -Infinity,
   };
-  let beat_ms = env.now_ms();
+  let beatMs = env.nowMs();
   /** @type {Record<string, number>} */
   const budgets = {};
   /** @type {CoreProgress['phase']} */
@@ -154,7 +154,7 @@ export async function runJob(core, job, env, memory) {
 
   /** Whether the page should see columns now, between two steps. */
   const due = () => {
-    if (!env.room() || env.now_ms() - sent.picture_ms < PICTURE_MS) return false;
+    if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
     if (job.live) return false;
     if (!job.grow && last.phase !== 'relaxation') return false;
     return sent.stale || core.count() > sent.count;
@@ -162,10 +162,10 @@ export async function runJob(core, job, env, memory) {
   const sendColumns = () => {
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
-    const slots_from = sent.stale ? 0 : Math.min(sent.slots_from, first);
+    const slotsFrom = sent.stale ? 0 : Math.min(sent.slotsFrom, first);
     // A relaxed particle has not gone far: until the end its curvature stays what it was when it was placed.
-    const curvature_from = sent.curved;
-    const curvature = env.curvature() ? core.curvature(curvature_from) : new Float32Array(0);
+    const curvatureFrom = sent.curved;
+    const curvature = env.curvature() ? core.curvature(curvatureFrom) : new Float32Array(0);
     sent.curved += curvature.length / 2;
     const columns = {
       positions: core.positions(first),
@@ -173,19 +173,19 @@ export async function runJob(core, job, env, memory) {
       radii: core.radii(first),
       levels: core.levels(first),
       parents: core.parents(first),
-      slots: core.slots(slots_from),
+      slots: core.slots(slotsFrom),
       curvature,
     };
     env.post(
-      { type: 'columns', id, first, total, slots_from, curvature_from, ...columns, progress: last },
+      { type: 'columns', id, first, total, slotsFrom, curvatureFrom, ...columns, progress: last },
       Object.values(columns).map((c) => c.buffer),
     );
     // The fates of a particle's slots are decided after it was sent: they go along with the next piece.
-    sent.slots_from = first;
-    sent.settled = slots_from === 0;
+    sent.slotsFrom = first;
+    sent.settled = slotsFrom === 0;
     sent.count = total;
     sent.stale = false;
-    sent.picture_ms = env.now_ms();
+    sent.pictureMs = env.nowMs();
   };
 
   for (;;) {
@@ -200,10 +200,10 @@ export async function runJob(core, job, env, memory) {
       break;
     }
     const budget = budgets[phase] ?? FIRST_BUDGET;
-    const before = env.now_ms();
+    const before = env.nowMs();
     last = JSON.parse(core.step(budget));
     progress = last;
-    const took = env.now_ms() - before;
+    const took = env.nowMs() - before;
     seconds[clockOf(phase)] += took / 1000;
     budgets[phase] = nextBudget(budget, took);
     sent.stale ||= last.moved;
@@ -211,10 +211,10 @@ export async function runJob(core, job, env, memory) {
     phase = last.phase;
     if (due()) {
       sendColumns();
-      beat_ms = env.now_ms();
-    } else if (env.now_ms() - beat_ms > PROGRESS_MS) {
+      beatMs = env.nowMs();
+    } else if (env.nowMs() - beatMs > PROGRESS_MS) {
       env.post({ type: 'progress', id, progress });
-      beat_ms = env.now_ms();
+      beatMs = env.nowMs();
     }
     await env.pause();
   }
@@ -232,9 +232,9 @@ export async function runJob(core, job, env, memory) {
         first: total,
         total,
         ...none(),
-        slots_from: 0,
+        slotsFrom: 0,
         slots,
-        curvature_from: 0,
+        curvatureFrom: 0,
         curvature: new Float32Array(0),
         progress: last,
       },
@@ -259,14 +259,14 @@ export async function runJob(core, job, env, memory) {
     await env.pause();
     if (env.interrupt() === 'replace') return;
     tellCurvature();
-    const before = env.now_ms();
+    const before = env.nowMs();
     report = core.measure(pieces);
-    const took = env.now_ms() - before;
+    const took = env.nowMs() - before;
     seconds.quality += took / 1000;
     pieces = nextBudget(pieces, took);
-    if (env.now_ms() - beat_ms > BEAT_MS) {
+    if (env.nowMs() - beatMs > BEAT_MS) {
       env.post({ type: 'beat' });
-      beat_ms = env.now_ms();
+      beatMs = env.nowMs();
     }
   } while (report === undefined);
   const figures = {

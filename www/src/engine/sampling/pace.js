@@ -87,8 +87,8 @@ export function timingOf(seconds, particles, live) {
 /** With the report. @param {{seconds: Seconds, count: number}} report @returns {Timing} */
 export function timingOfReport({ seconds, count }) {
   const total = samplingSeconds(seconds) + seconds.quality;
-  const us_per_particle = ((total - seconds.quality) * 1e6) / Math.max(1, count);
-  return { total, seconds, us_per_particle, particles: count, live: false };
+  const usPerParticle = ((total - seconds.quality) * 1e6) / Math.max(1, count);
+  return { total, seconds, us_per_particle: usPerParticle, particles: count, live: false };
 }
 
 /**

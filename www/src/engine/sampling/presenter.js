@@ -89,21 +89,21 @@ export class Presenter {
   particles(message, run, onDrawn) {
     const { columns, picture, store } = this;
     if (!columns.write(message)) return onDrawn();
-    columns.writeSlots(message.slots_from, message.slots);
+    columns.writeSlots(message.slotsFrom, message.slots);
     if (message.curvature.length > 0) {
-      columns.writeCurvature(message.curvature_from, message.curvature);
-      picture.recolour(message.curvature_from, columns.count);
+      columns.writeCurvature(message.curvatureFrom, message.curvature);
+      picture.recolour(message.curvatureFrom, columns.count);
     }
     const n = message.radii.length;
     if (n > 0) picture.changed(message.first, message.first + n, onDrawn);
     else onDrawn();
-    picture.recolour(message.slots_from, columns.count);
+    picture.recolour(message.slotsFrom, columns.count);
     if (message.progress) this.progress(message.progress, run);
     store.revision.value += 1;
   }
 
   /** A run ended with a surface, or found that there is none. @param {DoneMessage} message @param {Run} run @param {number} particles */
-  end({ outcome, progress, seconds, report_follows }, { id, request }, particles) {
+  end({ outcome, progress, seconds, reportFollows }, { id, request }, particles) {
     const { store, columns } = this;
     if (particles === 0) {
       // The last surface stays until there is another, and is nothing to measure or to take away.
@@ -115,7 +115,7 @@ export class Presenter {
     store.revision.value += 1;
     store.partial.value = outcome === 'stopped' || progress?.stop_reason === 'cap';
     if (progress) {
-      store.progress.value = { ...progress, run: id, live: request.live, phase: report_follows ? 'quality' : 'done' };
+      store.progress.value = { ...progress, run: id, live: request.live, phase: reportFollows ? 'quality' : 'done' };
     }
     store.timing.value = timingOf(seconds, particles, request.live);
     if (request.fit && particles > 0) this.picture.fit();

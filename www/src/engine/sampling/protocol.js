@@ -21,7 +21,7 @@
 /**
  * Sample the field from the start. `grow` shows the surface while it grows; otherwise columns come once the front is
  * complete, so that a picture already there stays until its successor is whole. A `live` job comes from a control that is
- * being dragged: columns once, at the end, and no report unless it is stopped. `ask_above` is the number of particles beyond which the job is
+ * being dragged: columns once, at the end, and no report unless it is stopped. `askAbove` is the number of particles beyond which the job is
  * handed back unstarted. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
@@ -31,7 +31,7 @@
  * @property {Settings} settings
  * @property {boolean} grow
  * @property {boolean} live
- * @property {number} ask_above
+ * @property {number} askAbove
  */
 /**
  * Relax the particles that the worker holds, which must be those of job `of`.
@@ -54,7 +54,7 @@
 /** Faults that tests provoke. @typedef {'panic' | 'hang' | 'overflow'} Fault */
 
 /**
- * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `ask_above` are expected;
+ * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `askAbove` are expected;
  * `lost`: the particles to relax are no longer there. A job whose field was refused has ended with that answer, and one that
  * a newer one takes over from ends without a word.
  * @typedef {'complete' | 'stopped' | 'refused' | 'ask' | 'lost'} Outcome
@@ -70,9 +70,9 @@
  * @property {Float32Array} radii
  * @property {Uint32Array} levels
  * @property {Uint32Array} parents
- * @property {number} slots_from
+ * @property {number} slotsFrom
  * @property {Uint32Array} slots
- * @property {number} curvature_from
+ * @property {number} curvatureFrom
  * @property {Float32Array} curvature  empty unless the page shows it
  * @property {CoreProgress | null} progress  null for columns sent after the run
  */
@@ -85,7 +85,7 @@
  * @property {Seconds} seconds
  * @property {number} predicted  particles expected at the start, 0 when unknown
  * @property {string} message  words for `refused`, else empty
- * @property {boolean} report_follows
+ * @property {boolean} reportFollows
  */
 /**
  * @typedef {object} ReportMessage

@@ -111,11 +111,11 @@ export function sizeOf(settings, diagonal) {
 export class CostModel {
   constructor() {
     // A slow laptop's figures, until the first run tells.
-    this.fixed_ms = 5;
-    this.front_us = 1.5;
-    this.relax_us = 0.25;
+    this.fixedMs = 5;
+    this.frontUs = 1.5;
+    this.relaxUs = 0.25;
     /** Zero wherever the graphics card keeps up with the screen. */
-    this.draw_us = 0;
+    this.drawUs = 0;
     /** count · size², nearly constant for one surface; 0 until known. */
     this.area = 0;
     this.known = false;
@@ -127,26 +127,26 @@ export class CostModel {
     if (size > 0) this.area = particles * size * size;
     const share = this.known ? 0.5 : 1;
     const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
-    this.fixed_ms = blend(this.fixed_ms, seconds.seeding * 1e3);
-    this.front_us = blend(this.front_us, (seconds.generation * 1e6) / particles);
-    if (relax_steps > 0) this.relax_us = blend(this.relax_us, (seconds.relaxation * 1e6) / (particles * relax_steps));
+    this.fixedMs = blend(this.fixedMs, seconds.seeding * 1e3);
+    this.frontUs = blend(this.frontUs, (seconds.generation * 1e6) / particles);
+    if (relax_steps > 0) this.relaxUs = blend(this.relaxUs, (seconds.relaxation * 1e6) / (particles * relax_steps));
     this.known = true;
   }
 
-  /** A live run of so many particles took this much longer than its sampling. @param {number} particles @param {number} waited_ms */
-  recordPicture(particles, waited_ms) {
+  /** A live run of so many particles took this much longer than its sampling. @param {number} particles @param {number} waitedMs */
+  recordPicture(particles, waitedMs) {
     if (particles < FEWEST) return;
-    this.draw_us += 0.3 * ((Math.max(0, waited_ms - FRAME_MS) * 1e3) / particles - this.draw_us);
+    this.drawUs += 0.3 * ((Math.max(0, waitedMs - FRAME_MS) * 1e3) / particles - this.drawUs);
   }
 
-  /** @param {number} particles @param {number} relax_steps */
-  milliseconds(particles, relax_steps) {
-    return this.fixed_ms + (particles * this.perParticle(relax_steps)) / 1e3;
+  /** @param {number} particles @param {number} relaxSteps */
+  milliseconds(particles, relaxSteps) {
+    return this.fixedMs + (particles * this.perParticle(relaxSteps)) / 1e3;
   }
 
-  /** Microseconds. @param {number} relax_steps */
-  perParticle(relax_steps) {
-    return this.front_us + relax_steps * this.relax_us + this.draw_us;
+  /** Microseconds. @param {number} relaxSteps */
+  perParticle(relaxSteps) {
+    return this.frontUs + relaxSteps * this.relaxUs + this.drawUs;
   }
 
   /** Particles to expect. @param {Settings} settings @param {number} diagonal */
@@ -163,23 +163,23 @@ export class CostModel {
  * @param {Settings} settings  complete, with the defaults filled in
  * @param {number} diagonal  of the clip box, of which the radius is a share
  * @param {CostModel} cost
- * @param {number} [budget_ms]
+ * @param {number} [budgetMs]
  * @returns {{settings: Settings, coarse: boolean}}
  */
-export function planLive(settings, diagonal, cost, budget_ms = LIVE_MS) {
-  const relax_steps = Number(settings.relax_steps);
+export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
+  const relaxSteps = Number(settings.relax_steps);
   const expected = cost.expected(settings, diagonal);
-  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relax_steps) <= budget_ms)
+  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relaxSteps) <= budgetMs)
     return { settings, coarse: false };
-  const coarse_relax = Math.min(relax_steps, COARSE_RELAX_STEPS);
-  const per_particle_ms = cost.perParticle(coarse_relax) / 1e3;
+  const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
+  const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
   // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
-  const affordable = Math.max(FEWEST, Math.max(budget_ms - cost.fixed_ms, budget_ms / 2) / per_particle_ms);
+  const affordable = Math.max(FEWEST, Math.max(budgetMs - cost.fixedMs, budgetMs / 2) / perParticleMs);
   const particles = Math.min(expected, affordable);
   return {
     settings: {
       ...settings,
-      relax_steps: coarse_relax,
+      relax_steps: coarseRelax,
       ...coarser(settings, diagonal, cost, particles, expected / particles),
     },
     coarse: true,

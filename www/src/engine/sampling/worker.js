@@ -37,19 +37,19 @@ let provoked = null;
 let curvature = false;
 let dead = false;
 /** The last words of the core's panic hook, which writes to the console. */
-let last_words = '';
+let lastWords = '';
 
 const say = console.error.bind(console);
 console.error = (...parts) => {
-  last_words = parts.map(String).join(' ').slice(0, 4000);
+  lastWords = parts.map(String).join(' ').slice(0, 4000);
   say(...parts);
 };
 
 // A message to oneself ends the task, so that waiting messages are handled; timers would be held back to 4 ms.
-const self_channel = new MessageChannel();
+const selfChannel = new MessageChannel();
 /** @type {(() => void) | null} */
 let resume = null;
-self_channel.port1.onmessage = () => {
+selfChannel.port1.onmessage = () => {
   const go = resume;
   resume = null;
   go?.();
@@ -58,7 +58,7 @@ self_channel.port1.onmessage = () => {
 const pause = () =>
   new Promise((resolve) => {
     resume = resolve;
-    self_channel.port2.postMessage(null);
+    selfChannel.port2.postMessage(null);
   });
 
 /** @type {Core | null} */
@@ -91,7 +91,7 @@ async function pump() {
         ours,
         running,
         {
-          now_ms: () => performance.now(),
+          nowMs: () => performance.now(),
           pause,
           post: (message, transfer) => {
             if (message.type === 'columns') undrawn += 1;
@@ -117,7 +117,7 @@ async function pump() {
 function crashed(id, error) {
   dead = true;
   const stack = error instanceof Error ? (error.stack ?? '') : '';
-  post({ type: 'crashed', id, message: last_words || words(error), stack: stack.slice(0, 4000) });
+  post({ type: 'crashed', id, message: lastWords || words(error), stack: stack.slice(0, 4000) });
 }
 
 self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
@@ -181,7 +181,7 @@ async function boot(module) {
     core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
     post({ type: 'ready', description: JSON.parse(core.describe()) });
   } catch (error) {
-    failed('init', `The sampler did not start: ${last_words || words(error)}`);
+    failed('init', `The sampler did not start: ${lastWords || words(error)}`);
   }
   clearInterval(beat);
   await pump();

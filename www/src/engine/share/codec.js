@@ -122,11 +122,11 @@ export async function encode(state, description) {
  * Reads a fragment.
  * @param {string} fragment  with or without `#`
  * @param {Description} description
- * @param {boolean} [has_file]  whether there is a file for a state that needs one
+ * @param {boolean} [hasFile]  whether there is a file for a state that needs one
  * @returns {Promise<{state: State, reset: string[], problem: string | null}>} `problem`: why nothing of it could be used;
  *   `reset`: what of it could not
  */
-export async function decode(fragment, description, has_file = false) {
+export async function decode(fragment, description, hasFile = false) {
   const text = fragment.startsWith('#') ? fragment.slice(1) : fragment;
   const home = { state: defaultState(description), reset: [] };
   if (text === '') return { ...home, problem: null };
@@ -138,7 +138,7 @@ export async function decode(fragment, description, has_file = false) {
     const bytes = fromBase64url(parts[3]);
     const plain = parts[2] === 'z' ? await through(bytes, new DecompressionStream('deflate-raw'), LONGEST_JSON) : bytes;
     const raw = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(plain));
-    return { ...sanitize(raw, description, has_file), problem: null };
+    return { ...sanitize(raw, description, hasFile), problem: null };
   } catch (error) {
     return {
       ...home,

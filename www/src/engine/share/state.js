@@ -155,15 +155,15 @@ function validParameter(v) {
  * A valid state out of anything: what cannot be used takes its default and is named in `reset`, in words for a person.
  * @param {unknown} raw
  * @param {Description} description
- * @param {boolean} [has_file]  whether there is a file for a state that needs one
+ * @param {boolean} [hasFile]  whether there is a file for a state that needs one
  * @returns {{state: State, reset: string[]}}
  */
-export function sanitize(raw, description, has_file = false) {
+export function sanitize(raw, description, hasFile = false) {
   /** @type {string[]} */
   const reset = [];
   const state = defaultState(description);
   if (!isRecord(raw)) return { state, reset: ['everything'] };
-  if (raw.surface === FILE_SURFACE && !has_file) {
+  if (raw.surface === FILE_SURFACE && !hasFile) {
     // What belongs to the surface goes with it; the settings and the look do for another.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
@@ -226,10 +226,10 @@ export function sanitize(raw, description, has_file = false) {
 
 /**
  * A state with some of it changed: another surface, or a formula in place of a model, brings its own parameters and box.
- * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} has_file
+ * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} hasFile
  * @returns {{state: State, reset: string[]}}
  */
-export function mergeState(now, patch, description, has_file) {
+export function mergeState(now, patch, description, hasFile) {
   const another =
     typeof patch.surface === 'string'
       ? patch.surface !== now.surface
@@ -242,7 +242,7 @@ export function mergeState(now, patch, description, has_file) {
     ...patch,
     view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) },
   };
-  return sanitize(raw, description, has_file);
+  return sanitize(raw, description, hasFile);
 }
 
 /**

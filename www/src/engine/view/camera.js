@@ -12,8 +12,8 @@
  * @typedef {import('../types.js').Bounds} Bounds
  * @typedef {{left: number, right: number, top: number, bottom: number}} Insets  pixels covered by panels
  * @typedef {{
- *   clip_from_world: Float32Array, eye: Vec3, forward: Vec3, right: Vec3, up: Vec3, tan_x: number, tan_y: number,
- *   shift_x: number, shift_y: number, world_per_px: number, packed: Float32Array,
+ *   clipFromWorld: Float32Array, eye: Vec3, forward: Vec3, right: Vec3, up: Vec3, tanX: number, tanY: number,
+ *   shiftX: number, shiftY: number, worldPerPx: number, packed: Float32Array,
  * }} View
  */
 
@@ -45,24 +45,24 @@ export function axes({ yaw, pitch }) {
 /**
  * What the renderers and the picker need of a camera.
  * @param {CameraState} camera
- * @param {number} width_px
- * @param {number} height_px
+ * @param {number} widthPx
+ * @param {number} heightPx
  * @param {{centre: Vec3, radius: number}} scene  a ball around everything drawn: it places the near and far planes
  * @param {Insets} [insets]  the target is drawn in the middle of what they leave free
  * @returns {View}
  */
-export function viewOf(camera, width_px, height_px, scene, insets = { left: 0, right: 0, top: 0, bottom: 0 }) {
-  const w = Math.max(1, width_px);
-  const h = Math.max(1, height_px);
-  const [left, right_px] = fair(insets.left, insets.right, w);
+export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, right: 0, top: 0, bottom: 0 }) {
+  const w = Math.max(1, widthPx);
+  const h = Math.max(1, heightPx);
+  const [left, rightPx] = fair(insets.left, insets.right, w);
   const [top, bottom] = fair(insets.top, insets.bottom, h);
-  const free_w = w - left - right_px;
-  const free_h = h - top - bottom;
-  const world_per_px = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(free_w, free_h);
-  const tan_x = (world_per_px * w) / 2;
-  const tan_y = (world_per_px * h) / 2;
-  const shift_x = (left - right_px) / w;
-  const shift_y = (bottom - top) / h;
+  const freeW = w - left - rightPx;
+  const freeH = h - top - bottom;
+  const worldPerPx = (2 * Math.tan(FIELD_OF_VIEW_RAD / 2)) / Math.min(freeW, freeH);
+  const tanX = (worldPerPx * w) / 2;
+  const tanY = (worldPerPx * h) / 2;
+  const shiftX = (left - rightPx) / w;
+  const shiftY = (bottom - top) / h;
   const { right, up, forward } = axes(camera);
   const { target, distance } = camera;
   /** @type {Vec3} */
@@ -73,26 +73,26 @@ export function viewOf(camera, width_px, height_px, scene, insets = { left: 0, r
   const near = Math.max(depth - scene.radius * 1.05, far * 1e-3);
   const a = far / (near - far);
   const b = (far * near) / (near - far);
-  // Rows of clip_from_view (view looks along −z, depth 0 … 1) times the rows of view_from_world.
+  // Rows of clipFromView (view looks along −z, depth 0 … 1) times the rows of viewFromWorld.
   const tr = -dot(right, eye);
   const tu = -dot(up, eye);
   const tb = dot(forward, eye);
-  const clip_from_world = new Float32Array(16);
+  const clipFromWorld = new Float32Array(16);
   for (let k = 0; k < 4; k += 1) {
     const r = k < 3 ? right[k] : tr;
     const u = k < 3 ? up[k] : tu;
     const z = k < 3 ? -forward[k] : tb;
-    clip_from_world[4 * k] = r / tan_x - shift_x * z;
-    clip_from_world[4 * k + 1] = u / tan_y - shift_y * z;
-    clip_from_world[4 * k + 2] = a * z + (k === 3 ? b : 0);
-    clip_from_world[4 * k + 3] = -z;
+    clipFromWorld[4 * k] = r / tanX - shiftX * z;
+    clipFromWorld[4 * k + 1] = u / tanY - shiftY * z;
+    clipFromWorld[4 * k + 2] = a * z + (k === 3 ? b : 0);
+    clipFromWorld[4 * k + 3] = -z;
   }
   const packed = new Float32Array(23);
-  packed.set(clip_from_world);
+  packed.set(clipFromWorld);
   packed.set(eye, 16);
   packed.set(forward, 19);
-  packed[22] = world_per_px;
-  return { clip_from_world, eye, forward, right, up, tan_x, tan_y, shift_x, shift_y, world_per_px, packed };
+  packed[22] = worldPerPx;
+  return { clipFromWorld, eye, forward, right, up, tanX, tanY, shiftX, shiftY, worldPerPx, packed };
 }
 
 /** However much panels cover, this share of a side counts as free. */
@@ -110,12 +110,12 @@ export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 
 /**
  * Direction (length 1) of the ray through a pixel.
- * @param {View} view @param {number} x_px @param {number} y_px @param {number} width_px @param {number} height_px
+ * @param {View} view @param {number} xPx @param {number} yPx @param {number} widthPx @param {number} heightPx
  * @returns {Vec3}
  */
-export function rayThrough(view, x_px, y_px, width_px, height_px) {
-  const sx = ((2 * x_px) / width_px - 1 - view.shift_x) * view.tan_x;
-  const sy = (1 - (2 * y_px) / height_px - view.shift_y) * view.tan_y;
+export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
+  const sx = ((2 * xPx) / widthPx - 1 - view.shiftX) * view.tanX;
+  const sy = (1 - (2 * yPx) / heightPx - view.shiftY) * view.tanY;
   const d = [0, 1, 2].map((k) => view.forward[k] + sx * view.right[k] + sy * view.up[k]);
   const length = Math.hypot(d[0], d[1], d[2]);
   return [d[0] / length, d[1] / length, d[2] / length];
@@ -141,15 +141,15 @@ export class Camera {
   /** @param {CameraState} [state] */
   constructor(state = homeCamera()) {
     this.state = { ...state };
-    this.yaw_per_s = 0;
-    this.pitch_per_s = 0;
+    this.yawPerS = 0;
+    this.pitchPerS = 0;
     /** @type {{target: Vec3, distance: number} | null} */
     this.glide = null;
     /** Reduced motion: no easing, no glide. */
     this.calm = false;
     /** Distances allowed, from the size of the scene. */
-    this.near_limit = 1e-3;
-    this.far_limit = 1e4;
+    this.nearLimit = 1e-3;
+    this.farLimit = 1e4;
   }
 
   /** @param {CameraState} state */
@@ -159,48 +159,48 @@ export class Camera {
   }
 
   rest() {
-    this.yaw_per_s = 0;
-    this.pitch_per_s = 0;
+    this.yawPerS = 0;
+    this.pitchPerS = 0;
     this.glide = null;
   }
 
   /** @param {number} radius  of the scene */
   limits(radius) {
-    this.near_limit = radius * 0.02;
-    this.far_limit = radius * 60;
+    this.nearLimit = radius * 0.02;
+    this.farLimit = radius * 60;
   }
 
-  /** Turns by the given angles: a positive dx moves the near side to the right. @param {number} dx_rad @param {number} dy_rad */
-  orbit(dx_rad, dy_rad) {
+  /** Turns by the given angles: a positive dx moves the near side to the right. @param {number} dxRad @param {number} dyRad */
+  orbit(dxRad, dyRad) {
     const { yaw, pitch } = this.state;
     this.state = {
       ...this.state,
       // Kept within a turn, so that links stay short and floats exact.
-      yaw: (yaw - dx_rad) % (2 * Math.PI),
-      pitch: clamp(pitch + dy_rad, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
+      yaw: (yaw - dxRad) % (2 * Math.PI),
+      pitch: clamp(pitch + dyRad, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
     };
   }
 
-  /** The hand let go at this speed. @param {number} yaw_per_s @param {number} pitch_per_s */
-  fling(yaw_per_s, pitch_per_s) {
+  /** The hand let go at this speed. @param {number} yawPerS @param {number} pitchPerS */
+  fling(yawPerS, pitchPerS) {
     if (this.calm) return;
-    this.yaw_per_s = clamp(yaw_per_s, -12, 12);
-    this.pitch_per_s = clamp(pitch_per_s, -12, 12);
+    this.yawPerS = clamp(yawPerS, -12, 12);
+    this.pitchPerS = clamp(pitchPerS, -12, 12);
   }
 
   /**
    * Comes nearer by `factor` (> 1) and keeps the world point under the cursor where it is.
    * @param {number} factor
-   * @param {{view: View, x_px: number, y_px: number, width_px: number, height_px: number} | null} [at]
+   * @param {{view: View, xPx: number, yPx: number, widthPx: number, heightPx: number} | null} [at]
    */
   zoom(factor, at = null) {
     if (!(factor > 0) || !Number.isFinite(factor)) return;
     const { target, distance } = this.state;
-    const next = clamp(distance / factor, this.near_limit, this.far_limit);
+    const next = clamp(distance / factor, this.nearLimit, this.farLimit);
     /** @type {Vec3} */
     let moved = target;
     if (at) {
-      const ray = rayThrough(at.view, at.x_px, at.y_px, at.width_px, at.height_px);
+      const ray = rayThrough(at.view, at.xPx, at.yPx, at.widthPx, at.heightPx);
       // Where the ray meets the plane through the target that faces the eye, relative to the target.
       const along = distance / dot(ray, at.view.forward);
       const share = 1 - next / distance;
@@ -210,13 +210,13 @@ export class Camera {
     this.glide = null;
   }
 
-  /** Moves the target with the hand, in pixels. @param {number} dx_px @param {number} dy_px @param {View} view */
-  pan(dx_px, dy_px, view) {
-    const scale = view.world_per_px * this.state.distance;
+  /** Moves the target with the hand, in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
+  pan(dxPx, dyPx, view) {
+    const scale = view.worldPerPx * this.state.distance;
     this.state = {
       ...this.state,
       target: /** @type {Vec3} */ (
-        this.state.target.map((t, k) => t + scale * (-dx_px * view.right[k] + dy_px * view.up[k]))
+        this.state.target.map((t, k) => t + scale * (-dxPx * view.right[k] + dyPx * view.up[k]))
       ),
       fit: false,
     };
@@ -237,22 +237,22 @@ export class Camera {
   }
 
   /**
-   * Moves on by `dt_s`.
-   * @param {number} dt_s
+   * Moves on by `dtS`.
+   * @param {number} dtS
    * @returns {boolean} whether there is more to come
    */
-  step(dt_s) {
-    const keep = Math.exp(-dt_s / EASE_S);
+  step(dtS) {
+    const keep = Math.exp(-dtS / EASE_S);
     let moving = false;
-    if (this.yaw_per_s !== 0 || this.pitch_per_s !== 0) {
+    if (this.yawPerS !== 0 || this.pitchPerS !== 0) {
       // The exact way covered while the speed decays.
       const way = EASE_S * (1 - keep);
-      this.orbit(this.yaw_per_s * way, this.pitch_per_s * way);
-      this.yaw_per_s *= keep;
-      this.pitch_per_s *= keep;
-      if (Math.hypot(this.yaw_per_s, this.pitch_per_s) < REST_RAD_PER_S) {
-        this.yaw_per_s = 0;
-        this.pitch_per_s = 0;
+      this.orbit(this.yawPerS * way, this.pitchPerS * way);
+      this.yawPerS *= keep;
+      this.pitchPerS *= keep;
+      if (Math.hypot(this.yawPerS, this.pitchPerS) < REST_RAD_PER_S) {
+        this.yawPerS = 0;
+        this.pitchPerS = 0;
       } else moving = true;
     }
     if (this.glide) {

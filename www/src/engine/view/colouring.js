@@ -208,7 +208,7 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
         title: 'Generation level',
         unit: '',
         kind: 'cyclic',
-        range: [0, columns.last_level],
+        range: [0, columns.lastLevel],
         colours: [...palette.levels].map(hexFromPacked),
       };
     case 'fate': {

@@ -36,9 +36,9 @@ const KEY_TURN_RAD = Math.PI / 24;
 const KEY_ZOOM = 1.15;
 const KEY_PAN_PX = 40;
 
-/** Pixels of a wheel event, whatever unit it came in. @param {{deltaY: number, deltaMode: number}} event @param {number} page_px */
-export const wheelPixels = ({ deltaY, deltaMode }, page_px) =>
-  deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? page_px : 1);
+/** Pixels of a wheel event, whatever unit it came in. @param {{deltaY: number, deltaMode: number}} event @param {number} pagePx */
+export const wheelPixels = ({ deltaY, deltaMode }, pagePx) =>
+  deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? pagePx : 1);
 
 /**
  * @param {Stage} stage
@@ -48,12 +48,12 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
   /** @type {Map<number, {x: number, y: number}>} */
   const held = new Map();
   let panning = false;
-  /** @type {{x: number, y: number, at_ms: number, still: boolean} | null} */
+  /** @type {{x: number, y: number, atMs: number, still: boolean} | null} */
   let press = null;
-  /** @type {{dx: number, dy: number, at_ms: number}[]} */
+  /** @type {{dx: number, dy: number, atMs: number}[]} */
   let trail = [];
-  let hover_frame = 0;
-  let last_hover = { x: 0, y: 0 };
+  let hoverFrame = 0;
+  let lastHover = { x: 0, y: 0 };
   const off = new AbortController();
   const { signal } = off;
 
@@ -62,15 +62,15 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
     const box = host.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };
   };
-  const rad_per_px = () => TURN_PER_SIDE_RAD / Math.max(1, Math.min(host.clientWidth, host.clientHeight));
+  const radPerPx = () => TURN_PER_SIDE_RAD / Math.max(1, Math.min(host.clientWidth, host.clientHeight));
   /** @param {number} factor @param {{x: number, y: number}} at */
   const zoomAt = (factor, at) => {
     camera.zoom(factor, {
       view: currentView(),
-      x_px: at.x,
-      y_px: at.y,
-      width_px: host.clientWidth,
-      height_px: host.clientHeight,
+      xPx: at.x,
+      yPx: at.y,
+      widthPx: host.clientWidth,
+      heightPx: host.clientHeight,
     });
   };
 
@@ -88,7 +88,7 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
       }
       panning = event.button !== 0 || event.shiftKey;
       trail = [];
-      press = held.size === 1 ? { ...at, at_ms: event.timeStamp, still: true } : null;
+      press = held.size === 1 ? { ...at, atMs: event.timeStamp, still: true } : null;
       leave();
     },
     { signal },
@@ -102,13 +102,13 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
       if (!before) {
         if (held.size > 0 || event.pointerType === 'touch') return;
         // One look per frame: the pointer may report a thousand times a second.
-        if (hover_frame === 0) {
-          hover_frame = requestAnimationFrame(() => {
-            hover_frame = 0;
-            point(last_hover.x, last_hover.y, false);
+        if (hoverFrame === 0) {
+          hoverFrame = requestAnimationFrame(() => {
+            hoverFrame = 0;
+            point(lastHover.x, lastHover.y, false);
           });
         }
-        last_hover = at;
+        lastHover = at;
         return;
       }
       if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
@@ -118,17 +118,16 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
         if (press?.still) return;
         if (panning) camera.pan(dx, dy, currentView());
         else {
-          camera.orbit(dx * rad_per_px(), dy * rad_per_px());
-          trail.push({ dx, dy, at_ms: event.timeStamp });
+          camera.orbit(dx * radPerPx(), dy * radPerPx());
+          trail.push({ dx, dy, atMs: event.timeStamp });
           if (trail.length > 64) trail.shift();
         }
       } else if (held.size === 2) {
         const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
-        const span_before = Math.hypot(before.x - other.x, before.y - other.y);
+        const spanBefore = Math.hypot(before.x - other.x, before.y - other.y);
         const span = Math.hypot(at.x - other.x, at.y - other.y);
         camera.pan(dx / 2, dy / 2, currentView());
-        if (span_before > 8 && span > 8)
-          zoomAt(span / span_before, { x: (at.x + other.x) / 2, y: (at.y + other.y) / 2 });
+        if (spanBefore > 8 && span > 8) zoomAt(span / spanBefore, { x: (at.x + other.x) / 2, y: (at.y + other.y) / 2 });
       }
       held.set(event.pointerId, at);
       moved();
@@ -147,17 +146,14 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
       return;
     }
     const at = place(event);
-    if (released && press?.still && event.timeStamp - press.at_ms < TAP_MS && event.button === 0) {
+    if (released && press?.still && event.timeStamp - press.atMs < TAP_MS && event.button === 0) {
       point(at.x, at.y, true);
     } else if (released && !panning) {
-      const recent = trail.filter((step) => event.timeStamp - step.at_ms < THROW_MS);
-      const since = recent.length ? event.timeStamp - recent[0].at_ms : 0;
+      const recent = trail.filter((step) => event.timeStamp - step.atMs < THROW_MS);
+      const since = recent.length ? event.timeStamp - recent[0].atMs : 0;
       if (since > 8) {
-        const per_s = (rad_per_px() * 1000) / since;
-        camera.fling(
-          recent.reduce((sum, s) => sum + s.dx, 0) * per_s,
-          recent.reduce((sum, s) => sum + s.dy, 0) * per_s,
-        );
+        const perS = (radPerPx() * 1000) / since;
+        camera.fling(recent.reduce((sum, s) => sum + s.dx, 0) * perS, recent.reduce((sum, s) => sum + s.dy, 0) * perS);
       }
     }
     press = null;
@@ -172,8 +168,8 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
     (event) => {
       // A finger leaves whenever it is lifted: what it tapped stays chosen.
       if (event.pointerType === 'touch') return;
-      cancelAnimationFrame(hover_frame);
-      hover_frame = 0;
+      cancelAnimationFrame(hoverFrame);
+      hoverFrame = 0;
       leave();
     },
     { signal },
@@ -243,6 +239,6 @@ export function attachControls({ host, camera, currentView, moved, fit, point, l
 
   return () => {
     off.abort();
-    cancelAnimationFrame(hover_frame);
+    cancelAnimationFrame(hoverFrame);
   };
 }

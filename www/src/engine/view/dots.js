@@ -31,22 +31,22 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
   const radii = new Float32Array(2 * n);
   const colours = new Uint32Array(2 * n);
   const { eye, forward } = view;
-  const ink_px = Math.max(INK_PX, LEAST_INK / px);
+  const inkPx = Math.max(INK_PX, LEAST_INK / px);
   for (let i = 0; i < n; i += 1) {
-    const to_eye = [0, 1, 2].map((k) => eye[k] - points[3 * i + k]);
-    const distance = Math.hypot(to_eye[0], to_eye[1], to_eye[2]) || 1;
-    const depth = -(to_eye[0] * forward[0] + to_eye[1] * forward[1] + to_eye[2] * forward[2]);
-    const world_per_px = view.world_per_px * Math.max(depth, 0);
-    for (const [j, radius_px, colour] of [
-      [2 * i, ink_px + CASING_PX, palette.casing],
-      [2 * i + 1, ink_px, palette.ink],
+    const toEye = [0, 1, 2].map((k) => eye[k] - points[3 * i + k]);
+    const distance = Math.hypot(toEye[0], toEye[1], toEye[2]) || 1;
+    const depth = -(toEye[0] * forward[0] + toEye[1] * forward[1] + toEye[2] * forward[2]);
+    const worldPerPx = view.worldPerPx * Math.max(depth, 0);
+    for (const [j, radiusPx, colour] of [
+      [2 * i, inkPx + CASING_PX, palette.casing],
+      [2 * i + 1, inkPx, palette.ink],
     ]) {
-      const radius = radius_px * world_per_px;
+      const radius = radiusPx * worldPerPx;
       // The ink lies before its casing by more than the depth buffer's step.
       const forth = Math.min(lift + (j & 1 ? radius : 0), 0.5 * distance) / distance;
       for (let k = 0; k < 3; k += 1) {
-        positions[3 * j + k] = points[3 * i + k] + to_eye[k] * forth;
-        normals[3 * j + k] = to_eye[k] / distance;
+        positions[3 * j + k] = points[3 * i + k] + toEye[k] * forth;
+        normals[3 * j + k] = toEye[k] / distance;
       }
       radii[j] = radius / size;
       colours[j] = colour;

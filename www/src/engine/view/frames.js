@@ -20,7 +20,7 @@ export const nowS = () => performance.now() / 1000;
  */
 
 export class FrameLoop {
-  /** @param {(now_s: number, dt_s: number) => Outcome} draw  draws one frame; it may ask for the next */
+  /** @param {(nowS: number, dtS: number) => Outcome} draw  draws one frame; it may ask for the next */
   constructor(draw) {
     this.draw = draw;
     /** The frame asked for of the browser, 0 for none. */

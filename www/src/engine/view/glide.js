@@ -16,7 +16,7 @@ export class Glide {
     this.shown = new Float32Array(0);
     this.count = 0;
     this.from = new Float32Array(0);
-    this.start_s = -Infinity;
+    this.startS = -Infinity;
     this.active = false;
   }
 
@@ -26,10 +26,10 @@ export class Glide {
     this.active = false;
   }
 
-  /** Particles that are already drawn have moved. @param {number} now_s */
-  begin(now_s) {
+  /** Particles that are already drawn have moved. @param {number} nowS */
+  begin(nowS) {
     this.from = this.shown.slice(0, 3 * this.count);
-    this.start_s = now_s;
+    this.startS = nowS;
     this.active = true;
   }
 
@@ -37,10 +37,10 @@ export class Glide {
    * Where to draw the particles now.
    * @param {Float32Array} positions  where they are going
    * @param {number} count
-   * @param {number} now_s
+   * @param {number} nowS
    */
-  between(positions, count, now_s) {
-    const t = Math.min(1, Math.max(0, (now_s - this.start_s) / GLIDE_S));
+  between(positions, count, nowS) {
+    const t = Math.min(1, Math.max(0, (nowS - this.startS) / GLIDE_S));
     if (t === 1) this.active = false;
     const eased = t * (2 - t);
     const out = positions.slice(0, 3 * count);

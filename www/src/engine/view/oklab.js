@@ -67,9 +67,9 @@ export function packedFromOklab(lab) {
   return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
-/** OKLab of lightness 0 … 1, chroma and hue in degrees. @param {number} L @param {number} C @param {number} h_deg @returns {Triple} */
-export function oklch(L, C, h_deg) {
-  const h = (h_deg * Math.PI) / 180;
+/** OKLab of lightness 0 … 1, chroma and hue in degrees. @param {number} L @param {number} C @param {number} hDeg @returns {Triple} */
+export function oklch(L, C, hDeg) {
+  const h = (hDeg * Math.PI) / 180;
   return [L, C * Math.cos(h), C * Math.sin(h)];
 }
 

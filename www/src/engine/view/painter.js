@@ -83,19 +83,19 @@ export class Painter {
     return Infinity;
   }
 
-  /** @param {number} width_px @param {number} height_px */
-  resize(width_px, height_px) {
-    this.width = Math.max(0, Math.floor(width_px));
-    this.height = Math.max(0, Math.floor(height_px));
+  /** @param {number} widthPx @param {number} heightPx */
+  resize(widthPx, heightPx) {
+    this.width = Math.max(0, Math.floor(widthPx));
+    this.height = Math.max(0, Math.floor(heightPx));
     this.canvas.width = this.width;
     this.canvas.height = this.height;
   }
 
   /**
    * @param {number} first @param {Float32Array} positions @param {Float32Array} normals @param {Float32Array} radii
-   * @param {Uint32Array} levels @param {Uint32Array} colours @param {number} birth_s
+   * @param {Uint32Array} levels @param {Uint32Array} colours @param {number} birthS
    */
-  write(first, positions, normals, radii, levels, colours, birth_s) {
+  write(first, positions, normals, radii, levels, colours, birthS) {
     const last = first + radii.length;
     if (last > this.radii.length) {
       const room = Math.max(last, 2 * this.radii.length);
@@ -117,7 +117,7 @@ export class Painter {
     this.radii.set(radii, first);
     this.levels.set(levels, first);
     this.colours.set(colours, first);
-    this.births.fill(birth_s, first, last);
+    this.births.fill(birthS, first, last);
   }
 
   /** @param {number} first @param {Uint32Array} colours */
@@ -140,34 +140,34 @@ export class Painter {
     this.style = { ...this.style, ...JSON.parse(json) };
   }
 
-  /** @param {number} time_s */
-  draw(time_s) {
+  /** @param {number} timeS */
+  draw(timeS) {
     if (this.width === 0 || this.height === 0) return 'skipped';
     if (this.image.width !== this.width || this.image.height !== this.height) {
       this.image = new ImageData(this.width, this.height);
       this.depth = new Float32Array(this.width * this.height);
     }
-    this.paint(this.image, this.depth, false, time_s);
+    this.paint(this.image, this.depth, false, timeS);
     this.context.putImageData(this.image, 0, 0);
     return 'drawn';
   }
 
-  /** @param {number} width_px @param {number} height_px */
-  picture_size(width_px, height_px) {
-    return Uint32Array.of(width_px, height_px);
+  /** @param {number} widthPx @param {number} heightPx */
+  picture_size(widthPx, heightPx) {
+    return Uint32Array.of(widthPx, heightPx);
   }
 
-  /** @param {number} width_px @param {number} height_px @param {boolean} transparent */
-  async read_pixels(width_px, height_px, transparent) {
-    const image = new ImageData(width_px, height_px);
+  /** @param {number} widthPx @param {number} heightPx @param {boolean} transparent */
+  async read_pixels(widthPx, heightPx, transparent) {
+    const image = new ImageData(widthPx, heightPx);
     const onScreen = this.view.slice();
     // All that the canvas shows stays in a picture of another shape, and circles stay round.
-    const wider = width_px / height_px / (Math.max(1, this.width) / Math.max(1, this.height));
+    const wider = widthPx / heightPx / (Math.max(1, this.width) / Math.max(1, this.height));
     for (let k = 0; k < 4; k += 1) {
       if (wider > 1) this.view[4 * k] /= wider;
       else this.view[4 * k + 1] *= wider;
     }
-    this.paint(image, new Float32Array(width_px * height_px), transparent, Infinity);
+    this.paint(image, new Float32Array(widthPx * heightPx), transparent, Infinity);
     this.view = onScreen;
     return new Uint8Array(image.data.buffer);
   }
@@ -180,8 +180,8 @@ export class Painter {
 
   free() {}
 
-  /** @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} time_s */
-  paint(image, depth, transparent, time_s) {
+  /** @param {ImageData} image @param {Float32Array} depth @param {boolean} transparent @param {number} timeS */
+  paint(image, depth, transparent, timeS) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
     const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view, level = null } = this.style;
@@ -195,7 +195,7 @@ export class Painter {
     const [ex, ey, ez] = [m[16], m[17], m[18]];
     const light = Math.hypot(key_light_view[0], key_light_view[1], key_light_view[2]) || 1;
     const forward = [m[19], m[20], m[21]];
-    // Rows of clip_from_world give the axes of the eye up to their lengths, and up to the share along the view that moves
+    // Rows of clipFromWorld give the axes of the eye up to their lengths, and up to the share along the view that moves
     // the picture aside.
     const axis = (/** @type {number} */ k) => {
       const v = [m[k], m[4 + k], m[8 + k]];
@@ -204,14 +204,14 @@ export class Painter {
       const length = Math.hypot(u[0], u[1], u[2]) || 1;
       return { length, unit: u.map((c) => c / length) };
     };
-    const { unit: right, length: clip_x_per_world } = axis(0);
+    const { unit: right, length: clipXPerWorld } = axis(0);
     const { unit: up } = axis(1);
     const key = [0, 1, 2].map(
       (k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light,
     );
     const { positions, normals, radii, levels, colours, births } = this;
     for (let i = 0; i < this.count; i += 1) {
-      if (births[i] > time_s) continue;
+      if (births[i] > timeS) continue;
       const older = level !== null && levels[i] < level;
       if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) continue;
       const x = positions[3 * i];
@@ -225,7 +225,7 @@ export class Painter {
       const sx = (0.5 + 0.5 * cx) * width;
       const sy = (0.5 - 0.5 * cy) * height;
       const r = radii[i] * disc_scale;
-      const px = clip_x_per_world * r * inv * 0.5 * width;
+      const px = clipXPerWorld * r * inv * 0.5 * width;
       if (sx + px < 0 || sy + px < 0 || sx - px > width || sy - px > height) continue;
       let nx = normals[3 * i];
       let ny = normals[3 * i + 1];
@@ -238,26 +238,26 @@ export class Painter {
         nz = -nz;
       }
       // The same light as in shaders/discs.wgsl: a wrapped key light, a hemisphere, dimmer at the silhouette.
-      const key_wrapped = Math.max(0, (nx * key[0] + ny * key[1] + nz * key[2] + 0.25) / 1.25);
+      const keyWrapped = Math.max(0, (nx * key[0] + ny * key[1] + nz * key[2] + 0.25) / 1.25);
       const skyward = nx * up[0] + ny * up[1] + nz * up[2];
-      const edge_on = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
+      const edgeOn = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
       const shade =
-        (0.56 + 0.1 * skyward + 0.52 * key_wrapped * key_wrapped) * (1 - 0.3 * edge_on ** 3) * (back ? 0.72 : 1);
+        (0.56 + 0.1 * skyward + 0.52 * keyWrapped * keyWrapped) * (1 - 0.3 * edgeOn ** 3) * (back ? 0.72 : 1);
       const faded = older ? Math.max(dim, MUTE) : dim;
       const away = back ? 1 - (1 - dim_backfaces) * (1 - faded) : faded;
       const colour = colours[i];
-      const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ light_here) =>
-        Math.min(1, LINEAR[byte] * light_here) * (1 - away) + ground[k] * away;
-      const lit = (/** @type {number} */ light_here) =>
+      const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ lightHere) =>
+        Math.min(1, LINEAR[byte] * lightHere) * (1 - away) + ground[k] * away;
+      const lit = (/** @type {number} */ lightHere) =>
         packed(
-          mix(colour & 255, 0, light_here),
-          mix((colour >> 8) & 255, 1, light_here),
-          mix((colour >> 16) & 255, 2, light_here),
+          mix(colour & 255, 0, lightHere),
+          mix((colour >> 8) & 255, 1, lightHere),
+          mix((colour >> 16) & 255, 2, lightHere),
         );
       const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
       const rim = i === outline ? value : lit(shade * 0.78);
       // A rim of a tenth of the radius shows the order; on small discs it would only be noise.
-      const core_sq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
+      const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
       if (px < POINT_PX) {
         const at = (sy | 0) * width + (sx | 0);
         if (sx >= 0 && sx < width && sy >= 0 && sy < height && inv > depth[at]) {
@@ -274,7 +274,7 @@ export class Painter {
       const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
       const ka = a / c;
       const kb = b / c;
-      const depth_per_px = (r / px) * inv * inv;
+      const depthPerPx = (r / px) * inv * inv;
       const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
       const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
       const qa = 1 + ka * ka;
@@ -290,10 +290,10 @@ export class Painter {
         for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
           const dx = ix + 0.5 - sx;
           const dz = -(ka * dx + kb * dy);
-          const near = inv + dz * depth_per_px;
+          const near = inv + dz * depthPerPx;
           if (near > depth[at]) {
             depth[at] = near;
-            out[at] = dx * dx + dy * dy + dz * dz > core_sq ? rim : value;
+            out[at] = dx * dx + dy * dy + dz * dz > coreSq ? rim : value;
           }
         }
       }

@@ -22,34 +22,34 @@ const DENSE = 0.8;
  * @param {Columns} columns
  * @param {Vec3} eye
  * @param {Vec3} ray  length 1
- * @param {number} disc_scale  disc radius as a share of the particle's radius
- * @param {number} tolerance_rad
- * @param {number} [last_level]  particles of later levels are hidden
+ * @param {number} discScale  disc radius as a share of the particle's radius
+ * @param {number} toleranceRad
+ * @param {number} [lastLevel]  particles of later levels are hidden
  * @returns {number | null}
  */
-export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = Infinity) {
+export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity) {
   const { positions, normals, radii, levels, count } = columns;
   const [ex, ey, ez] = eye;
   const [dx, dy, dz] = ray;
   let hit = -1;
-  let hit_t = Infinity;
+  let hitT = Infinity;
   let gap = -1;
-  let gap_cost = Infinity;
-  const reach_scale = disc_scale < DENSE ? disc_scale : Math.max(disc_scale, GAP);
+  let gapCost = Infinity;
+  const reachScale = discScale < DENSE ? discScale : Math.max(discScale, GAP);
   let close = -1;
-  let close_cost = Infinity;
+  let closeCost = Infinity;
   for (let i = 0, j = 0; i < count; i += 1, j += 3) {
     const px = positions[j] - ex;
     const py = positions[j + 1] - ey;
     const pz = positions[j + 2] - ez;
     const along = px * dx + py * dy + pz * dz;
     if (along <= 0) continue;
-    const off_sq = px * px + py * py + pz * pz - along * along;
-    const r = radii[i] * disc_scale;
-    const r_gap = radii[i] * reach_scale;
-    const slack = tolerance_rad * along;
-    const reach = Math.max(r_gap, slack);
-    if (off_sq > reach * reach || levels[i] > last_level) continue;
+    const offSq = px * px + py * py + pz * pz - along * along;
+    const r = radii[i] * discScale;
+    const rGap = radii[i] * reachScale;
+    const slack = toleranceRad * along;
+    const reach = Math.max(rGap, slack);
+    if (offSq > reach * reach || levels[i] > lastLevel) continue;
     const nx = normals[j];
     const ny = normals[j + 1];
     const nz = normals[j + 2];
@@ -60,24 +60,24 @@ export function pick(columns, eye, ray, disc_scale, tolerance_rad, last_level = 
       const qx = dx * t - px;
       const qy = dy * t - py;
       const qz = dz * t - pz;
-      const q_sq = qx * qx + qy * qy + qz * qz;
-      if (t > 0 && q_sq <= r_gap * r_gap) {
-        if (t < hit_t && q_sq <= r * r) {
-          hit_t = t;
+      const qSq = qx * qx + qy * qy + qz * qz;
+      if (t > 0 && qSq <= rGap * rGap) {
+        if (t < hitT && qSq <= r * r) {
+          hitT = t;
           hit = i;
         }
         // On one sheet the nearest middle counts; sheets lie farther apart than that.
-        const cost = t + Math.sqrt(q_sq);
-        if (cost < gap_cost) {
-          gap_cost = cost;
+        const cost = t + Math.sqrt(qSq);
+        if (cost < gapCost) {
+          gapCost = cost;
           gap = i;
         }
       }
     }
     // Nearer to the ray counts, and among equals nearer to the eye; a particle on the far side never wins over a near one.
-    const cost = along * (1 + off_sq / (slack * slack + 1e-30));
-    if (off_sq <= slack * slack && cost < close_cost) {
-      close_cost = cost;
+    const cost = along * (1 + offSq / (slack * slack + 1e-30));
+    if (offSq <= slack * slack && cost < closeCost) {
+      closeCost = cost;
       close = i;
     }
   }

@@ -17,17 +17,17 @@ const USUAL_LEVELS = 90;
 export class Reveal {
   constructor() {
     this.active = false;
-    this.start_s = 0;
-    this.step_s = 0;
+    this.startS = 0;
+    this.stepS = 0;
     /** Second at which each level appears. @type {number[]} */
     this.births = [];
   }
 
-  /** @param {number} now_s */
-  begin(now_s) {
+  /** @param {number} nowS */
+  begin(nowS) {
     this.active = true;
-    this.start_s = now_s;
-    this.step_s = Math.min(SLOWEST_S, Math.max(FASTEST_S, WHOLE_S / USUAL_LEVELS));
+    this.startS = nowS;
+    this.stepS = Math.min(SLOWEST_S, Math.max(FASTEST_S, WHOLE_S / USUAL_LEVELS));
     this.births = [];
   }
 
@@ -38,23 +38,23 @@ export class Reveal {
 
   /**
    * Second at which a level appears; fixed the first time it is asked for. Levels come in order.
-   * @param {number} level @param {number} now_s
+   * @param {number} level @param {number} nowS
    */
-  birthOf(level, now_s) {
+  birthOf(level, nowS) {
     if (!this.active) return -Infinity;
     for (let k = this.births.length; k <= level; k += 1) {
-      const after = k === 0 ? now_s : this.births[k - 1] + this.step_s;
-      this.births.push(Math.max(after, now_s));
+      const after = k === 0 ? nowS : this.births[k - 1] + this.stepS;
+      this.births.push(Math.max(after, nowS));
     }
     return this.births[level];
   }
 
   /**
    * Runs of particles that appear at the same time: one while nothing is being revealed, else one for each level.
-   * @param {Uint32Array} levels @param {number} first @param {number} last @param {number} now_s
+   * @param {Uint32Array} levels @param {number} first @param {number} last @param {number} nowS
    * @returns {[number, number, number][]} first, last and second of appearance of each
    */
-  runs(levels, first, last, now_s) {
+  runs(levels, first, last, nowS) {
     if (!this.active) return [[first, last, -Infinity]];
     /** @type {[number, number, number][]} */
     const out = [];
@@ -62,21 +62,21 @@ export class Reveal {
       const level = levels[i];
       let end = i + 1;
       while (end < last && levels[end] === level) end += 1;
-      out.push([i, end, this.birthOf(level, now_s)]);
+      out.push([i, end, this.birthOf(level, nowS)]);
       i = end;
     }
     return out;
   }
 
-  /** The last level that has begun to appear, −1 before the first. @param {number} now_s */
-  levelAt(now_s) {
+  /** The last level that has begun to appear, −1 before the first. @param {number} nowS */
+  levelAt(nowS) {
     let k = this.births.length - 1;
-    while (k >= 0 && this.births[k] > now_s) k -= 1;
+    while (k >= 0 && this.births[k] > nowS) k -= 1;
     return k;
   }
 
   /** Second at which everything known so far is there. */
-  end_s() {
-    return this.births.length ? this.births[this.births.length - 1] : this.start_s;
+  endS() {
+    return this.births.length ? this.births[this.births.length - 1] : this.startS;
   }
 }

@@ -74,20 +74,20 @@ export class ParticleUpload {
    * Tells the device what is new.
    * @param {Renderer} renderer
    * @param {Look} look
-   * @param {{reveal: import('./reveal.js').Reveal, calm: boolean, now_s: number}} present
+   * @param {{reveal: import('./reveal.js').Reveal, calm: boolean, nowS: number}} present
    * @returns {number} particles that it holds
    */
-  write(renderer, look, { reveal, calm, now_s }) {
+  write(renderer, look, { reveal, calm, nowS }) {
     const { columns, glide, dirty } = this;
     const count = Math.min(columns.count, renderer.max_particles());
     if (!dirty.empty || !this.recoloured.empty) this.followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
-    if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(now_s);
+    if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(nowS);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
-      const positions = glide.active ? glide.between(columns.positions, count, now_s) : columns.positions;
+      const positions = glide.active ? glide.between(columns.positions, count, nowS) : columns.positions;
       const colours = this.colours(look, first, last);
-      for (const [from, end, birth] of reveal.runs(columns.levels, first, last, now_s)) {
+      for (const [from, end, birth] of reveal.runs(columns.levels, first, last, nowS)) {
         renderer.write(
           from,
           positions.subarray(3 * from, 3 * end),

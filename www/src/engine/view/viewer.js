@@ -59,7 +59,7 @@ export class Viewer {
     this.upload = new ParticleUpload(columns);
     /** What has changed since it was told. */
     this.due = { size: true, style: true, legend: true };
-    this.frames = new FrameLoop((now_s, dt_s) => this.frame(now_s, dt_s));
+    this.frames = new FrameLoop((nowS, dtS) => this.frame(nowS, dtS));
     this.screen = new Screen(host, () => this.resized());
     /** Whether the system asks for less motion. */
     this.calm = matchMedia('(prefers-reduced-motion: reduce)');
@@ -198,8 +198,8 @@ export class Viewer {
     if (columns.count === 0 || columns.stale || cssWidth === 0 || cssHeight === 0) return null;
     const view = this.currentView();
     const ray = rayThrough(view, x, y, cssWidth, cssHeight);
-    const newest = shownLevel(look, columns.last_level) ?? Infinity;
-    return pick(columns, view.eye, ray, look.size, PICK_PX * view.world_per_px, newest);
+    const newest = shownLevel(look, columns.lastLevel) ?? Infinity;
+    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest);
   }
 
   // ---- drawing ------------------------------------------------------------------------------------------------------------
@@ -212,42 +212,42 @@ export class Viewer {
     this.events.onDevice(device);
   }
 
-  /** @param {number} now_s @param {number} dt_s @returns {import('./frames.js').Outcome} */
-  frame(now_s, dt_s) {
+  /** @param {number} nowS @param {number} dtS @returns {import('./frames.js').Outcome} */
+  frame(nowS, dtS) {
     const { device } = this.keeper;
     if (!device) return 'none';
     const before = this.camera.state;
-    const moving = this.camera.step(dt_s);
+    const moving = this.camera.step(dtS);
     if (this.camera.state !== before) this.events.onCamera(this.camera.state);
     let outcome;
     try {
-      this.tell(device, now_s);
-      outcome = device.renderer.draw(now_s);
+      this.tell(device, nowS);
+      outcome = device.renderer.draw(nowS);
     } catch (error) {
       // The renderer trapped: its instance is not to be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
     if (this.due.legend && !this.reveal.active) this.tellLegend();
-    const revealing = this.tellReveal(now_s);
-    const dimming = this.dimmer.moving(now_s);
+    const revealing = this.tellReveal(nowS);
+    const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
     if (moving || revealing || dimming || this.upload.glide.active) this.frames.ask();
     if (outcome === 'drawn') return 'drawn';
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
   }
 
-  /** Everything that changed since the last frame. @param {Device} device @param {number} now_s */
-  tell({ renderer }, now_s) {
+  /** Everything that changed since the last frame. @param {Device} device @param {number} nowS */
+  tell({ renderer }, nowS) {
     const { screen, due, upload, look, reveal } = this;
     if (due.size) {
       renderer.resize(screen.width, screen.height);
       due.size = false;
     }
-    const count = upload.write(renderer, look, { reveal, calm: this.calm.matches, now_s });
+    const count = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
     this.tellView(renderer, this.currentView(), count);
     if (due.style) {
-      renderer.set_style(JSON.stringify(this.style(now_s)));
+      renderer.set_style(JSON.stringify(this.style(nowS)));
       due.style = false;
     }
   }
@@ -264,35 +264,35 @@ export class Viewer {
     this.events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
   }
 
-  /** @param {number} now_s @returns {boolean} whether more is to appear */
-  tellReveal(now_s) {
+  /** @param {number} nowS @returns {boolean} whether more is to appear */
+  tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;
-    if (now_s > reveal.end_s() + FADE_S && !this.growing) {
+    if (nowS > reveal.endS() + FADE_S && !this.growing) {
       this.endReveal();
       if (this.due.legend) this.tellLegend();
       return false;
     }
-    const level = reveal.levelAt(now_s);
+    const level = reveal.levelAt(nowS);
     let particles = 0;
     while (particles < columns.count && columns.levels[particles] <= level) particles += 1;
     this.events.onReveal({ level: Math.max(0, level), levels: reveal.births.length, particles });
     return true;
   }
 
-  /** @param {number} now_s */
-  style(now_s) {
+  /** @param {number} nowS */
+  style(nowS) {
     const calm = this.calm.matches;
-    const dim = this.dimmer.at(now_s, calm);
-    return styleOf(this.look, { lastLevel: this.columns.last_level, dim, calm, pixelRatio: this.screen.ratio });
+    const dim = this.dimmer.at(nowS, calm);
+    return styleOf(this.look, { lastLevel: this.columns.lastLevel, dim, calm, pixelRatio: this.screen.ratio });
   }
 
   /**
    * The picture without panels, drawn into a texture and read back.
-   * @param {number} width_px @param {number} height_px @param {boolean} transparent
+   * @param {number} widthPx @param {number} heightPx @param {boolean} transparent
    * @returns {Promise<{width: number, height: number, pixels: Uint8Array<ArrayBuffer>}>}
    */
-  async pixels(width_px, height_px, transparent) {
+  async pixels(widthPx, heightPx, transparent) {
     const { device } = this.keeper;
     if (!device) throw new Error('There is no picture yet.');
     const { renderer } = device;
@@ -300,7 +300,7 @@ export class Viewer {
     // A picture on file shows the particles where they are, not on their way.
     if (this.upload.glide.active) this.upload.restart();
     this.tell(device, now);
-    const [width, height] = renderer.picture_size(width_px, height_px);
+    const [width, height] = renderer.picture_size(widthPx, heightPx);
     const { cssWidth, cssHeight } = this.screen;
     const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.scene.ball());
     this.tellView(renderer, view, Math.min(this.columns.count, renderer.max_particles()));

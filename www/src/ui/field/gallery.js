@@ -67,11 +67,11 @@ export function createGallery(engine, description) {
   const file = computed(() =>
     engine.field.value?.surface === FILE_SURFACE ? (engine.field.value.model?.name ?? 'File') : null,
   );
-  let file_name = '';
+  let fileName = '';
   effect(() => {
     const name = file.value;
-    if (name === null || name === file_name) return;
-    file_name = name;
+    if (name === null || name === fileName) return;
+    fileName = name;
     inputs.get(FILE_SURFACE)?.closest('label')?.remove();
     const face = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, icon('file'), extensionOf(name));
     open[0].before(createTile(FILE_SURFACE, name, face, () => ({ title: name, text: 'The file opened last.' })));

@@ -2,7 +2,7 @@
 import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
-/** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'last_level'>} Particles */
+/** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
 /**
  * One row per level. `fates` has eight numbers for each: how the children fared that the level before proposed.
  * @typedef {object} LevelTable
@@ -20,8 +20,8 @@ const FATES = 8;
 const MOST_SLOTS = 10;
 
 /** @param {Particles} particles @returns {LevelTable} */
-export function levelTable({ count, levels, parents, slots, adaptive, last_level }) {
-  const last = count > 0 ? last_level : 0;
+export function levelTable({ count, levels, parents, slots, adaptive, lastLevel }) {
+  const last = count > 0 ? lastLevel : 0;
   const fresh = new Uint32Array(last + 1);
   const seeds = new Uint32Array(last + 1);
   // One level more: the last one's children found no place.
@@ -59,14 +59,14 @@ export const shortOf = ({ last, fresh, total }, level) =>
 /**
  * The level in words: what there is, and how it came about.
  * @param {LevelTable} table @param {number} level
- * @param {number} relax_steps  by which the particles have been moved since
+ * @param {number} relaxSteps  by which the particles have been moved since
  */
-export function describeLevel(table, level, relax_steps) {
+export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
   const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
-  const moved = relax_steps > 0 ? ` Drawn after ${plural(relax_steps, 'relaxation step')}.` : '';
+  const moved = relaxSteps > 0 ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.` : '';
   if (level === 0) {
     return {
       title,
