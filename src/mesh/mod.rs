@@ -4,8 +4,10 @@
 //! A mesh crosses between modules as plain data, a list of triangles: triples of particle indices, counter-clockwise seen
 //! from outside.
 //!
+//! * [`build`]: from points with normals to triangles.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by a journal; subdivision.
 //! * [`topology`]: what a list of triangles adds up to: components, borders, Euler numbers, and where it is no manifold.
 
+pub mod build;
 pub mod half_edge;
 pub mod topology;

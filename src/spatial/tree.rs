@@ -57,7 +57,12 @@ pub(crate) fn unkey(key: u64) -> (f32, u32) {
 impl Tree {
     /// The tree over `points`, which must be finite.
     pub(crate) fn new(points: &[Vec3]) -> Self {
-        pieces::complete(Self::in_pieces(points.iter().copied().zip(0..).collect()))
+        Self::of(points.iter().copied().zip(0..).collect())
+    }
+
+    /// [`Tree::in_pieces`], at once.
+    pub(crate) fn of(items: Vec<(Vec3, u32)>) -> Self {
+        pieces::complete(Self::in_pieces(items))
     }
 
     /// The tree over points with their indices, made a piece at a time; the largest piece takes as long as a look at all of

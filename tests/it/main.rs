@@ -16,6 +16,7 @@ mod front;
 mod gallery;
 mod half_edge;
 mod json;
+mod mesh;
 #[cfg(feature = "points")]
 mod models;
 #[cfg(feature = "points")]

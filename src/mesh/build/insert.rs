@@ -1,0 +1,86 @@
+//! Points in no triangle go into the triangle below them.
+
+use super::holes::faces_as_corners;
+use super::patch::Patch;
+use super::stars::MAX_LIFT;
+use crate::spatial::tree::{Tree, unkey};
+
+/// How many of the nearest points are looked at for the triangle below a point.
+const NEAR: usize = 32;
+/// How far outside a triangle a point may lie, as a share of the triangle's height there.
+const OUTSIDE: f64 = 0.25;
+/// Least cosine of the angle between the normals of a point and of the triangle below it.
+const FACING: f64 = 0.2;
+/// Most triangles that a point may replace.
+const MOST: usize = 16;
+
+/// Inserts the point `v`, which is in no triangle; whether there was a triangle for it.
+pub(super) fn insert(patch: &mut Patch, tree: &Tree, v: u32, keys: &mut Vec<u64>) -> bool {
+    tree.nearest_many(tree.position[v as usize], NEAR, |j| j != v, keys);
+    let mut best = (-OUTSIDE, None);
+    for &key in keys.iter() {
+        for id in patch.around(unkey(key).1) {
+            let depth = depth(patch, id, v);
+            if depth > best.0 {
+                best = (depth, Some(id));
+            }
+        }
+    }
+    best.1.is_some_and(|id| replace(patch, id, v))
+}
+
+/// The least barycentric coordinate of a point above a triangle; −∞ if the point is not on its sheet.
+fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
+    let [a, b, c] = patch.triangle(id);
+    let area = patch.area_vector([a, b, c]);
+    let area_sq = area.length_squared();
+    let rise = (patch.place(v) - patch.place(a)).dot(area);
+    let facing = patch.normal[v as usize].as_dvec3().dot(area);
+    // The area is about that of a square over the triangle's longest side.
+    let is_above = rise * rise <= f64::from(MAX_LIFT * MAX_LIFT) * area_sq * area_sq.sqrt();
+    if !(is_above && facing > 0.0 && facing * facing >= FACING * FACING * area_sq) {
+        return f64::NEG_INFINITY;
+    }
+    let share = |a: u32, b: u32| patch.area_vector([a, b, v]).dot(area) / area_sq;
+    share(a, b).min(share(b, c)).min(share(c, a))
+}
+
+/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline.
+fn replace(patch: &mut Patch, id: u32, v: u32) -> bool {
+    let [a, b, c] = patch.triangle(id);
+    let mut gone = vec![id];
+    // The corners of the outline, counter-clockwise.
+    let mut outline = vec![a, b, c];
+    let mut k = 0;
+    while k < outline.len() && gone.len() < MOST {
+        let (a, b) = (outline[k], outline[(k + 1) % outline.len()]);
+        let behind = patch.with_side(b, a).map(|id| (id, patch.opposite(id, a, b)));
+        if let Some((id, far)) = behind
+            && !outline.contains(&far)
+            && (!faces_as_corners(patch, [a, b, v]) || is_too_wide(patch, [a, b], [v, far]))
+        {
+            gone.push(id);
+            outline.insert(k + 1, far);
+            k = 0;
+        } else {
+            k += 1;
+        }
+    }
+    let sides = (0..outline.len()).map(|k| [outline[k], outline[(k + 1) % outline.len()], v]);
+    if !sides.clone().all(|triangle| faces_as_corners(patch, triangle)) {
+        return false;
+    }
+    gone.into_iter().for_each(|id| patch.remove(id));
+    let triangles: Vec<[u32; 3]> = sides.collect();
+    triangles.into_iter().for_each(|triangle| patch.add(triangle));
+    true
+}
+
+/// Whether the angles opposite to an edge add up to more than half a turn.
+fn is_too_wide(patch: &Patch, [a, b]: [u32; 2], opposite: [u32; 2]) -> bool {
+    let [(dot, cross), (other_dot, other_cross)] = opposite.map(|v| {
+        let (a, b) = (patch.place(a) - patch.place(v), patch.place(b) - patch.place(v));
+        (a.dot(b), a.cross(b).length())
+    });
+    dot * other_cross + cross * other_dot < 0.0
+}
