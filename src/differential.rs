@@ -119,7 +119,6 @@ pub fn curvatures_of(gradient: &[Vec3], hessian: &[Sym3<f32>], out: &mut [Curvat
 }
 
 /// κ₁, κ₂ and the direction of κ₁.
-#[inline(always)]
 fn principal<T: Real>(gradient: [T; 3], hessian: &Sym3<T>) -> [T; 5] {
     let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let slope_sq = dot(gradient, gradient);

@@ -114,14 +114,12 @@ impl Trace {
     }
 
     /// Whether this particle is followed.
-    #[inline(always)]
     #[must_use]
     pub fn follows(&self, particle: u32) -> bool {
         self.followed == particle
     }
 
     /// Notes an event at `particle`; made only if that is followed.
-    #[inline(always)]
     pub fn note(&mut self, particle: u32, event: impl FnOnce() -> Event) {
         if self.followed == particle {
             self.events.push(event());
@@ -129,7 +127,6 @@ impl Trace {
     }
 
     /// Notes what happens to a child of `particle`; made only if that is followed.
-    #[inline(always)]
     pub fn note_child(&mut self, particle: u32, child: u32, step: impl FnOnce() -> Step) {
         if self.followed == particle {
             self.events.push(Event::Child { child, step: step() });

@@ -25,7 +25,7 @@ const ROUNDER_F64: f64 = 6_755_399_441_055_744.0;
 const ALL_INTEGERS: f32 = 8_388_608.0;
 
 /// −1, 0 or 1.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn sign(a: f32) -> f32 {
     let unit = 1.0_f32.copysign(a);
@@ -33,7 +33,7 @@ pub fn sign(a: f32) -> f32 {
 }
 
 /// The lesser of two numbers.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
     let least = if a < b { a } else { b };
@@ -41,7 +41,7 @@ pub fn min(a: f32, b: f32) -> f32 {
 }
 
 /// The greater of two numbers.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
     let most = if a > b { a } else { b };
@@ -49,7 +49,7 @@ pub fn max(a: f32, b: f32) -> f32 {
 }
 
 /// The greatest integer not above `a`; exact.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn floor(a: f32) -> f32 {
     let size = a.abs();
@@ -59,27 +59,27 @@ pub fn floor(a: f32) -> f32 {
 }
 
 /// `a` cut to `lo … hi`; NaN stays.
-#[inline(always)]
+#[inline]
 fn cut(a: f32, lo: f32, hi: f32) -> f32 {
     let a = if a < lo { lo } else { a };
     if a > hi { hi } else { a }
 }
 
 /// 2^k for −126 ≤ k ≤ 127.
-#[inline(always)]
+#[inline]
 fn two_to(k: i32) -> f32 {
     f32::from_bits((k.wrapping_add(127) as u32) << 23)
 }
 
 /// m · 2^k, rounded once more if the result is subnormal; |k| ≤ 252.
-#[inline(always)]
+#[inline]
 fn scaled(m: f32, k: i32) -> f32 {
     let half = k >> 1;
     m * two_to(half) * two_to(k.wrapping_sub(half))
 }
 
 /// e^a · 2^shift.
-#[inline(always)]
+#[inline]
 fn exp_scaled(a: f32, shift: i32) -> f32 {
     /// ln 2 in two parts, the first of 9 bits, so that its multiples by up to 2¹⁴ are exact.
     const LN_2: [f32; 2] = [0.693_359_375, -2.121_944_4e-4];
@@ -97,14 +97,14 @@ fn exp_scaled(a: f32, shift: i32) -> f32 {
 }
 
 /// e^a.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn exp(a: f32) -> f32 {
     exp_scaled(a, 0)
 }
 
 /// Natural logarithm: −∞ at 0, NaN below.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn ln(a: f32) -> f32 {
     let (e, m) = exponent_and_mantissa(a);
@@ -127,14 +127,14 @@ pub fn ln(a: f32) -> f32 {
 }
 
 /// Logarithm to base 10: −∞ at 0, NaN below.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn log10(a: f32) -> f32 {
     ln(a) * core::f32::consts::LOG10_E
 }
 
 /// `result` where `a` is positive and finite, and the limits elsewhere.
-#[inline(always)]
+#[inline]
 fn logarithm_edges(a: f32, result: f32) -> f32 {
     let result = if a < f32::INFINITY { result } else { a };
     let result = if a == 0.0 { f32::NEG_INFINITY } else { result };
@@ -142,7 +142,7 @@ fn logarithm_edges(a: f32, result: f32) -> f32 {
 }
 
 /// e and m with a = m · 2^e and √½ ≤ m < √2, for positive finite `a`.
-#[inline(always)]
+#[inline]
 fn exponent_and_mantissa(a: f32) -> (f32, f32) {
     /// √½.
     const LEAST: u32 = 0x3f35_04f3;
@@ -157,7 +157,7 @@ fn exponent_and_mantissa(a: f32) -> (f32, f32) {
 
 /// The quadrant of an angle and what is left of it: a = k π/2 + r, |r| ≤ π/4; the reduction runs in double
 /// precision, so that r keeps its relative accuracy up to |a| of about 10⁶.
-#[inline(always)]
+#[inline]
 fn quadrant(a: f32) -> (u32, f32) {
     /// π/2 in two parts, the first of 33 bits, so that its multiples by up to 2²⁰ are exact.
     const HALF_PI: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
@@ -170,28 +170,28 @@ fn quadrant(a: f32) -> (u32, f32) {
 }
 
 /// sin r for |r| ≤ π/4.
-#[inline(always)]
+#[inline]
 fn sine_polynomial(r: f32) -> f32 {
     let z = r * r;
     ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * r + r
 }
 
 /// cos r for |r| ≤ π/4.
-#[inline(always)]
+#[inline]
 fn cosine_polynomial(r: f32) -> f32 {
     let z = r * r;
     ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0
 }
 
 /// The sine in quadrant `k`, from the sine and cosine of what is left.
-#[inline(always)]
+#[inline]
 fn turned(k: u32, sine: f32, cosine: f32) -> f32 {
     let value = if k & 1 == 0 { sine } else { cosine };
     f32::from_bits(value.to_bits() ^ ((k & 2) << 30))
 }
 
 /// Sine of an angle in radians; NaN at ±∞. Accurate to 2 ulp up to |a| = 10⁶, and to 10⁻⁶ in the value up to 10⁹.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn sin(a: f32) -> f32 {
     let (k, r) = quadrant(a);
@@ -199,7 +199,7 @@ pub fn sin(a: f32) -> f32 {
 }
 
 /// Cosine of an angle in radians; accurate like [`sin`].
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn cos(a: f32) -> f32 {
     let (k, r) = quadrant(a);
@@ -207,7 +207,7 @@ pub fn cos(a: f32) -> f32 {
 }
 
 /// Tangent of an angle in radians, to 4 ulp up to |a| = 10⁶.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn tan(a: f32) -> f32 {
     let (k, r) = quadrant(a);
@@ -222,7 +222,7 @@ pub fn tan(a: f32) -> f32 {
 const HALF_PI_REST: f32 = -4.371_139e-8;
 
 /// For 0 ≤ a ≤ 1: asin of a where a ≤ ½, and of √((1 − a)/2), half of acos a, elsewhere.
-#[inline(always)]
+#[inline]
 fn asin_core(a: f32) -> f32 {
     let large = a > 0.5;
     let z = if large { 0.5 * (1.0 - a) } else { a * a };
@@ -235,7 +235,7 @@ fn asin_core(a: f32) -> f32 {
 }
 
 /// Inverse sine in radians; NaN outside −1 … 1.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn asin(a: f32) -> f32 {
     let size = a.abs();
@@ -245,7 +245,7 @@ pub fn asin(a: f32) -> f32 {
 }
 
 /// Inverse cosine in radians; NaN outside −1 … 1.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn acos(a: f32) -> f32 {
     let size = a.abs();
@@ -256,14 +256,14 @@ pub fn acos(a: f32) -> f32 {
 }
 
 /// atan q for |q| ≤ tan(π/8).
-#[inline(always)]
+#[inline]
 fn atan_polynomial(q: f32) -> f32 {
     let z = q * q;
     (((8.053_744_5e-2 * z - 1.387_768_6e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1) * z * q + q
 }
 
 /// Inverse tangent in radians.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn atan(a: f32) -> f32 {
     /// tan(3π/8) and tan(π/8).
@@ -280,7 +280,7 @@ pub fn atan(a: f32) -> f32 {
 }
 
 /// The angle of the point (`across`, `up`) in radians, −π to π; 0 or ±π at the origin, by the signs of the zeros.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn atan2(up: f32, across: f32) -> f32 {
     /// tan(π/8).
@@ -303,7 +303,7 @@ pub fn atan2(up: f32, across: f32) -> f32 {
 }
 
 /// Hyperbolic sine.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn sinh(a: f32) -> f32 {
     let size = a.abs();
@@ -315,7 +315,7 @@ pub fn sinh(a: f32) -> f32 {
 }
 
 /// Hyperbolic cosine.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn cosh(a: f32) -> f32 {
     let half = exp_scaled(a.abs(), -1);
@@ -323,7 +323,7 @@ pub fn cosh(a: f32) -> f32 {
 }
 
 /// Hyperbolic tangent.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn tanh(a: f32) -> f32 {
     let size = a.abs();
@@ -338,7 +338,7 @@ pub fn tanh(a: f32) -> f32 {
 }
 
 /// Cube root, of negative numbers too; correct to the last bit but for rare ties.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn cbrt(a: f32) -> f32 {
     /// A third of the exponent's bias, shifted so that the first guess errs by at most 4 %.
@@ -363,7 +363,7 @@ pub fn cbrt(a: f32) -> f32 {
 
 /// a^b: for negative `a`, a number if `b` is an integer and NaN otherwise; a^0 = 1; NaN if either is NaN. The
 /// logarithm and the exponential run in double precision, for 1 ulp at any size of the result.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn pow(a: f32, b: f32) -> f32 {
     let size = a.abs();
@@ -413,7 +413,6 @@ pub fn pow(a: f32, b: f32) -> f32 {
 macro_rules! loops {
     ($($name:ident = $function:ident),* $(,)?) => {$(
         #[doc = concat!("[`", stringify!($function), "`] of every value, in place.")]
-        #[inline(never)]
         pub fn $name(values: &mut [f32]) {
             for value in values {
                 *value = $function(*value);
@@ -438,7 +437,6 @@ loops! {
 }
 
 /// [`sin`] of every value, in place, and [`cos`] of it in `cosines`.
-#[inline(never)]
 pub fn sin_cos_all(values: &mut [f32], cosines: &mut [f32]) {
     for (value, cosine) in values.iter_mut().zip(cosines) {
         let (k, r) = quadrant(*value);
@@ -449,7 +447,6 @@ pub fn sin_cos_all(values: &mut [f32], cosines: &mut [f32]) {
 }
 
 /// [`pow`] of every pair, in place of the first.
-#[inline(never)]
 pub fn pow_all(values: &mut [f32], exponents: &[f32]) {
     for (value, exponent) in values.iter_mut().zip(exponents) {
         *value = pow(*value, *exponent);
@@ -457,7 +454,6 @@ pub fn pow_all(values: &mut [f32], exponents: &[f32]) {
 }
 
 /// [`atan2`] of every pair, in place of the first.
-#[inline(never)]
 pub fn atan2_all(values: &mut [f32], across: &[f32]) {
     for (value, across) in values.iter_mut().zip(across) {
         *value = atan2(*value, *across);

@@ -21,42 +21,42 @@ impl Default for Lanes {
 
 impl Lanes {
     /// The same value in every lane.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub const fn splat(value: f32) -> Self {
         Self([value; LANES])
     }
 
     /// `f` applied to every lane.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self(core::array::from_fn(|i| f(self.0[i])))
     }
 
     /// `f` applied to every pair of lanes.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Self(core::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 
     /// Square root of every lane.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sqrt(self) -> Self {
         self.map(f32::sqrt)
     }
 
     /// Absolute value of every lane.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn abs(self) -> Self {
         self.map(f32::abs)
     }
 
     /// Sum of the lanes, by halves: ((0+4)+(2+6)) + ((1+5)+(3+7)). The order is part of the result.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn sum(self) -> f32 {
         let v = self.0;
@@ -68,7 +68,7 @@ macro_rules! lanewise {
     ($($operator:ident $method:ident $symbol:tt),*) => {$(
         impl $operator for Lanes {
             type Output = Self;
-            #[inline(always)]
+            #[inline]
             fn $method(self, other: Self) -> Self {
                 self.zip(other, |a, b| a $symbol b)
             }
@@ -79,21 +79,21 @@ lanewise!(Add add +, Sub sub -, Mul mul *, Div div /);
 
 impl Neg for Lanes {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         self.map(|a| -a)
     }
 }
 
 impl AddAssign for Lanes {
-    #[inline(always)]
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Lanes {
-    #[inline(always)]
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }

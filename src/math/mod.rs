@@ -114,7 +114,7 @@ impl<T: Copy> Sym3<T> {
 
 impl<T: Real> Sym3<T> {
     /// The matrix times the column `[x, y, z]`.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn times(&self, [x, y, z]: [T; 3]) -> [T; 3] {
         [
@@ -186,7 +186,7 @@ pub fn tangent_frame(n: Vec3) -> (Vec3, Vec3) {
 }
 
 /// [`tangent_frame`] over any numbers.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
     let one = T::of(1.0);

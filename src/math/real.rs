@@ -31,23 +31,23 @@ pub trait Real:
 macro_rules! real {
     ($($number:ty),*) => {$(
         impl Real for $number {
-            #[inline(always)]
+            #[inline]
             fn of(value: f32) -> Self {
                 value.into()
             }
-            #[inline(always)]
+            #[inline]
             fn sqrt(self) -> Self {
                 self.sqrt()
             }
-            #[inline(always)]
+            #[inline]
             fn abs(self) -> Self {
                 self.abs()
             }
-            #[inline(always)]
+            #[inline]
             fn sign(self) -> Self {
                 Self::copysign(1.0, self)
             }
-            #[inline(always)]
+            #[inline]
             fn positive(self, this: Self, other: Self) -> Self {
                 if self > 0.0 { this } else { other }
             }
@@ -57,23 +57,23 @@ macro_rules! real {
 real!(f32, f64);
 
 impl Real for Lanes {
-    #[inline(always)]
+    #[inline]
     fn of(value: f32) -> Self {
         Self::splat(value)
     }
-    #[inline(always)]
+    #[inline]
     fn sqrt(self) -> Self {
         Self::sqrt(self)
     }
-    #[inline(always)]
+    #[inline]
     fn abs(self) -> Self {
         Self::abs(self)
     }
-    #[inline(always)]
+    #[inline]
     fn sign(self) -> Self {
         self.map(f32::sign)
     }
-    #[inline(always)]
+    #[inline]
     fn positive(self, this: Self, other: Self) -> Self {
         Self(core::array::from_fn(|k| self.0[k].positive(this.0[k], other.0[k])))
     }

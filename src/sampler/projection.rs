@@ -48,13 +48,11 @@ pub(crate) struct Circle {
 }
 
 impl Circle {
-    #[inline(always)]
     pub(crate) fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
     }
 
     /// Derivative of the point by θ.
-    #[inline(always)]
     pub(crate) fn tangent(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         (self.normal * cos - self.direction * sin) * self.radius
     }
@@ -88,7 +86,6 @@ pub(crate) struct Tolerance {
 impl Tolerance {
     /// Whether |∇f| tells where the surface is: not where it counts as zero, nor where it overflows, as beside a pole, and
     /// any value would be small against it.
-    #[inline(always)]
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
     }
@@ -112,7 +109,6 @@ pub(crate) trait Descents {
     fn of(&self, i: usize) -> Descent;
 
     /// Evaluates the field at `points`, which are those with the numbers `which`.
-    #[inline(always)]
     fn evaluate(
         &mut self,
         field: &mut dyn Field,
@@ -128,7 +124,6 @@ pub(crate) trait Descents {
 
 /// The same for all points.
 impl Descents for Descent {
-    #[inline(always)]
     fn of(&self, _: usize) -> Descent {
         *self
     }
@@ -406,7 +401,6 @@ impl Projector {
 const HALF_TURN: f32 = 0.055;
 
 /// (cos θ, sin θ) turned by the angle whose half has the tangent `t`: exact to rounding, arithmetic only.
-#[inline(always)]
 pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     let scale = 1.0 / (1.0 + t * t);
     let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);

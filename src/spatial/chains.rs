@@ -36,7 +36,6 @@ impl Chains {
     }
 
     /// Adds a point to a layer; `index` is below the number of points, and its own.
-    #[inline(always)]
     pub(crate) fn insert(&mut self, layer: usize, point: Vec3, index: u32) {
         let inverse_side = self.inverse_side[layer];
         let [x, y, z] = point.to_array().map(|c| coordinate(c * inverse_side));
@@ -89,7 +88,6 @@ impl Chains {
     }
 
     /// The points of a list.
-    #[inline(always)]
     fn list(&self, head: u32) -> impl Iterator<Item = u32> {
         let mut index = self.head[head as usize];
         core::iter::from_fn(move || {
@@ -101,7 +99,6 @@ impl Chains {
         })
     }
 
-    #[inline(always)]
     fn head_of(&self, layer: usize, x: u32, y: u32, z: u32) -> u32 {
         let hash = FACTORS
             .iter()

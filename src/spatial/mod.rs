@@ -146,7 +146,6 @@ impl CellGrid {
     }
 
     /// Cell coordinate of `x`.
-    #[inline(always)]
     fn coordinate(&self, x: f32) -> u32 {
         coordinate(x * self.inverse_cell)
     }
@@ -274,18 +273,15 @@ impl CellGrid {
         hits.len = 0;
     }
 
-    #[inline(always)]
     fn cell_of(&self, point: Vec3) -> (u64, usize) {
         let [x, y, z] = point.to_array().map(|c| self.coordinate(c));
         (key(x >> 1, y >> 1, z >> 1), (x & 1 | (y & 1) << 1 | (z & 1) << 2) as usize)
     }
 
-    #[inline(always)]
     fn slot(&self, key: u64) -> usize {
         (key.wrapping_mul(GOLDEN_RATIO) >> (64 - self.table.len().trailing_zeros())) as usize
     }
 
-    #[inline(always)]
     fn find(&self, key: u64) -> Option<&Brick> {
         let mut slot = self.slot(key);
         loop {
@@ -333,7 +329,6 @@ impl CellGrid {
 }
 
 /// The integer nearest to `x`, offset so that it is not negative: non-decreasing in `x`.
-#[inline(always)]
 fn coordinate(x: f32) -> u32 {
     // Added to 3 · 2²², a number is rounded to an integer that stands in the low bits of the sum: cheaper than a
     // conversion, which saturates. Cell sides are far above the spacing of the coordinates, so 22 bits suffice.
@@ -343,14 +338,12 @@ fn coordinate(x: f32) -> u32 {
 }
 
 /// Cells of a brick whose coordinate on one axis lies in `lo..=hi`: `halves` are those of the lower and the upper half.
-#[inline(always)]
 fn in_range(brick: u32, lo: u32, hi: u32, halves: [u32; 2]) -> u32 {
     let lower = if 2 * brick >= lo { halves[0] } else { 0 };
     let upper = if 2 * brick < hi { halves[1] } else { 0 };
     lower | upper
 }
 
-#[inline(always)]
 fn key(x: u32, y: u32, z: u32) -> u64 {
     (u64::from(x) & COORDINATE_MASK)
         | (u64::from(y) & COORDINATE_MASK) << COORDINATE_BITS

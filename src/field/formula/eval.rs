@@ -38,7 +38,6 @@ pub(super) struct Outputs<'a> {
 
 impl Outputs<'_> {
     /// Lanes `8 lane ..` of result `n`.
-    #[inline(always)]
     fn lanes(&self, n: usize, lane: usize) -> Lanes {
         match self.program.outputs[n] {
             Place::Register(register) => self.file[register as usize * self.stride + lane],
@@ -74,7 +73,6 @@ pub(super) fn run(program: &Program, scratch: &mut Scratch, points: &[Vec3], sin
 }
 
 /// One coordinate of every point; the last lanes are filled up with the last point.
-#[inline(always)]
 fn load(row: &mut [Lanes], points: &[Vec3], axis: usize) {
     let (whole, rest) = points.as_chunks::<LANES>();
     for (lanes, points) in row.iter_mut().zip(whole) {
@@ -92,20 +90,17 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    #[inline(always)]
     fn row(&self, register: u32) -> &'a [Cell<Lanes>] {
         &self.cells[register as usize * self.stride..][..self.rows]
     }
 }
 
-#[inline(always)]
 fn unary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
     for (out, a) in rows.row(i.out).iter().zip(rows.row(i.a)) {
         out.set(f(a.get()));
     }
 }
 
-#[inline(always)]
 fn binary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
     for ((out, a), b) in rows.row(i.out).iter().zip(rows.row(i.a)).zip(rows.row(i.b)) {
         out.set(f(a.get(), b.get()));
@@ -113,14 +108,12 @@ fn binary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
 }
 
 /// Operands a and c.
-#[inline(always)]
 fn binary_ac(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
     for ((out, a), c) in rows.row(i.out).iter().zip(rows.row(i.a)).zip(rows.row(i.c)) {
         out.set(f(a.get(), c.get()));
     }
 }
 
-#[inline(always)]
 fn ternary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
     let operands = rows.row(i.a).iter().zip(rows.row(i.b)).zip(rows.row(i.c));
     for (out, ((a, b), c)) in rows.row(i.out).iter().zip(operands) {
@@ -130,7 +123,6 @@ fn ternary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> 
 
 /// A long function, on a copy of the whole row so that its loop is one that the compiler turns into SIMD code.
 /// Called through a pointer, once per row, so that the copying exists once and not per function.
-#[inline(never)]
 fn long(rows: &Rows<'_>, i: &Instruction, f: fn(&mut [f32])) {
     let mut buffer = [0.0; BLOCK * LANES];
     let (chunks, _) = buffer.as_chunks_mut::<LANES>();
@@ -163,7 +155,6 @@ fn sine_cosine(rows: &Rows<'_>, i: &Instruction) {
 }
 
 /// A long function of two operands.
-#[inline(never)]
 fn long_binary(rows: &Rows<'_>, i: &Instruction, b: &dyn Fn(usize) -> Lanes, f: fn(&mut [f32], &[f32])) {
     let mut first = [0.0; BLOCK * LANES];
     let mut second = [0.0; BLOCK * LANES];
@@ -195,7 +186,6 @@ fn small_whole(exponent: f32) -> Option<i32> {
 }
 
 /// a^n by squaring, the reciprocal's power for n < 0.
-#[inline(always)]
 fn whole_power(a: Lanes, n: i32) -> Lanes {
     let mut square = if n < 0 { Lanes::splat(1.0) / a } else { a };
     let mut rest = n.unsigned_abs();

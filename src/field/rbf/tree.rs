@@ -159,7 +159,6 @@ impl Tree {
 
     /// Gives to `store` with the index of each point f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy,
     /// yz, zz).
-    #[inline(always)]
     fn sums<const N: usize>(
         &mut self,
         data: &RbfData,
@@ -250,7 +249,6 @@ impl Tree {
 }
 
 /// Whether a cell, which has its lower faces, holds a place. NaN is outside of all.
-#[inline(always)]
 fn holds(middle: &[f32; 3], half: f32, place: &[f32; 3]) -> bool {
     (0..3).all(|k| middle[k] - half <= place[k] && place[k] < middle[k] + half)
 }

@@ -34,7 +34,6 @@ fn scaled([lo, hi]: Range, factor: f64) -> Range {
     [a.min(b), a.max(b)]
 }
 
-#[inline(never)]
 fn product(a: Range, b: Range) -> Range {
     let (p, q) = (scaled(a, b[0]), scaled(a, b[1]));
     [p[0].min(q[0]), p[1].max(q[1])]
@@ -45,7 +44,6 @@ fn size([lo, hi]: Range) -> f64 {
 }
 
 /// `range` cut to where `slope` · d = `right` has a solution d; none if that is nowhere.
-#[inline(never)]
 fn solved(range: Range, slope: Range, right: Range) -> Option<Range> {
     let slack = ROUNDING * (size(right) + size(slope) * size(range));
     let right = [right[0] - slack, right[1] + slack];

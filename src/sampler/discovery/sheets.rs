@@ -11,7 +11,6 @@ use crate::spatial::Neighbour;
 use glam::{DVec3, Vec3};
 
 /// Half the sum of what the chord rises from the tangent plane at its beginning and at its end.
-#[inline(always)]
 pub(crate) fn lift(offset: Vec3, normal: Vec3, other: Vec3) -> f32 {
     (0.5 * offset.dot(normal + other)).abs()
 }
@@ -23,7 +22,6 @@ pub(crate) const MAX_LIFT: f32 = 0.02;
 /// Whether a particle at `offset` with the normal `other` may belong to another sheet than a point with the unit normal
 /// `normal`, although both normals point the same way: the lift is more than the change of the curvature over that distance
 /// would make it.
-#[inline(always)]
 pub(crate) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
     let lift = lift(offset, normal, other);
     // The lift grows with the third power of the distance.

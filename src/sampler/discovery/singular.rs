@@ -54,7 +54,6 @@ pub(crate) struct Singular {
 }
 
 /// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.
-#[inline(never)]
 pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
     let mut p = start;
     // False for NaN.
@@ -111,7 +110,6 @@ pub(crate) fn places(points: &[Singular]) -> u64 {
 
 /// Marks the particles within 2r of a singular point. Of a curve the `points` are a selection: near it each particle looks for
 /// itself.
-#[inline(never)]
 pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);
@@ -135,7 +133,6 @@ pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut P
 }
 
 /// One copy of the product, which is long.
-#[inline(never)]
 fn times(a: &DMat3, b: &DMat3) -> DMat3 {
     *a * *b
 }
@@ -144,7 +141,6 @@ fn matrix(h: &Sym3<f64>) -> DMat3 {
     DMat3::from_cols_array(&[h.xx, h.xy, h.xz, h.xy, h.yy, h.yz, h.xz, h.yz, h.zz])
 }
 
-#[inline(never)]
 fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
@@ -191,7 +187,6 @@ fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
 
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
 /// function [is a saddle](is_saddle) throughout.
-#[inline(never)]
 fn has_no_extremum(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
     let mut known = [Enclosure::UNKNOWN; PIECES];
     let mut second = [[[0.0; 2]; 6]; PIECES];
@@ -236,7 +231,6 @@ fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> 
 }
 
 /// Bounds of the second derivative along a direction, from those of the six.
-#[inline(never)]
 fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
     /// What the few operations here may have been rounded by.
     const ROUNDING: f64 = 32.0 * f64::EPSILON;

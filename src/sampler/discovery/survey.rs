@@ -94,7 +94,6 @@ const COARSEST: usize = 4;
 const REACH: f32 = 0.7;
 
 impl Dense {
-    #[inline(never)]
     fn new(
         field: &mut dyn Field,
         projector: &mut Projector,

@@ -46,7 +46,6 @@ impl Layers {
     }
 
     /// Range of a radius, which counts as met there.
-    #[inline(always)]
     fn admit(&mut self, radius: f32) -> usize {
         let layer = self.of(radius);
         self.grow(layer, radius);
@@ -54,14 +53,12 @@ impl Layers {
     }
 
     /// Range of a radius.
-    #[inline(always)]
     fn of(&self, radius: f32) -> usize {
         let last = self.count - 1;
         (0..last).find(|&k| radius <= self.largest[k]).unwrap_or(last)
     }
 
     /// Counts a radius as met in a range.
-    #[inline(always)]
     fn grow(&mut self, layer: usize, radius: f32) {
         let largest = &mut self.largest[layer];
         *largest = if radius > *largest { radius } else { *largest };
@@ -146,7 +143,6 @@ impl RadiusChains {
         self.chains.reset(self.layers.sides(reach), particles);
     }
 
-    #[inline(always)]
     pub(crate) fn insert(&mut self, position: Vec3, radius: f32, index: u32) {
         let layer = self.layers.admit(radius);
         self.chains.insert(layer, position, index);

@@ -59,7 +59,6 @@ impl NeighbourLists {
     }
 
     /// Puts particle `i` into the grid.
-    #[inline(always)]
     pub(crate) fn insert(&mut self, particles: &Particles, i: usize) {
         self.grid.insert(particles.position[i], particles.radius[i], i as u32);
     }
@@ -67,7 +66,6 @@ impl NeighbourLists {
     /// Makes anew the list of particle `i` and those of others in its cell whose `force` says so: those of its sheet and of a
     /// smaller index within the reach. Those of a larger index get it into their lists. Returns whose lists
     /// were made.
-    #[inline(never)]
     pub(crate) fn make(
         &mut self,
         pairs: &mut PackedNeighbours,
@@ -173,7 +171,6 @@ impl NeighbourLists {
 }
 
 /// Whether the list of a particle with this force is to be made anew.
-#[inline(always)]
 pub(crate) fn is_stale(force: Vec4) -> bool {
     force.w == f32::INFINITY
 }

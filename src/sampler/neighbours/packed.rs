@@ -119,7 +119,6 @@ impl PackedNeighbours {
     }
 
     /// Neighbours of particle `i` with a smaller index, but for those of far pairs.
-    #[inline(always)]
     pub(crate) fn near(&self, i: usize) -> impl Iterator<Item = usize> {
         self.near[i].iter().take_while(|&&back| back != 0).map(move |&back| i - usize::from(back))
     }

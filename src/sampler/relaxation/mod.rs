@@ -250,7 +250,6 @@ impl Relaxation {
 
     /// Does up to `budget` units (one particle in one stage, a dear one for several); returns whether particles moved. `sizing` is
     /// the radius field of an adaptive run.
-    #[inline(never)]
     pub(crate) fn step(
         &mut self,
         surface: &mut SurfaceContext,
@@ -649,7 +648,6 @@ impl Relaxation {
     }
 
     /// The force on particle `i`, which is about to move; it is zero then.
-    #[inline(always)]
     fn take_force(&mut self, i: usize) -> Vec3 {
         let force = self.force[i];
         self.force[i] = Vec4::new(0.0, 0.0, 0.0, larger(force.w, 0.0));
@@ -666,7 +664,6 @@ impl Relaxation {
 }
 
 /// The larger of two numbers, of which neither is a NaN: a maximum that knows NaN takes five instructions.
-#[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
@@ -685,7 +682,6 @@ fn fill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
 }
 
 /// Lowers the larger of two radii to what the smaller allows it at this slope, on one sheet. Says whether it was lowered.
-#[inline(always)]
 fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
     let rise = slope * (particles.position[i] - particles.position[j]).length();
     let (a, b) = (particles.radius[i], particles.radius[j]);

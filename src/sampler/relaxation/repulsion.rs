@@ -19,7 +19,6 @@ const MAX_NEWTON: u32 = 6;
 /// places. The force is that of the distances alone and does not count how the share changes with the place, so the ramp
 /// must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
 /// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
-#[inline(always)]
 pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
@@ -120,7 +119,6 @@ impl Repulsion for Gaussian {
     const STEP: f32 = 0.6;
     const RESIZES: bool = false;
 
-    #[inline(always)]
     fn radius(&self, _: &Particles, _: usize) -> f32 {
         self.radius
     }
@@ -133,7 +131,6 @@ impl Repulsion for Gaussian {
         (self.radius, self.radius)
     }
 
-    #[inline(always)]
     fn pairs(&self, distance_sq: Vec4, _: Vec4) -> (Vec4, Vec4) {
         // Squared distances are measured in σ² = r².
         let half_sq = distance_sq * self.scale;
@@ -166,7 +163,6 @@ const END_ENERGY: f32 = 0.011_108_997;
 /// exp(−x) for 0 ≤ x ≤ 4.5 to 2·10⁻⁵ of its value; of no meaning elsewhere.
 ///
 /// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
-#[inline(always)]
 pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
@@ -208,7 +204,6 @@ impl Repulsion for Overlap<'_> {
     const STEP: f32 = 0.33;
     const RESIZES: bool = true;
 
-    #[inline(always)]
     fn radius(&self, particles: &Particles, i: usize) -> f32 {
         particles.radius[i]
     }
@@ -223,7 +218,6 @@ impl Repulsion for Overlap<'_> {
         })
     }
 
-    #[inline(always)]
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4) {
         let reach = mean * Self::RANGE;
         let distance = distance_sq.sqrt();
@@ -309,7 +303,6 @@ struct Bent {
 }
 
 impl Descents for Bent {
-    #[inline(always)]
     fn of(&self, i: usize) -> Descent {
         let radius = self.radius[i];
         Descent {

@@ -53,7 +53,6 @@ struct Site {
 
 impl Sizing {
     /// The radius field that `settings` ask for; one Hessian at every point of the survey.
-    #[inline(never)]
     pub(crate) fn new(
         field: &mut dyn Field,
         bounds: &Bounds,
@@ -215,7 +214,6 @@ impl Envelope {
 
     /// The first node of the cell that holds `p`, or of the nearest one in the box, and the place in it: 0 to 1 along each
     /// axis.
-    #[inline(always)]
     fn locate(&self, p: Vec3) -> (usize, Vec3) {
         // NaN becomes the first place.
         let place = ((p - self.lo) * self.inverse_cell).max(Vec3::splat(MARGIN as f32)).min(self.last);
@@ -265,7 +263,6 @@ impl Envelope {
 
     /// Lowers node `n` to what thirteen of its neighbours allow it, those before it or those after it in the order of the
     /// nodes; `steps` are the rises to a neighbour across a face, an edge and a corner. Says whether it was lowered.
-    #[inline(always)]
     fn lower_node(&mut self, n: usize, steps: [f32; 3], at: impl Fn(usize) -> usize) -> bool {
         let [_, row, layer] = self.strides();
         let least = |a: f32, b: f32| if b < a { b } else { a };

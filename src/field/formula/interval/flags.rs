@@ -13,7 +13,6 @@ pub(super) const EMPTY: u8 = 8;
 pub(super) const REGULAR: u8 = DEFINED | CONTINUOUS;
 
 /// Flags of an operation that is itself defined and continuous: it is where both operands are, and empty where one is.
-#[inline(always)]
 pub(super) fn joined(a: u8, b: u8) -> u8 {
     a & b & REGULAR | (a | b) & EMPTY
 }

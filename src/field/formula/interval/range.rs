@@ -23,19 +23,16 @@ const NOTHING: Range = Range { lo: f64::INFINITY, hi: f64::NEG_INFINITY, flags: 
 
 /// A lower bound of a result that IEEE arithmetic rounds to `value`: at least one unit in the last place below. Results
 /// below 2⁻¹⁰²², where products lose digits, are taken for exact. NaN (∞ − ∞) becomes −∞.
-#[inline(always)]
 pub(super) fn down(value: f64) -> f64 {
     widened(value, -f64::EPSILON, f64::NEG_INFINITY)
 }
 
 /// An upper bound; see [`down`].
-#[inline(always)]
 pub(super) fn up(value: f64) -> f64 {
     widened(value, f64::EPSILON, f64::INFINITY)
 }
 
 /// `value` moved by `share` of its size; `otherwise` for NaN.
-#[inline(always)]
 pub(super) fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
     let moved = value + value.abs() * share;
     if moved.is_nan() { otherwise } else { moved }
@@ -51,7 +48,6 @@ fn well_above(value: f64) -> f64 {
 }
 
 /// A product of bounds: 0 · ∞ is 0, since the infinity stands for arbitrarily large values only.
-#[inline(always)]
 pub(super) fn product(a: f64, b: f64) -> f64 {
     let product = a * b;
     if product.is_nan() { 0.0 } else { product }
@@ -353,7 +349,6 @@ impl Range {
 }
 
 /// x^n for n ≥ 1 by repeated products.
-#[inline(always)]
 pub(super) fn whole_power(x: f64, n: u32) -> f64 {
     let (mut result, mut square, mut rest) = (1.0, x, n);
     while rest > 0 {

@@ -29,7 +29,6 @@ impl Row {
     }
 
     /// `f` over each of the first `n` boxes.
-    #[inline(always)]
     pub(super) fn each(n: usize, f: impl Fn(usize) -> Range) -> Self {
         let mut out = Self::ZERO;
         for k in 0..n {
@@ -39,7 +38,6 @@ impl Row {
         out
     }
 
-    #[inline(always)]
     fn bounds(f: impl Fn(usize) -> (f64, f64), flags: [u8; BOXES]) -> Self {
         let mut out = Self { flags, ..Self::ZERO };
         for k in 0..BOXES {
@@ -94,7 +92,6 @@ impl Row {
     }
 
     /// [`NONZERO`] where 0 is certainly not among the values.
-    #[inline(always)]
     fn nonzero(&self, k: usize) -> u8 {
         self.flags[k] & NONZERO | if self.lo[k] > 0.0 || self.hi[k] < 0.0 { NONZERO } else { 0 }
     }
@@ -191,7 +188,6 @@ const TRUSTED_ANGLE: f64 = 1e5;
 
 /// Sine and cosine for |x| ≤ 10⁵, to a few 10⁻¹⁶: the nearest multiple of π/2 is taken off in two parts (Cody and
 /// Waite), then the Taylor series, whose next terms are below 10⁻¹⁷ for |r| ≤ π/4.
-#[inline(always)]
 fn sine_cosine(x: f64) -> (f64, f64) {
     // Added to 1.5 · 2⁵², a number is rounded to a whole one that stands in the low bits of the sum.
     const INTEGER: f64 = 6_755_399_441_055_744.0;
@@ -230,12 +226,10 @@ fn sine_cosine(x: f64) -> (f64, f64) {
     (s, c)
 }
 
-#[inline(always)]
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-#[inline(always)]
 fn greatest(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }

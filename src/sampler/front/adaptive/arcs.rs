@@ -50,7 +50,6 @@ pub(crate) struct Base {
 
 impl Base {
     /// Slope of the radius in a direction, kept where a child can touch.
-    #[inline(always)]
     fn slope_along(&self, x: f32, y: f32) -> f32 {
         let slope = self.slope.x * x + self.slope.y * y;
         let slope = if slope < MAX_SLOPE { slope } else { MAX_SLOPE };
@@ -58,21 +57,18 @@ impl Base {
     }
 
     /// Normal curvature in a direction.
-    #[inline(always)]
     fn curvature_along(&self, x: f32, y: f32) -> f32 {
         let [a, b, c] = self.shape;
         a * x * x + (b + b) * x * y + c * y * y
     }
 
     /// Radius to expect of a child in a direction: r_c = r_p + s (r_p + r_c).
-    #[inline(always)]
     fn child_radius(&self, x: f32, y: f32) -> f32 {
         let slope = self.slope_along(x, y);
         self.radius * (1.0 + slope) / (1.0 - slope)
     }
 
     /// Sine of the angle by which a chord of length `distance` dips below the tangent plane, negative below.
-    #[inline(always)]
     fn dip(&self, x: f32, y: f32, distance: f32) -> f32 {
         let dip = -0.5 * self.curvature_along(x, y) * distance;
         let dip = if dip < MAX_DIP { dip } else { MAX_DIP };
@@ -118,7 +114,6 @@ const MAX_DIP: f32 = 0.9;
 
 /// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`, with the sines `s` and
 /// `t` of their dips.
-#[inline(always)]
 fn wedge(d: f32, e: f32, apart: f32, s: f32, t: f32) -> f32 {
     let cosine = (d * d + e * e - apart * apart) / (2.0 * d * e);
     let flat = (cosine - s * t) / ((1.0 - s * s) * (1.0 - t * t)).sqrt();
@@ -254,7 +249,6 @@ impl Ring {
     }
 
     /// Adds a neighbour by its offset from the parent; `counts` says that its radius is exact.
-    #[inline(always)]
     pub(crate) fn push(&mut self, offset: Vec3, radius: f32, counts: bool) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if chunk == self.chunks.len() {
@@ -477,7 +471,6 @@ impl Ring {
 
     /// What the neighbours leave to a place at `offset` with the radius `radius`: the room beyond `share` (r_i + r_j), negative
     /// where one is nearer, and the largest radius that a slope of `grading` away from each of them allows.
-    #[inline(always)]
     pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let mut room = Lanes::splat(f32::INFINITY);

@@ -213,7 +213,6 @@ impl AdaptiveFront {
 
     /// Prepares for particles of radii from `radii[0]` to `radii[1]`; `resolution` and `gradient_scale` are what the survey
     /// found.
-    #[inline(never)]
     pub(crate) fn reset(
         &mut self,
         settings: &Settings,
@@ -263,7 +262,6 @@ impl AdaptiveFront {
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is within `share` of its own radii.
-    #[inline(never)]
     pub(crate) fn is_covered(
         &mut self,
         field: &mut dyn Field,
@@ -278,7 +276,6 @@ impl AdaptiveFront {
     }
 
     /// Those particles, nearest first, in `near`.
-    #[inline(never)]
     pub(crate) fn near(
         &mut self,
         particles: &Particles,
@@ -303,7 +300,6 @@ impl AdaptiveFront {
     }
 
     /// Takes the last seed back if it stayed alone and touches another particle, of whatever sheet: see the uniform front.
-    #[inline(never)]
     pub(crate) fn drop_lone_seed(&mut self, pairs: &mut PackedNeighbours, particles: &mut Particles) {
         let last = particles.len() - 1;
         if particles.parent[last] != Particles::NO_PARENT {
@@ -328,7 +324,6 @@ impl AdaptiveFront {
     }
 
     /// Adds a first particle. Only between levels. Says whether the place has a radius.
-    #[inline(never)]
     pub(crate) fn add_seed(&mut self, surface: &mut Surface, position: Vec3, normal: Vec3) -> bool {
         debug_assert!(self.is_done());
         let sizing = surface.sizing();
@@ -352,7 +347,6 @@ impl AdaptiveFront {
     }
 
     /// Has the particles that lost a child look for room again; false if there is nothing more to do.
-    #[inline(never)]
     pub(crate) fn fill(&mut self) -> bool {
         if self.fills >= MAX_FILLS || self.capped || !self.parents.fill() {
             return false;
@@ -363,7 +357,6 @@ impl AdaptiveFront {
     }
 
     /// Does up to `budget` units (a particle's arcs, a child's projection, a child's fate) and returns what is left.
-    #[inline(never)]
     pub(crate) fn step(&mut self, surface: &mut Surface, mut budget: u32) -> u32 {
         while budget > 0 && !self.is_done() {
             match self.stage {
@@ -409,7 +402,6 @@ impl AdaptiveFront {
     }
 
     /// Ends the front where it is: provisional children are dropped.
-    #[inline(never)]
     pub(crate) fn stop(&mut self, particles: &mut Particles) {
         particles.truncate(self.settled);
         self.children.clear();
@@ -771,7 +763,6 @@ impl AdaptiveFront {
 
 /// Whether a particle with the normal `other` belongs to the sheet of a point with the normal `normal` from which it was
 /// found; `both` is r_i + r_j.
-#[inline(always)]
 fn same_sheet(near: &Neighbour, normal: Vec3, other: Vec3, both: f32) -> bool {
     let rise = near.offset.dot(normal);
     let slack = RISE_SLACK * both;

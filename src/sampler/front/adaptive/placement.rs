@@ -53,7 +53,6 @@ pub(crate) struct Proposal {
 impl Proposal {
     /// The radius that the law gives, as far as the particles around allow it. They never ask for less than `least`, the
     /// law's own least, but siblings may, whose radii are still guesses.
-    #[inline(always)]
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.

@@ -67,7 +67,6 @@ impl Gaps {
     }
 
     /// Looks at up to `budget` particles and returns what is left.
-    #[inline(never)]
     pub(crate) fn step(
         &mut self,
         field: &mut dyn Field,

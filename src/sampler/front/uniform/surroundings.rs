@@ -37,6 +37,7 @@ impl Surroundings {
         self.len = 0;
     }
 
+    // As a call it costs a run on the ellipsoid 2 % more instructions.
     #[inline(always)]
     pub(crate) fn push(&mut self, offset: Vec3, normal: Vec3, is_final: bool) {
         let (chunk, lane) = (self.len / CHUNK, self.len % CHUNK);
@@ -62,7 +63,6 @@ impl Surroundings {
     }
 
     /// Whether any of the particles is [doubtful](crate::sampler::discovery::sheets::is_doubtful) beside the parent with the unit normal `normal`.
-    #[inline(always)]
     pub(crate) fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
         let unit = 1.0 / (spacing * spacing);
         // The lift is half of what is summed here.
@@ -79,7 +79,6 @@ impl Surroundings {
 
     /// Least-squares fit of the second fundamental form to the normals of the final particles within [`RING`] radii of the
     /// parent, whose normal is `n`.
-    #[inline(always)]
     pub(crate) fn fit_shape(&self, radius: f32, n: Vec3, u: Vec3, w: Vec3) -> Shape {
         let reach_sq = Vec4::splat((RING * radius) * (RING * radius));
         let [mut xx, mut xy, mut yy, mut xp, mut yp, mut xq, mut yq] = [Vec4::ZERO; 7];
@@ -125,7 +124,6 @@ impl Surroundings {
 
     /// Squared distance from `offset` to the nearest particle on the sheet of a point whose normal has the direction of
     /// `normal`, of whatever length; and to the nearest of any sheet.
-    #[inline(always)]
     pub(crate) fn nearest_sq(&self, offset: Vec3, normal: Vec3, slack_sq: f32) -> (f32, f32) {
         let max_rise_sq = MAX_RISE_SQ * normal.length_squared();
         let far = Vec4::splat(f32::INFINITY);
