@@ -113,7 +113,8 @@ export function explain(target, read, options = {}) {
     if (!options.tap) hide();
   });
   target.addEventListener('focusin', () => {
-    if (usesKeyboard()) open();
+    // Focus may come back from a menu that is closing, and no popover can be shown while another one is being hidden.
+    if (usesKeyboard()) later(open, 0);
   });
   target.addEventListener('focusout', hide);
   if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));

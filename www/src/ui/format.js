@@ -119,6 +119,9 @@ export function formatSeconds(seconds) {
   return `${write(seconds, { minimumFractionDigits: 2, maximumFractionDigits: 2 })}${THIN_NO_BREAK}s`;
 }
 
+/** How long a run took without the measuring after it. @param {import('../engine/types.js').Seconds} seconds */
+export const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + generation + relaxation;
+
 /** The decimals of a step such as 0.05 or 1e-4. @param {number} step */
 export function decimalsOf(step) {
   if (!(step > 0) || !Number.isFinite(step)) return 6;

@@ -70,6 +70,12 @@ export function createSlider(options) {
       write();
     };
     input.addEventListener('keydown', (event) => {
+      if (event.key === 'Enter') {
+        // The number is finished. On the slider beside it the page's own keys work again, `,` and `.` among them.
+        read();
+        range.focus({ preventScroll: true });
+        return;
+      }
       if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
       event.preventDefault();
       take(nudge(scale, value, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey), false);

@@ -21,12 +21,25 @@ const row = (change) => ({
 
 describe('the report', () => {
   it('finds figures by their path, and the same before relaxation', () => {
-    const report = /** @type {any} */ ({ count: 5, quality: { six: 0.97 }, quality_before: { six: 0.93 } });
+    const report = /** @type {any} */ ({
+      count: 5,
+      energy: [0.2, 0.1],
+      quality: { six: 0.97 },
+      quality_before: { six: 0.93 },
+    });
     expect(valueAt(report, 'quality.six')).toBe(0.97);
     expect(valueAt(report, 'quality.none.deeper')).toBeUndefined();
     expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: 0.97, before: 0.93 });
     expect(figuresOf({ ...report, quality_before: null }, 'quality.six').before).toBeUndefined();
     expect(figuresOf(report, 'count')).toEqual({ paired: false, now: 5, before: undefined });
+  });
+
+  it('gives the figures of a run without relaxation to the front', () => {
+    for (const energy of [[], [0.2]]) {
+      const report = /** @type {any} */ ({ energy, quality: { six: 0.93 }, quality_before: null });
+      expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: undefined, before: 0.93 });
+      expect(isTold(report, row())).toBe(true);
+    }
   });
 
   it('writes shares as per cent, whole numbers grouped, and words as they are', () => {
@@ -62,6 +75,7 @@ describe('the report', () => {
     const report = /** @type {any} */ ({
       undecided_cells: null,
       count: 0,
+      energy: [0.2, 0.1],
       quality: { six: null },
       quality_before: { six: 0.9 },
     });

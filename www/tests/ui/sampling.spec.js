@@ -1,4 +1,5 @@
 import { expect, test } from '@playwright/test';
+import { link } from '../engine/browser.js';
 import { atRest, open, report, settled, state, typeFormula } from './helpers.js';
 
 test('the settings are those that the core describes, each with its help', async ({ page }) => {
@@ -293,4 +294,44 @@ test('a stopped run is labelled and keeps what it has', async ({ page }) => {
   });
   await expect(page.locator('.caption')).toContainText('Stopped');
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
+});
+
+test('figures of a run without relaxation stand under the front, and go on to relaxed with the first step', async ({
+  page,
+}) => {
+  await open(page);
+  const cells = page.locator('tr', { has: page.getByRole('button', { name: 'Six neighbours' }) }).locator('td');
+  await page.getByRole('button', { name: 'Generate only' }).click();
+  await settled(page);
+  await expect(cells.nth(0)).toHaveText(/\d/);
+  await expect(cells.nth(1)).not.toHaveText(/\d/);
+  await page.getByRole('button', { name: 'Relax one step' }).click();
+  await settled(page);
+  await expect(cells.nth(1)).toHaveText(/\d/);
+});
+
+test('the time under the picture is the time of the sampling in the report', async ({ page }) => {
+  await open(page);
+  const total = await page.locator('.timing thead th').last().textContent();
+  await expect(page.locator('.caption')).toContainText(String(total));
+});
+
+test('no two sliders have the same name', async ({ page }) => {
+  await open(page, { hash: link({ surface: 'sphere' }) });
+  const names = await page
+    .getByRole('slider')
+    .evaluateAll((sliders) => sliders.map((slider) => slider.getAttribute('aria-label')));
+  expect(names.length).toBeGreaterThan(1);
+  expect(new Set(names).size).toBe(names.length);
+});
+
+test('Enter in a number field hands the keys back to the page', async ({ page }) => {
+  await open(page);
+  const field = page.getByRole('spinbutton', { name: 'Semi-axis along x a, number' });
+  await field.fill('0.9');
+  await field.press('Enter');
+  await settled(page);
+  await expect(field).not.toBeFocused();
+  await page.keyboard.press(',');
+  expect((await state(page)).view.level).not.toBeNull();
 });

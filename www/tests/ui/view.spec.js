@@ -95,3 +95,19 @@ test('panels fold, and hide all together', async ({ page }) => {
   await page.getByRole('button', { name: 'Show the panels' }).click();
   await expect(page.locator('.panel:visible')).toHaveCount(4);
 });
+
+test('a menu opened by the pointer and closed by Escape gives the focus back without an error', async ({ page }) => {
+  const { clean } = await open(page);
+  for (const name of ['View options', 'Export']) {
+    const button = page.getByRole('button', { name, exact: true });
+    await button.click();
+    await expect(button).toHaveAttribute('aria-expanded', 'true');
+    await page.keyboard.press('Escape');
+    await expect(button).toHaveAttribute('aria-expanded', 'false');
+    await expect(button).toBeFocused();
+    // The explanation of the button, which has the focus by the keyboard now.
+    await expect(page.getByRole('tooltip')).toBeVisible();
+    await page.keyboard.press('Escape');
+  }
+  await clean();
+});

@@ -69,7 +69,8 @@ function resetAll(engine) {
 function createRow(engine, { name, label, value, min, max, step }, values, scope) {
   const title = label && label !== name ? label : `Parameter ${name}`;
   const slider = createSlider({
-    name: title,
+    // With the symbol: a setting of the sampling may have the same name, as the radius of the sphere has.
+    name: label && label !== name ? `${label} ${name}` : title,
     scale: { min, max, step },
     value: values.peek()[name] ?? value,
     describe: (now) => formatStep(now, step / 10),

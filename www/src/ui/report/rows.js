@@ -20,18 +20,20 @@ export function valueAt(root, key) {
   return value;
 }
 
+/** Whether a relaxation step was made: there is an energy before the first step and after each. @param {Report} report */
+const isRelaxed = ({ energy }) => energy.length > 1;
+
 /**
- * The figure now and, for the quality figures, before relaxation.
+ * The figure of the whole run or, of quality, the one before relaxation and the one after.
  * @param {Report} report
  * @param {string} key
+ * @returns {{ paired: boolean, now: unknown, before: unknown }} what does not exist is undefined
  */
 export function figuresOf(report, key) {
-  const quality = key.startsWith('quality.');
-  return {
-    paired: quality,
-    now: valueAt(report, key),
-    before: quality ? valueAt(report, key.replace(/^quality\./, 'quality_before.')) : undefined,
-  };
+  const value = valueAt(report, key);
+  if (!key.startsWith('quality.')) return { paired: false, now: value, before: undefined };
+  if (!isRelaxed(report)) return { paired: true, now: undefined, before: value };
+  return { paired: true, now: value, before: valueAt(report, key.replace(/^quality\./, 'quality_before.')) };
 }
 
 /**

@@ -1,13 +1,12 @@
-/** Time per phase, as figures and as one bar. */
+/** Time of the sampling and of each of its phases, as figures and as bars; and of the measuring after it. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { formatSeconds, formatSignificant } from '../format.js';
+import { formatSeconds, formatSignificant, samplingSeconds } from '../format.js';
 
 const PHASES = /** @type {const} */ ([
   ['seeding', 'Seeding'],
   ['generation', 'Generation'],
   ['relaxation', 'Relaxation'],
-  ['quality', 'Quality figures'],
 ]);
 
 /**
@@ -20,7 +19,9 @@ export function createTiming(engine, report) {
     const timing = engine.timing.value;
     section.hidden = timing === null || timing.particles === 0 || report.value === null;
     if (!timing || section.hidden) return;
-    const longest = Math.max(...PHASES.map(([key]) => timing.seconds[key]), 1e-9);
+    const { seconds, particles } = timing;
+    const sampling = samplingSeconds(seconds);
+    const longest = Math.max(...PHASES.map(([key]) => seconds[key]), 1e-9);
     fill(
       section,
       h(
@@ -32,9 +33,9 @@ export function createTiming(engine, report) {
           h(
             'tr',
             null,
-            h('th', { scope: 'col' }, 'Time'),
+            h('th', { scope: 'col' }, 'Sampling'),
             h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Share')),
-            h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Total '), formatSeconds(timing.total)),
+            h('th', { scope: 'col' }, formatSeconds(sampling)),
           ),
         ),
         h(
@@ -42,18 +43,22 @@ export function createTiming(engine, report) {
           null,
           PHASES.map(([key, label]) => {
             const bar = h('span', { class: 'bar', 'aria-hidden': 'true' });
-            bar.style.width = `${(timing.seconds[key] / longest) * 100}%`;
+            bar.style.width = `${(seconds[key] / longest) * 100}%`;
             return h(
               'tr',
               null,
               h('th', { scope: 'row' }, label),
               h('td', { class: 'bar-cell' }, bar),
-              h('td', null, formatSeconds(timing.seconds[key])),
+              h('td', null, formatSeconds(seconds[key])),
             );
           }),
         ),
       ),
-      h('p', { class: 'quiet' }, `${formatSignificant(timing.us_per_particle, 3)}\u202fµs per particle`),
+      h(
+        'p',
+        { class: 'quiet' },
+        `${formatSignificant((sampling * 1e6) / particles, 3)}\u202fµs per particle; then ${formatSeconds(seconds.quality)} to measure`,
+      ),
     );
   });
   return section;

@@ -1,6 +1,7 @@
 /** What stands on the picture itself: the caption, the hint, the empty state, the poster's end. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
+import { samplingSeconds } from '../format.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
@@ -30,7 +31,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
             partial: engine.partial.value,
             empty: engine.empty.value,
             busy: engine.busy.value,
-            seconds: secondsOf(engine.timing.value),
+            seconds: engine.timing.value && samplingSeconds(engine.timing.value.seconds),
           }),
   );
   // The field panel reads the loading out.
@@ -67,9 +68,6 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     else fill(empty);
   });
 }
-
-/** How long the sampling itself took, without the figures. @param {import('../../engine/types.js').Timing | null} timing */
-const secondsOf = (timing) => timing && timing.seconds.seeding + timing.seconds.generation + timing.seconds.relaxation;
 
 /** What there is instead of a surface, and what to do. @type {Record<string, [string, string] | undefined>} */
 const EMPTY = {
