@@ -58,54 +58,128 @@ export const CAMERA_MS = 120;
  */
 
 /**
- * @param {object} parts
- * @param {Engine} parts.engine
- * @param {import('./view/viewer.js').Viewer} parts.viewer
- * @param {import('./sampling/client.js').SamplingClient} parts.sampling
- * @param {import('./columns.js').Columns} parts.columns
- * @param {(patch: Record<string, unknown>) => string[]} parts.applyState
+ * Resolves with the report when nothing runs, the report is there (or there will be none) and the picture is up to date.
+ * @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer
  */
-export function installConsole({ engine, viewer, sampling, columns, applyState }) {
-  /** Resolves when nothing runs, the report is there (or there will be none) and the picture is up to date. */
-  const settled = () =>
-    new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
-      let over = false;
-      /** @type {() => void} */
-      let stop = () => {};
-      stop = effect(() => {
-        const idle =
-          engine.description.value !== null &&
-          engine.loading.value === null &&
-          !engine.busy.value &&
-          engine.progress.value.phase === 'done' &&
-          engine.reveal.value === null &&
-          engine.backend.value !== 'starting';
-        const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
-        if ((!idle && !failed) || over) return;
-        over = true;
-        const report = engine.report.peek();
-        // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
-        const show = () => {
-          if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
-          else setTimeout(() => resolve(report), CAMERA_MS + 10);
-        };
-        // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
-        setTimeout(show);
-        queueMicrotask(() => stop());
-      });
+const settled = (engine, viewer) =>
+  new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
+    let over = false;
+    /** @type {() => void} */
+    let stop = () => {};
+    stop = effect(() => {
+      const idle =
+        engine.description.value !== null &&
+        engine.loading.value === null &&
+        !engine.busy.value &&
+        engine.progress.value.phase === 'done' &&
+        engine.reveal.value === null &&
+        engine.backend.value !== 'starting';
+      const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
+      if ((!idle && !failed) || over) return;
+      over = true;
+      const report = engine.report.peek();
+      // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
+      const show = () => {
+        if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
+        else setTimeout(() => resolve(report), CAMERA_MS + 10);
+      };
+      // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
+      setTimeout(show);
+      queueMicrotask(() => stop());
     });
+  });
+
+/** @param {import('./columns.js').Columns} columns @returns {Particles} */
+function copyOf(columns) {
+  const count = columns.stale ? 0 : columns.count;
+  return {
+    count,
+    positions: columns.positions.slice(0, 3 * count),
+    normals: columns.normals.slice(0, 3 * count),
+    radii: columns.radii.slice(0, count),
+    levels: columns.levels.slice(0, count),
+    parents: columns.parents.slice(0, count),
+    slots: columns.slots.slice(0, count),
+    valence: columns.valence?.slice() ?? null,
+    nearest: columns.nearest?.slice() ?? null,
+    residual: columns.residual?.slice() ?? null,
+    component: columns.component?.slice() ?? null,
+    curvature: count > 0 && columns.curved === count ? columns.curvature.slice(0, 2 * count) : null,
+  };
+}
+
+/** @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer */
+const statusOf = (engine, viewer) => ({
+  backend: engine.backend.value,
+  adapter: engine.adapter.value,
+  busy: engine.busy.value,
+  progress: { ...engine.progress.value },
+  partial: engine.partial.value,
+  empty: engine.empty.value,
+  dimmed: viewer.dimmer.on,
+  fieldError: engine.fieldError.value,
+  loading: engine.loading.value,
+  loadingError: engine.loadingError.value,
+  model: engine.model.value,
+  timing: engine.timing.value,
+  lastDrag: engine.lastDrag.value,
+  notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },
+});
+
+/** @param {Parts} parts @returns {Debug} */
+function debugOf({ engine, viewer, sampling }) {
+  const provoke = (/** @type {'panic' | 'overflow' | 'hang'} */ fault) =>
+    sampling.supervisor.post({ type: 'provoke', fault });
+  return {
+    panic: () => provoke('panic'),
+    overflow: () => provoke('overflow'),
+    hang: () => provoke('hang'),
+    loseDevice(reason = 'unknown') {
+      const { device } = viewer.keeper;
+      if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');
+      else device?.renderer.destroy();
+    },
+    stale(id) {
+      sampling.receive({
+        type: 'progress',
+        id,
+        progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 },
+      });
+    },
+    counts: () => ({
+      frames: viewer.frames.drawn,
+      uploads: viewer.upload.writes,
+      opened: viewer.keeper.opened,
+      restarts: sampling.supervisor.restarts.length,
+      stale: sampling.stale,
+    }),
+  };
+}
+
+/**
+ * What the console reaches.
+ * @typedef {object} Parts
+ * @property {Engine} engine
+ * @property {import('./view/viewer.js').Viewer} viewer
+ * @property {import('./sampling/client.js').SamplingClient} sampling
+ * @property {import('./columns.js').Columns} columns
+ * @property {(patch: Record<string, unknown>) => string[]} applyState
+ */
+
+/** @param {Parts} parts */
+export function installConsole(parts) {
+  const { engine, viewer, columns, applyState } = parts;
   /** @param {() => void} act */
   const after = (act) => {
     act();
-    return settled();
+    return settled(engine, viewer);
   };
-
   /** @type {Console} */
   const face = {
     get version() {
       return engine.description.value?.version ?? '';
     },
-    ready: settled(),
+    ready: settled(engine, viewer),
     get state() {
       return structuredClone(engine.state.value);
     },
@@ -119,65 +193,11 @@ export function installConsole({ engine, viewer, sampling, columns, applyState }
     open: (file) => after(() => void engine.openFile(file)),
     relax: (steps = 1) => after(() => engine.relax(steps)),
     report: () => structuredClone(engine.report.value),
-    particles: () => {
-      const count = columns.stale ? 0 : columns.count;
-      return {
-        count,
-        positions: columns.positions.slice(0, 3 * count),
-        normals: columns.normals.slice(0, 3 * count),
-        radii: columns.radii.slice(0, count),
-        levels: columns.levels.slice(0, count),
-        parents: columns.parents.slice(0, count),
-        slots: columns.slots.slice(0, count),
-        valence: columns.valence?.slice() ?? null,
-        nearest: columns.nearest?.slice() ?? null,
-        residual: columns.residual?.slice() ?? null,
-        component: columns.component?.slice() ?? null,
-        curvature: count > 0 && columns.curved === count ? columns.curvature.slice(0, 2 * count) : null,
-      };
-    },
-    status: () => ({
-      backend: engine.backend.value,
-      adapter: engine.adapter.value,
-      busy: engine.busy.value,
-      progress: { ...engine.progress.value },
-      partial: engine.partial.value,
-      empty: engine.empty.value,
-      dimmed: viewer.dimmer.on,
-      fieldError: engine.fieldError.value,
-      loading: engine.loading.value,
-      loadingError: engine.loadingError.value,
-      model: engine.model.value,
-      timing: engine.timing.value,
-      lastDrag: engine.lastDrag.value,
-      notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },
-    }),
+    particles: () => copyOf(columns),
+    status: () => statusOf(engine, viewer),
     pixels: (width, height, transparent = false) => viewer.pixels(width, height, transparent),
     engine,
-    debug: {
-      panic: () => sampling.supervisor.post({ type: 'provoke', fault: 'panic' }),
-      overflow: () => sampling.supervisor.post({ type: 'provoke', fault: 'overflow' }),
-      hang: () => sampling.supervisor.post({ type: 'provoke', fault: 'hang' }),
-      loseDevice(reason = 'unknown') {
-        const { device } = viewer.keeper;
-        if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');
-        else device?.renderer.destroy();
-      },
-      stale(id) {
-        sampling.receive({
-          type: 'progress',
-          id,
-          progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 },
-        });
-      },
-      counts: () => ({
-        frames: viewer.frames.drawn,
-        uploads: viewer.upload.writes,
-        opened: viewer.keeper.opened,
-        restarts: sampling.supervisor.restarts.length,
-        stale: sampling.stale,
-      }),
-    },
+    debug: debugOf(parts),
   };
   /** @type {any} */ (window).marchingParticles = face;
 }

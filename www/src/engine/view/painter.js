@@ -34,6 +34,69 @@ const MUTE = 0.5;
  * @property {{min: number[], max: number[], colour: number[]} | null} box
  */
 
+/** The page's colour of three linear shares. @param {number} r @param {number} g @param {number} b */
+const packed = (r, g, b) =>
+  (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
+
+/**
+ * The axes of the eye, of length 1, and what a step to the right makes on screen. The rows of clip_from_world give them up to
+ * their lengths, and up to the share along the view that moves the picture aside.
+ * @param {Float32Array} m  a packed view
+ */
+function eyeAxes(m) {
+  const forward = [m[19], m[20], m[21]];
+  const axis = (/** @type {number} */ k) => {
+    const v = [m[k], m[4 + k], m[8 + k]];
+    const along = v[0] * forward[0] + v[1] * forward[1] + v[2] * forward[2];
+    const u = v.map((c, i) => c - along * forward[i]);
+    const length = Math.hypot(u[0], u[1], u[2]) || 1;
+    return { length, unit: u.map((c) => c / length) };
+  };
+  const { unit: right, length: clipXPerWorld } = axis(0);
+  return { right, up: axis(1).unit, forward, clipXPerWorld };
+}
+
+/**
+ * The same light as in shaders/discs.wgsl: a wrapped key light, a hemisphere, dimmer at the silhouette.
+ * @param {number} keyward  the normal's share towards the light @param {number} skyward  and upwards
+ * @param {number} edgeOn  1 at the silhouette
+ */
+function shadeOf(keyward, skyward, edgeOn) {
+  const wrapped = Math.max(0, (keyward + 0.25) / 1.25);
+  return (0.56 + 0.1 * skyward + 0.52 * wrapped * wrapped) * (1 - 0.3 * edgeOn ** 3);
+}
+
+/**
+ * Fills the ellipse as which a disc is seen: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its middle.
+ * @param {{out: Uint32Array, depth: Float32Array, width: number, height: number}} target
+ * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number, rim: number, coreSq: number}} disc
+ *   `inv` is the depth of the middle; beyond `coreSq` from it, squared, the disc has the colour of its rim
+ */
+function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, depthPerPx, value, rim, coreSq }) {
+  const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
+  const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
+  const qa = 1 + ka * ka;
+  for (let iy = y0; iy <= y1; iy += 1) {
+    const dy = iy + 0.5 - sy;
+    // (1 + ka²) dx² + 2 ka kb dy dx + (1 + kb²) dy² − px² ≤ 0
+    const half = ka * kb * dy;
+    const root = half * half - qa * ((1 + kb * kb) * dy * dy - px * px);
+    if (root < 0) continue;
+    const s = Math.sqrt(root);
+    const x0 = Math.max(0, Math.ceil(sx + (-half - s) / qa - 0.5));
+    const x1 = Math.min(width - 1, Math.floor(sx + (-half + s) / qa - 0.5));
+    for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
+      const dx = ix + 0.5 - sx;
+      const dz = -(ka * dx + kb * dy);
+      const near = inv + dz * depthPerPx;
+      if (near > depth[at]) {
+        depth[at] = near;
+        out[at] = dx * dx + dy * dy + dz * dz > coreSq ? rim : value;
+      }
+    }
+  }
+}
+
 export class Painter {
   /** @param {HTMLCanvasElement} canvas */
   static async create(canvas) {
@@ -184,28 +247,16 @@ export class Painter {
   paint(image, depth, transparent, timeS) {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
+    const target = { out, depth, width, height };
     const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view, level = null } = this.style;
     const ground = background.slice(0, 3).map((v) => linear(v));
-    const packed = (/** @type {number} */ r, /** @type {number} */ g, /** @type {number} */ b) =>
-      (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
     // Depth is kept as 1/w, which is linear across a plane on screen: larger is nearer.
     depth.fill(0);
     const m = this.view;
     const [ex, ey, ez] = [m[16], m[17], m[18]];
+    const { right, up, forward, clipXPerWorld } = eyeAxes(m);
     const light = Math.hypot(key_light_view[0], key_light_view[1], key_light_view[2]) || 1;
-    const forward = [m[19], m[20], m[21]];
-    // Rows of clipFromWorld give the axes of the eye up to their lengths, and up to the share along the view that moves
-    // the picture aside.
-    const axis = (/** @type {number} */ k) => {
-      const v = [m[k], m[4 + k], m[8 + k]];
-      const along = v[0] * forward[0] + v[1] * forward[1] + v[2] * forward[2];
-      const u = v.map((c, i) => c - along * forward[i]);
-      const length = Math.hypot(u[0], u[1], u[2]) || 1;
-      return { length, unit: u.map((c) => c / length) };
-    };
-    const { unit: right, length: clipXPerWorld } = axis(0);
-    const { unit: up } = axis(1);
     const key = [0, 1, 2].map(
       (k) => (right[k] * key_light_view[0] + up[k] * key_light_view[1] - forward[k] * key_light_view[2]) / light,
     );
@@ -237,12 +288,10 @@ export class Painter {
         ny = -ny;
         nz = -nz;
       }
-      // The same light as in shaders/discs.wgsl: a wrapped key light, a hemisphere, dimmer at the silhouette.
-      const keyWrapped = Math.max(0, (nx * key[0] + ny * key[1] + nz * key[2] + 0.25) / 1.25);
+      const keyward = nx * key[0] + ny * key[1] + nz * key[2];
       const skyward = nx * up[0] + ny * up[1] + nz * up[2];
       const edgeOn = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
-      const shade =
-        (0.56 + 0.1 * skyward + 0.52 * keyWrapped * keyWrapped) * (1 - 0.3 * edgeOn ** 3) * (back ? 0.72 : 1);
+      const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 0.72 : 1);
       const faded = older ? Math.max(dim, MUTE) : dim;
       const away = back ? 1 - (1 - dim_backfaces) * (1 - faded) : faded;
       const colour = colours[i];
@@ -272,31 +321,8 @@ export class Painter {
       const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
       // Edge on, a disc is kept at least a twelfth as wide as it is long: it never vanishes.
       const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
-      const ka = a / c;
-      const kb = b / c;
       const depthPerPx = (r / px) * inv * inv;
-      const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
-      const y1 = Math.min(height - 1, Math.floor(sy + px - 0.5));
-      const qa = 1 + ka * ka;
-      for (let iy = y0; iy <= y1; iy += 1) {
-        const dy = iy + 0.5 - sy;
-        // (1 + ka²) dx² + 2 ka kb dy dx + (1 + kb²) dy² − px² ≤ 0
-        const half = ka * kb * dy;
-        const root = half * half - qa * ((1 + kb * kb) * dy * dy - px * px);
-        if (root < 0) continue;
-        const s = Math.sqrt(root);
-        const x0 = Math.max(0, Math.ceil(sx + (-half - s) / qa - 0.5));
-        const x1 = Math.min(width - 1, Math.floor(sx + (-half + s) / qa - 0.5));
-        for (let ix = x0, at = iy * width + x0; ix <= x1; ix += 1, at += 1) {
-          const dx = ix + 0.5 - sx;
-          const dz = -(ka * dx + kb * dy);
-          const near = inv + dz * depthPerPx;
-          if (near > depth[at]) {
-            depth[at] = near;
-            out[at] = dx * dx + dy * dy + dz * dz > coreSq ? rim : value;
-          }
-        }
-      }
+      fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, inv, depthPerPx, value, rim, coreSq });
     }
     if (box) this.paintBox(out, depth, width, height, box);
   }

@@ -1,0 +1,152 @@
+/**
+ * Pointers held on the picture: one turns the surface or carries it along, two carry and zoom it, a short press taps.
+ *
+ * A drag ends with its pointer, whatever happens to it: release, cancel, lost capture.
+ *
+ * @module
+ */
+
+/** @typedef {{x: number, y: number}} Place  in CSS pixels of the host */
+/**
+ * What the hands act on.
+ * @typedef {object} Stage
+ * @property {HTMLElement} host
+ * @property {import('./camera.js').Camera} camera
+ * @property {() => import('./camera.js').View} currentView
+ * @property {() => void} moved
+ * @property {() => void} fit
+ * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer rests on, or tapped, this place
+ * @property {() => void} leave
+ */
+
+/** A drag across the whole shorter side turns the surface by this much. */
+const TURN_PER_SIDE_RAD = Math.PI * 0.9;
+/** A press that moves less than this, and lasts less long, is a tap. */
+const TAP_PX = 4;
+const TAP_MS = 400;
+/** The speed of a throw is measured over this last stretch of the drag, of so many steps at most. */
+const THROW_MS = 80;
+const MOST_STEPS = 64;
+/** Less than this, in time and between two fingers, tells no speed and no scale. */
+const LEAST_THROW_MS = 8;
+const LEAST_SPAN_PX = 8;
+
+/** @param {HTMLElement} host @param {{clientX: number, clientY: number}} event @returns {Place} */
+export function placeOn(host, event) {
+  const box = host.getBoundingClientRect();
+  return { x: event.clientX - box.left, y: event.clientY - box.top };
+}
+
+/** Comes nearer by a factor to what is at a place. @param {Stage} stage @param {number} factor @param {Place} at */
+export function zoomAt({ camera, currentView, host }, factor, at) {
+  const { clientWidth: widthPx, clientHeight: heightPx } = host;
+  camera.zoom(factor, { view: currentView(), xPx: at.x, yPx: at.y, widthPx, heightPx });
+}
+
+export class Pointers {
+  /** @param {Stage} stage */
+  constructor(stage) {
+    this.stage = stage;
+    /** Where each pointer is. @type {Map<number, Place>} */
+    this.held = new Map();
+    this.panning = false;
+    /** The press that may become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
+    this.press = null;
+    /** The last steps of a turn. @type {{dx: number, dy: number, atMs: number}[]} */
+    this.trail = [];
+  }
+
+  /** @param {PointerEvent} event */
+  down(event) {
+    const { host, camera, leave } = this.stage;
+    camera.rest();
+    const at = placeOn(host, event);
+    this.held.set(event.pointerId, at);
+    try {
+      host.setPointerCapture(event.pointerId);
+    } catch {
+      // The pointer is gone already; its end will still be heard.
+    }
+    this.panning = event.button !== 0 || event.shiftKey;
+    this.trail = [];
+    this.press = this.held.size === 1 ? { ...at, atMs: event.timeStamp, still: true } : null;
+    leave();
+  }
+
+  /** @param {PointerEvent} event  of a pointer that is held */
+  move(event) {
+    const { held, press, stage } = this;
+    const before = held.get(event.pointerId);
+    if (!before) return;
+    const at = placeOn(stage.host, event);
+    if (press?.still && Math.hypot(at.x - press.x, at.y - press.y) > TAP_PX) press.still = false;
+    if (held.size === 1) {
+      if (press?.still) return;
+      this.drag(at.x - before.x, at.y - before.y, event.timeStamp);
+    } else if (held.size === 2) {
+      const other = [...held].find(([id]) => id !== event.pointerId)?.[1] ?? at;
+      this.pinch(before, at, other);
+    }
+    held.set(event.pointerId, at);
+    stage.moved();
+  }
+
+  /** @param {number} dx @param {number} dy @param {number} atMs */
+  drag(dx, dy, atMs) {
+    const { camera, currentView } = this.stage;
+    if (this.panning) {
+      camera.pan(dx, dy, currentView());
+      return;
+    }
+    camera.orbit(dx * this.radPerPx(), dy * this.radPerPx());
+    this.trail.push({ dx, dy, atMs });
+    if (this.trail.length > MOST_STEPS) this.trail.shift();
+  }
+
+  /** One of two fingers moved. @param {Place} before @param {Place} at @param {Place} other  where the other is */
+  pinch(before, at, other) {
+    const { camera, currentView } = this.stage;
+    const spanBefore = Math.hypot(before.x - other.x, before.y - other.y);
+    const span = Math.hypot(at.x - other.x, at.y - other.y);
+    camera.pan((at.x - before.x) / 2, (at.y - before.y) / 2, currentView());
+    if (spanBefore > LEAST_SPAN_PX && span > LEAST_SPAN_PX) {
+      zoomAt(this.stage, span / spanBefore, { x: (at.x + other.x) / 2, y: (at.y + other.y) / 2 });
+    }
+  }
+
+  /** @param {PointerEvent} event @param {boolean} released  by the hand, not taken away */
+  end(event, released) {
+    const { held, press, stage } = this;
+    if (!held.delete(event.pointerId)) return;
+    const trail = this.trail;
+    this.press = null;
+    this.trail = [];
+    if (held.size > 0) {
+      // The finger that stays goes on from where it is.
+      this.panning = false;
+      return;
+    }
+    const at = placeOn(stage.host, event);
+    if (released && press?.still && event.timeStamp - press.atMs < TAP_MS && event.button === 0) {
+      stage.point(at.x, at.y, true);
+    } else if (released && !this.panning) {
+      this.throw(trail, event.timeStamp);
+    }
+    stage.moved();
+  }
+
+  /** The hand let go in motion: the surface turns on. @param {Pointers['trail']} trail @param {number} nowMs */
+  throw(trail, nowMs) {
+    const recent = trail.filter((step) => nowMs - step.atMs < THROW_MS);
+    const since = recent.length ? nowMs - recent[0].atMs : 0;
+    if (since <= LEAST_THROW_MS) return;
+    const perS = (this.radPerPx() * 1000) / since;
+    const sum = (/** @type {'dx' | 'dy'} */ key) => recent.reduce((total, step) => total + step[key], 0);
+    this.stage.camera.fling(sum('dx') * perS, sum('dy') * perS);
+  }
+
+  radPerPx() {
+    const { clientWidth, clientHeight } = this.stage.host;
+    return TURN_PER_SIDE_RAD / Math.max(1, Math.min(clientWidth, clientHeight));
+  }
+}
