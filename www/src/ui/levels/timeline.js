@@ -1,15 +1,14 @@
 /**
  * The timeline of the generation levels: a bar for the new particles of each, a slider over them, and buttons to go level by level.
- * The level is part of the state; what is drawn of it is the picture's affair.
  */
-import { computed, effect, signal } from '@preact/signals-core';
+import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, plural } from '../format.js';
 import { drawIcon } from '../icons.js';
 import { clamp } from '../scale.js';
-import { describeLevel, levelTable, shortOf } from './table.js';
-import { turnToSeed } from './turn.js';
+import { Stepper } from './stepper.js';
+import { describeLevel, shortOf } from './table.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {{ title: string, text: string }} Told */
@@ -34,195 +33,117 @@ const ICONS = {
  * @param {import('@preact/signals-core').Signal<Told | null>} told  the level in words, null while all are shown
  */
 export function createTimeline(body, engine, told) {
-  const table = signal(levelTable(engine.columns));
-  const chosen = computed(() => engine.state.value.view.level);
-  const some = computed(() => table.value.count > 0 && !engine.empty.value);
-  /** The newest level that is drawn. */
-  const at = computed(() => Math.min(chosen.value ?? Infinity, table.value.last));
-
-  // However many pieces a run comes in, the table is made once a frame.
-  let asked = false;
-  effect(() => {
-    void engine.revision.value;
-    if (asked) return;
-    asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      table.value = levelTable(engine.columns);
-    });
-  });
-  effect(() => {
-    told.value =
-      chosen.value !== null && some.value
-        ? describeLevel(table.value, at.value, engine.progress.value.relax_step)
-        : null;
-  });
-
-  /** @param {number | null} level */
-  const show = (level) => {
-    if (level === chosen.peek()) return;
-    if (chosen.peek() === null) turnToSeed(engine);
-    engine.setView({ level });
-  };
-
-  // ---- by itself ----------------------------------------------------------------------------------------------------------
-
-  const playing = signal(false);
   const speed = h(
     'select',
     { class: 'select speed', 'aria-label': 'Levels per second' },
     SPEEDS.map((value) => h('option', { value, selected: value === USUAL_SPEED }, `${value}\u202f/\u202fs`)),
   );
-  let timer = 0;
-  const pause = () => {
-    clearTimeout(timer);
-    playing.value = false;
-  };
-  const wait = () => {
-    timer = window.setTimeout(next, 1000 / Number(speed.value));
-  };
-  function next() {
-    const level = chosen.peek();
-    // Another run may have begun meanwhile; after the last level all of them are shown alike.
-    if (level === null || level >= table.peek().last) {
-      show(null);
-      pause();
-      return;
-    }
-    show(level + 1);
-    wait();
-  }
-  const play = () => {
-    if (!some.peek()) return;
-    if (chosen.peek() === null || at.peek() >= table.peek().last) show(0);
-    playing.value = true;
-    wait();
-  };
-
-  // ---- by hand ------------------------------------------------------------------------------------------------------------
-
-  /** @param {number | null} level */
-  const seek = (level) => {
-    pause();
-    if (some.peek()) show(level);
-  };
-  /** @param {1 | -1} by */
-  const step = (by) => {
-    const to = at.peek() + by;
-    // From the whole picture a step back leads to the last level, a step forward from that to the whole picture.
-    if (chosen.peek() === null) seek(by < 0 ? table.peek().last : null);
-    else seek(to > table.peek().last ? null : Math.max(0, to));
-  };
+  const stepper = new Stepper(engine, () => Number(speed.value));
+  const { table, chosen, some, at } = stepper;
+  effect(() => {
+    const one = chosen.value !== null && some.value;
+    told.value = one ? describeLevel(table.value, at.value, engine.progress.value.relax_step) : null;
+  });
   const commands = {
-    first: () => seek(0),
-    back: () => step(-1),
-    toggle: () => (playing.peek() ? pause() : play()),
-    forward: () => step(1),
-    all: () => seek(null),
+    first: () => stepper.seek(0),
+    back: () => stepper.step(-1),
+    toggle: () => stepper.toggle(),
+    forward: () => stepper.step(1),
+    all: () => stepper.seek(null),
   };
-
-  const range = h('input', { type: 'range', class: 'levels-range', min: 0, step: 1, 'aria-label': 'Generation level' });
-  /** @param {PointerEvent} event */
-  const levelUnder = ({ clientX }) => {
-    const { left, width } = range.getBoundingClientRect();
-    const bars = table.peek().last + 1;
-    return clamp(Math.floor(((clientX - left) / Math.max(1, width)) * bars), 0, bars - 1);
+  const track = trackOf(stepper);
+  fill(body, buttonsOf(stepper, commands), track, captionOf(stepper), speed);
+  const about = {
+    title: 'Generation levels',
+    text: 'New particles per level. Press or drag to see the front as far as that level.',
   };
-  // By hand, so that a press anywhere in a bar leads there, on every system.
-  range.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0 || range.disabled) return;
-    range.setPointerCapture(event.pointerId);
-    seek(levelUnder(event));
-  });
-  range.addEventListener('pointermove', (event) => {
-    if (range.hasPointerCapture(event.pointerId)) seek(levelUnder(event));
-  });
-  range.addEventListener('mousedown', (event) => {
-    event.preventDefault();
-    range.focus({ preventScroll: true });
-  });
-  range.addEventListener('input', () => seek(range.valueAsNumber));
-  range.addEventListener('dblclick', () => seek(null));
+  explain(track, () => about, { side: 'above' });
+  return commands;
+}
 
-  // ---- how it looks -------------------------------------------------------------------------------------------------------
-
+/** The bars with the slider over them. @param {Stepper} stepper */
+function trackOf(stepper) {
+  const { table, chosen, some, at } = stepper;
+  const range = sliderOf(stepper);
   const chart = h('div', { class: 'levels-chart', 'aria-hidden': 'true' });
   const track = h('div', { class: 'levels-track' }, chart, range);
   effect(() => {
     const { fresh, last } = table.value;
+    // Once pale, and once in colour as far as the level goes.
     fill(chart, bars(fresh), bars(fresh));
     track.style.setProperty('--bars', String(last + 1));
     range.max = String(last);
   });
   effect(() => {
-    const { last } = table.value;
+    const { last, count } = table.value;
     range.disabled = !some.value;
     range.valueAsNumber = at.value;
-    range.setAttribute(
-      'aria-valuetext',
-      !some.value
-        ? 'No levels yet'
-        : chosen.value === null
-          ? `All ${plural(last + 1, 'level')}: ${plural(table.value.count, 'particle')}`
-          : shortOf(table.value, at.value),
-    );
+    const whole = `All ${plural(last + 1, 'level')}: ${plural(count, 'particle')}`;
+    const words = chosen.value === null ? whole : shortOf(table.value, at.value);
+    range.setAttribute('aria-valuetext', some.value ? words : 'No levels yet');
     track.style.setProperty('--done', String((at.value + 1) / (last + 1)));
     track.toggleAttribute('data-chosen', chosen.value !== null);
   });
+  return track;
+}
 
-  const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
-  effect(() => {
-    const { last } = table.value;
-    if (!some.value) fill(now);
-    else if (chosen.value === null) fill(now, 'All levels ', h('span', { class: 'unit' }, `0 to ${formatCount(last)}`));
-    else fill(now, `Level ${formatCount(at.value)} `, h('span', { class: 'unit' }, `of ${formatCount(last)}`));
+/** @param {Stepper} stepper */
+function sliderOf(stepper) {
+  const range = h('input', { type: 'range', class: 'levels-range', min: 0, step: 1, 'aria-label': 'Generation level' });
+  /** @param {PointerEvent} event */
+  const levelUnder = ({ clientX }) => {
+    const { left, width } = range.getBoundingClientRect();
+    return clamp(Math.floor(((clientX - left) / Math.max(1, width)) * (stepper.last + 1)), 0, stepper.last);
+  };
+  // By hand, so that a press anywhere in a bar leads there, on every system.
+  range.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || range.disabled) return;
+    range.setPointerCapture(event.pointerId);
+    stepper.seek(levelUnder(event));
   });
+  range.addEventListener('pointermove', (event) => {
+    if (range.hasPointerCapture(event.pointerId)) stepper.seek(levelUnder(event));
+  });
+  range.addEventListener('mousedown', (event) => {
+    event.preventDefault();
+    range.focus({ preventScroll: true });
+  });
+  range.addEventListener('input', () => stepper.seek(range.valueAsNumber));
+  range.addEventListener('dblclick', () => stepper.seek(null));
+  return range;
+}
 
-  const ends = computed(() => some.value && chosen.value !== 0);
+/** Which level is shown. @param {Stepper} stepper */
+function captionOf({ table, chosen, some, at }) {
+  const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
+  const unit = (/** @type {string} */ text) => h('span', { class: 'unit' }, text);
+  effect(() => {
+    const last = formatCount(table.value.last);
+    if (!some.value) fill(now);
+    else if (chosen.value === null) fill(now, 'All levels ', unit(`0 to ${last}`));
+    else fill(now, `Level ${formatCount(at.value)} `, unit(`of ${last}`));
+  });
+  return now;
+}
+
+/** @param {Stepper} stepper @param {Record<'first' | 'back' | 'toggle' | 'forward' | 'all', () => void>} commands */
+function buttonsOf({ chosen, some, playing }, commands) {
+  const notFirst = computed(() => some.value && chosen.value !== 0);
+  const notAll = computed(() => some.value && chosen.value !== null);
   const toggle = button('play', 'Play', 'Shows one level after another.', 'P', commands.toggle, some);
   effect(() => {
-    const label = playing.value ? 'Pause' : 'Play';
-    toggle.setAttribute('aria-label', label);
+    toggle.setAttribute('aria-label', playing.value ? 'Pause' : 'Play');
     toggle.replaceChildren(drawIcon(ICONS[playing.value ? 'pause' : 'play']));
   });
-  fill(
-    body,
-    h(
-      'div',
-      { class: 'levels-buttons', role: 'group', 'aria-label': 'Step through the levels' },
-      button('first', 'First level', 'The seed.', '<', commands.first, ends),
-      button('back', 'Level back', 'One generation level less.', ',', commands.back, ends),
-      toggle,
-      button(
-        'forward',
-        'Level forward',
-        'One generation level more.',
-        '.',
-        commands.forward,
-        computed(() => some.value && chosen.value !== null),
-      ),
-      button(
-        'all',
-        'All levels',
-        'Every particle, all alike.',
-        '>',
-        commands.all,
-        computed(() => some.value && chosen.value !== null),
-      ),
-    ),
-    track,
-    now,
-    speed,
+  return h(
+    'div',
+    { class: 'levels-buttons', role: 'group', 'aria-label': 'Step through the levels' },
+    button('first', 'First level', 'The seed.', '<', commands.first, notFirst),
+    button('back', 'Level back', 'One generation level less.', ',', commands.back, notFirst),
+    toggle,
+    button('forward', 'Level forward', 'One generation level more.', '.', commands.forward, notAll),
+    button('all', 'All levels', 'Every particle, all alike.', '>', commands.all, notAll),
   );
-  explain(
-    track,
-    () => ({
-      title: 'Generation levels',
-      text: 'New particles per level. Press or drag to see the front as far as that level.',
-    }),
-    { side: 'above' },
-  );
-  return commands;
 }
 
 /**
