@@ -1,8 +1,9 @@
-//! A point of the surface on every connected piece of it, by proof: subdivision of the box, driven by intervals.
+//! The search for a point on every connected component of the surface, with proof: interval arithmetic drives a subdivision of
+//! the box.
 //!
 //! # The argument
 //!
-//! Let S be the zero set of f in the box and K a connected piece of it. K is compact, so that it has a highest point: of
+//! Let S be the zero set of f in the box and K a connected component of it. K is compact, so that it has a highest point: of
 //! its points with the largest z those with the largest y, of these the one with the largest x. Where that point q lies
 //! inside the box and f has a gradient there, no direction on the surface goes up from it: ∂f/∂x = ∂f/∂y = 0. Where it lies
 //! inside a face x = const., q is the highest point of K in the face, and ∂f/∂y = 0; inside a face y = const., ∂f/∂x = 0; and
@@ -20,8 +21,8 @@
 //! footprint, connected, and meets the line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder,
 //! "Interval analysis for computer graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
 //! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that
-//! meets the surface, and obtain its topology; one point on each piece is cheaper.) If the highest point of a piece lies in C, the
-//! witness lies on that piece: along the graph it never leaves through the top of the box, because nothing of the piece is
+//! meets the surface, and obtain its topology; one point on each component is cheaper.) If the highest point of a component lies in C, the
+//! witness lies on that component: along the graph it never leaves through the top of the box, because nothing of the component is
 //! higher, and a graph that might leave through the bottom is not accepted.
 //!
 //! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value forms:
@@ -30,14 +31,14 @@
 //! one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
 //!
 //! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around it through whose boundary every
-//! piece in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the rest.
+//! component in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the rest.
 //!
 //! Of the others only the [part](super::interval_newton) is kept that can hold a highest point. What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
 //! where the gradient vanishes on the surface no interval decides.
 //!
 //! # What is proven
 //!
-//! If no cell is left undecided, every connected piece of the surface in the box holds a witness; without a witness there is no
+//! If no cell is left undecided, every connected component of the surface in the box holds a witness; without a witness there is no
 //! surface. The box is enlarged by [`MARGIN`] for it, so that a surface that touches its box from inside is inside. At
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
@@ -50,44 +51,45 @@ use glam::DVec3;
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed.
 const DEPTH: u8 = 16;
-/// Halvings after which a cell is left undecided where f jumps or is not defined: such cells line up along curves and faces.
+/// The same where f jumps or is not defined. Such cells lie along curves and faces, so there are many.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Most cells looked at, and how many more for every particle that the run will have: a cell takes about as long as a third of a
+/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third of a
 /// particle. Smooth surfaces of the gallery take a hundred to eight thousand, but for two that take sixty and seventy thousand,
 /// and those with up to sixteen cone points no more; the fifty of Barth's sextic take 36,000.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
-/// Most cells looked at where each level has hardly more of them than the one before it, so that the end is near.
+/// Largest number of cells visited where each level has hardly more of them than the one before it: the search is then near its
+/// end.
 const MOST_AT_THE_END: usize = 65_536;
 const HARDLY_MORE: f64 = 1.3;
-/// Halvings before singular points are looked for in a cell, and how many there are between two tries.
+/// Halvings before singular points are searched in a cell, and halvings between two tries.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Most cells in which they are looked for, in a part: there are more where they form a curve.
+/// Largest number of cells of a part in which they are searched. There are more where they form a curve.
 const MOST_TRIED: usize = 512;
-/// Singular points nearer to each other than this share of a cell are one.
+/// Two singular points count as one if they are nearer to each other than this share of a cell.
 const SAME: f64 = 1e-6;
-/// Cells looked at together; how a budget cuts the work does not change what is found.
-const CHUNK: usize = 32;
-/// Units of work that a cell is charged for: on long formulas it takes as long as several particles.
+/// Number of cells in a batch. The way in which a budget cuts the work does not change the result.
+const BATCH: usize = 32;
+/// Units of work that a cell counts for: on long formulas it takes as long as several particles.
 const UNITS: u32 = 8;
 /// The box is enlarged by this share of its longest side.
 const MARGIN: f64 = 1.0 / 65_536.0;
-/// A taller cell reaches this much farther than the slopes of the cell itself ask for, and at least by [`LEAST_RISE`] of its
+/// A taller cell reaches this many times as far as the slopes of the cell itself require, and at least by [`LEAST_RISE`] of its
 /// height.
 const RISE_ROOM: f64 = 2.0;
 const LEAST_RISE: f64 = 0.02;
-/// A cell is halved rather than made taller than this many times its height, each way.
+/// A cell that had to be made taller by more than this many times its height, each way, is halved.
 const MOST_RISE: f64 = 2.0;
-/// Halved are the sides longer than this share of the longest.
+/// A cell is halved along the sides that are longer than this share of the longest.
 const LONG: f64 = 0.7;
-/// Where they are cut, and where the footprint of a decided cell is probed, not quite in the middle: the highest points of
-/// symmetric surfaces, and the places where they cross themselves, lie there.
+/// Position of the cut, and of the probe in the footprint of a decided cell, as a share of the side. It is not the middle, where
+/// symmetric surfaces have their highest points and cross themselves.
 const CUT: f64 = 0.4709;
-/// Most that the surface is above or below a witness, in what it rises over the footprint.
+/// Largest height difference between a witness and the surface, as a share of the rise over the footprint.
 const BESIDE: f64 = 1.0 - CUT;
 
-/// A part of a stratum: sides of length 0 are those that a face or an edge of the box pins.
+/// A cell of a stratum. A side has the length 0 where a face or an edge of the box fixes the coordinate.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     lo: DVec3,
@@ -96,7 +98,7 @@ struct Cell {
 }
 
 impl Cell {
-    /// The place at which a decided cell is probed along up.
+    /// The point of the footprint at which a decided cell is probed along up.
     fn probe(&self) -> DVec3 {
         self.lo + CUT * (self.hi - self.lo)
     }
@@ -112,74 +114,129 @@ impl Cell {
     }
 }
 
-/// Bounds of second derivatives that say nothing.
+/// Infinite bounds of the second derivatives.
 const UNBOUNDED: [[f64; 2]; 6] = [[f64::NEG_INFINITY, f64::INFINITY]; 6];
 
-/// How far a search has come.
+/// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum State {
+enum SearchState {
     /// The field has no bounds to search by.
     #[default]
     Unavailable,
-    /// Nothing has been looked at, nor whether the bounds say anything.
+    /// No cell has been visited, and it is not known whether the bounds are finite.
     Ready,
     Running,
     Done,
 }
 
-/// A point of the surface, and of which of its parts it is a zero.
+/// A point of the surface, and the part of the field that vanishes there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Witness {
     pub(crate) position: DVec3,
     pub(crate) part: usize,
 }
 
-/// A search for witnesses.
+/// The search for witnesses, and what it has found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Octree {
-    state: State,
+    state: SearchState,
+    /// Width by which the box is enlarged on every side.
     margin: f64,
+    /// Corners of the enlarged box.
     lo: DVec3,
     hi: DVec3,
-    /// The part under way, and how many there are.
-    part: usize,
+    /// Number of parts of the field, which are searched one after the other.
     parts: usize,
-    /// Cells of the level under way, and how many have been looked at.
+    /// Most cells that all parts together may take.
+    most: usize,
+    search: PartSearch,
+    bounds: BoxBounds,
+    batch: CellBatch,
+    /// Points where f and its gradient vanish; of curves of them a selection.
+    pub(crate) singular: Vec<Singular>,
+    /// At least one on every component of the surface.
+    pub(crate) witnesses: Vec<Witness>,
+    /// Smallest and largest corners of the cells left undecided.
+    pub(crate) undecided: Vec<[DVec3; 2]>,
+}
+
+/// The search of one part of the field.
+#[derive(Clone, Debug, Default)]
+struct PartSearch {
+    part: usize,
+    /// Cells of the level under way; those before `next` have been visited.
     level: Vec<Cell>,
     next: usize,
     /// Whether the level has hardly more cells than the one before it.
     is_ending: bool,
     /// Cells of the level after it.
     halves: Vec<Cell>,
-    /// Cells of the part looked at, and how many it may take.
+    /// Number of cells visited.
     cells: usize,
-    most: usize,
+    /// Boxes left out of the search.
+    isolated: Vec<[DVec3; 2]>,
+    /// Number of cells in which singular points were searched.
+    tries: usize,
+    /// Singular points around which such a box was searched.
+    tried: Vec<DVec3>,
+}
+
+/// Boxes and the bounds of the field over them.
+#[derive(Clone, Debug, Default)]
+struct BoxBounds {
     boxes: Vec<[DVec3; 2]>,
     known: Vec<Enclosure>,
     second: Vec<[[f64; 2]; 6]>,
-    /// Cells whose fate the bounds of the expressions leave open.
+}
+
+/// The cells of a batch, by what is to be done with them.
+#[derive(Clone, Debug, Default)]
+struct CellBatch {
+    /// Cells that the bounds of the expressions do not decide.
     open: Vec<Cell>,
     /// Cells to be made taller, and by how much each way.
     tall: Vec<(Cell, f64)>,
-    /// Most that the surface rises over the footprint of each; none where it may not be a graph.
+    /// Bounds for the rise of the surface over the footprint of each; none where it may not be a graph.
     rises: Vec<Option<f64>>,
-    /// Lines that meet the surface: index of the tall cell, lower and upper end, the place under way.
+    /// Lines that meet the surface: index of the tall cell, lower and upper end, present estimate of the root.
     lines: Vec<(usize, f64, f64, f64)>,
-    /// Boxes left out of the search of the part.
-    isolated: Vec<[DVec3; 2]>,
-    /// Cells in which singular points were looked for.
-    tries: usize,
-    /// Points around which such a box was looked for.
-    tried: Vec<DVec3>,
-    /// Points where f and its gradient vanish; of curves of them a selection.
-    pub(crate) singular: Vec<Singular>,
-    /// At least one on every piece of the surface.
-    pub(crate) witnesses: Vec<Witness>,
-    /// Smallest and largest corners of the cells left undecided.
-    pub(crate) undecided: Vec<[DVec3; 2]>,
 }
 
-/// Whether the bounds leave 0 out; and then the least size within them.
+impl BoxBounds {
+    /// Bounds f and its gradient over the boxes.
+    fn enclose(&mut self, field: &mut dyn Field, part: usize) {
+        let n = self.boxes.len();
+        self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
+        field.enclose(part, &self.boxes, &mut self.known[..n]);
+    }
+
+    /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds stand those in the middles
+    /// of the boxes.
+    fn refine(&mut self, field: &mut dyn Field, part: usize) {
+        let n = self.boxes.len();
+        if n == 0 {
+            return;
+        }
+        for k in 0..n {
+            let [lo, hi] = self.boxes[k];
+            let middle = 0.5 * (lo + hi);
+            self.boxes.push([middle, middle]);
+        }
+        self.enclose(field, part);
+        self.boxes.truncate(n);
+        self.second.resize(n.max(self.second.len()), UNBOUNDED);
+        field.enclose_second(part, &self.boxes, &mut self.second[..n]);
+        for k in 0..n {
+            let [lo, hi] = self.boxes[k];
+            let middle = self.known[n + k];
+            if self.known[k].defined && self.known[k].continuous {
+                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * (hi - lo));
+            }
+        }
+    }
+}
+
+/// Returns the least absolute value within the bounds, or none if 0 lies within them.
 fn away_from_zero([lo, hi]: [f64; 2]) -> Option<f64> {
     if lo > 0.0 {
         Some(lo)
@@ -200,22 +257,23 @@ impl Octree {
         self.witnesses.clear();
         self.undecided.clear();
         self.singular.clear();
-        self.halves.clear();
+        self.search.halves.clear();
         self.margin = MARGIN * (bounds.hi() - bounds.lo()).max_element();
         let margin = DVec3::splat(self.margin);
         (self.lo, self.hi) = (bounds.lo() - margin, bounds.hi() + margin);
-        self.state = if has_bounds { State::Ready } else { State::Unavailable };
+        self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
     }
 
+    /// Begins the search of a part of the field with the box, its faces and its edges.
     fn begin_part(&mut self, part: usize) {
-        self.part = part;
-        (self.next, self.cells, self.is_ending) = (0, 0, false);
-        self.level.clear();
-        self.isolated.clear();
-        self.tried.clear();
-        self.tries = 0;
-        self.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
-        push_boundary(&mut self.level, [self.lo, self.hi]);
+        self.search.part = part;
+        (self.search.next, self.search.cells, self.search.is_ending) = (0, 0, false);
+        self.search.level.clear();
+        self.search.isolated.clear();
+        self.search.tried.clear();
+        self.search.tries = 0;
+        self.search.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
+        push_boundary(&mut self.search.level, [self.lo, self.hi]);
     }
 
     /// Smallest and largest corner of what is searched: the box and the margin around it.
@@ -228,111 +286,115 @@ impl Octree {
         self.margin
     }
 
-    /// Says how many particles the run will have, which decides how many cells are looked at.
+    /// Sets the expected number of particles, which limits the number of cells visited.
     pub(crate) fn expect(&mut self, particles: f64) {
         self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
     }
 
-    /// How many cells of the part may be looked at.
+    /// Largest number of cells of the part that may be visited.
     fn allowed(&self) -> usize {
-        let most = if self.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
+        let most = if self.search.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
         most / self.parts
     }
 
     /// Whether the field can be searched by bounds.
     pub(crate) fn is_available(&self) -> bool {
-        self.state != State::Unavailable
+        self.state != SearchState::Unavailable
     }
 
-    /// Whether there is nothing left to do.
+    /// Whether the search is over, or not available.
     pub(crate) fn is_done(&self) -> bool {
-        !matches!(self.state, State::Ready | State::Running)
+        !matches!(self.state, SearchState::Ready | SearchState::Running)
     }
 
     /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
     pub(crate) fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
-        if self.state == State::Ready {
+        if self.state == SearchState::Ready {
             self.parts = field.parts();
             if bounds_say_something(field, [self.lo, self.hi]) {
-                self.state = State::Running;
+                self.state = SearchState::Running;
                 self.begin_part(0);
             } else {
-                self.state = State::Unavailable;
+                self.state = SearchState::Unavailable;
             }
         }
         while budget > 0 && !self.is_done() {
-            let count = CHUNK.min(self.level.len() - self.next);
-            self.look_at(field, self.next..self.next + count);
-            self.next += count;
-            self.cells += count;
-            budget = budget.saturating_sub(UNITS * CHUNK as u32);
-            if self.next == self.level.len() {
-                self.is_ending = (self.halves.len() as f64) < HARDLY_MORE * self.level.len() as f64;
-                self.level.clear();
-                core::mem::swap(&mut self.level, &mut self.halves);
-                self.next = 0;
+            let count = BATCH.min(self.search.level.len() - self.search.next);
+            self.visit(field, self.search.next..self.search.next + count);
+            self.search.next += count;
+            self.search.cells += count;
+            budget = budget.saturating_sub(UNITS * BATCH as u32);
+            if self.search.next == self.search.level.len() {
+                self.search.is_ending =
+                    (self.search.halves.len() as f64) < HARDLY_MORE * self.search.level.len() as f64;
+                self.search.level.clear();
+                core::mem::swap(&mut self.search.level, &mut self.search.halves);
+                self.search.next = 0;
             }
-            if self.level.is_empty() || self.cells >= self.allowed() {
-                let open = self.level[self.next..].iter().chain(&self.halves);
-                let open = open.filter(|cell| !is_left_out(cell, &self.isolated));
+            if self.search.level.is_empty() || self.search.cells >= self.allowed() {
+                let open = self.search.level[self.search.next..].iter().chain(&self.search.halves);
+                let open = open.filter(|cell| !is_left_out(cell, &self.search.isolated));
                 self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
-                self.halves.clear();
-                if self.part + 1 < self.parts {
-                    self.begin_part(self.part + 1);
+                self.search.halves.clear();
+                if self.search.part + 1 < self.parts {
+                    self.begin_part(self.search.part + 1);
                 } else {
-                    self.state = State::Done;
+                    self.state = SearchState::Done;
                 }
             }
         }
         budget
     }
 
-    fn look_at(&mut self, field: &mut dyn Field, range: core::ops::Range<usize>) {
-        self.open.clear();
-        let searched = self.level[range].iter().filter(|cell| !is_left_out(cell, &self.isolated));
-        self.open.extend(searched);
-        self.boxes.clear();
-        self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
-        self.enclose(field);
+    /// Visits the cells of the level in this range: each is discarded, made taller, left out or halved.
+    fn visit(&mut self, field: &mut dyn Field, range: core::ops::Range<usize>) {
+        self.batch.open.clear();
+        let searched =
+            self.search.level[range].iter().filter(|cell| !is_left_out(cell, &self.search.isolated));
+        self.batch.open.extend(searched);
+        self.bounds.boxes.clear();
+        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.bounds.enclose(field, self.search.part);
         let mut kept = 0;
-        for k in 0..self.open.len() {
-            let (cell, known) = (self.open[k], self.known[k]);
+        for k in 0..self.batch.open.len() {
+            let (cell, known) = (self.batch.open[k], self.bounds.known[k]);
             if !known.may_vanish {
                 continue;
             }
             if !(known.defined && known.continuous) {
                 self.halve(cell, IRREGULAR_DEPTH);
             } else if !is_discarded(&cell, &known) {
-                self.open[kept] = cell;
+                self.batch.open[kept] = cell;
                 kept += 1;
             }
         }
-        self.open.truncate(kept);
-        self.boxes.clear();
-        self.boxes.extend(self.open.iter().map(|cell| [cell.lo, cell.hi]));
-        self.refine(field);
-        self.tall.clear();
-        for k in 0..self.open.len() {
-            let (mut cell, known, middle) = (self.open[k], self.known[k], self.known[self.open.len() + k]);
+        self.batch.open.truncate(kept);
+        self.bounds.boxes.clear();
+        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.bounds.refine(field, self.search.part);
+        self.batch.tall.clear();
+        for k in 0..self.batch.open.len() {
+            let (mut cell, known, middle) =
+                (self.batch.open[k], self.bounds.known[k], self.bounds.known[self.batch.open.len() + k]);
             if is_discarded(&cell, &known) {
                 continue;
             }
             let corners = [cell.lo, cell.hi];
-            let left = narrowed(corners, cell.axes(), &known, &middle, &self.second[k]);
+            let left = narrowed(corners, cell.axes(), &known, &middle, &self.bounds.second[k]);
             let Some([lo, hi]) = left else { continue };
             let (_, up) = cell.axes();
-            // That of the whole cell: the part may be flat.
+            // The height is that of the whole cell, because the narrowed one may be flat.
             let height = cell.hi[up] - cell.lo[up];
             (cell.lo, cell.hi) = (lo, hi);
             match rise(&cell, &known) {
                 Some(t) if t <= MOST_RISE * height => {
-                    self.tall.push((cell, RISE_ROOM * t + LEAST_RISE * height));
+                    self.batch.tall.push((cell, RISE_ROOM * t + LEAST_RISE * height));
                 }
                 _ if self.is_isolated(field, &cell, &known) => {}
                 _ => self.halve(cell, DEPTH),
             }
         }
-        if !self.tall.is_empty() {
+        if !self.batch.tall.is_empty() {
             self.decide(field);
         }
     }
@@ -340,42 +402,44 @@ impl Octree {
     /// Whether the cell lies in a box that is left out of the search: one there is already, or a new one around a singular
     /// point in or near the cell.
     fn is_isolated(&mut self, field: &mut dyn Field, cell: &Cell, known: &Enclosure) -> bool {
-        if is_left_out(cell, &self.isolated) {
+        if is_left_out(cell, &self.search.isolated) {
             return true;
         }
         let (sides, _) = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
-            && self.tries < MOST_TRIED
+            && self.search.tries < MOST_TRIED
             && sides.iter().all(Option::is_some)
             && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
         if !is_tried {
             return false;
         }
-        self.tries += 1;
+        self.search.tries += 1;
         let reach = (cell.hi - cell.lo).length();
         let Some(point) = singular_point(field, cell.probe(), reach) else { return false };
         let at = point.position;
         let is_known = |p: &DVec3| (*p - at).length_squared() <= SAME * SAME * reach * reach;
-        if self.tried.iter().any(is_known) {
+        if self.search.tried.iter().any(is_known) {
             return false;
         }
-        self.tried.push(at);
+        self.search.tried.push(at);
         if point.is_zero && at.cmpge(self.lo).all() && at.cmple(self.hi).all() {
             self.singular.push(point);
         }
-        // Through the faces of a box on a curve of such points the curve goes on.
+        // A curve of such points passes through the faces of the box.
         if !point.is_alone {
             return false;
         }
         let within = [self.lo, self.hi];
-        let Some(around) = isolating_box(field, self.part, at, within, &self.isolated) else { return false };
-        self.isolated.push(around);
-        push_boundary(&mut self.halves, around);
+        let Some(around) = isolating_box(field, self.search.part, at, within, &self.search.isolated) else {
+            return false;
+        };
+        self.search.isolated.push(around);
+        push_boundary(&mut self.search.halves, around);
         is_inside(cell, &around)
     }
 
-    /// Decides the cells in `tall`, or halves them.
+    /// Decides the cells that are to be made taller, or halves them.
     fn decide(&mut self, field: &mut dyn Field) {
         let taller = |&(cell, room): &(Cell, f64)| {
             let (_, up) = cell.axes();
@@ -383,122 +447,93 @@ impl Octree {
             (lo[up], hi[up]) = (lo[up] - room, hi[up] + room);
             [lo, hi]
         };
-        self.boxes.clear();
-        self.boxes.extend(self.tall.iter().map(taller));
-        self.refine(field);
+        self.bounds.boxes.clear();
+        self.bounds.boxes.extend(self.batch.tall.iter().map(taller));
+        self.bounds.refine(field, self.search.part);
         // The most that the surface rises, where it is a graph over the whole footprint.
-        self.rises.clear();
-        self.rises.extend(self.tall.iter().zip(&self.known).map(|((cell, room), known)| {
-            let regular = known.defined && known.continuous;
-            if regular { rise(cell, known).filter(|t| t <= room) } else { None }
-        }));
+        self.batch.rises.clear();
+        self.batch.rises.extend(self.batch.tall.iter().zip(&self.bounds.known).map(
+            |((cell, room), known)| {
+                let regular = known.defined && known.continuous;
+                if regular { rise(cell, known).filter(|t| t <= room) } else { None }
+            },
+        ));
         // Both ends of a line through each.
-        self.boxes.clear();
-        for tall in &self.tall {
+        self.bounds.boxes.clear();
+        for tall in &self.batch.tall {
             let (cell, _) = tall;
             let (_, up) = cell.axes();
-            self.boxes.extend(taller(tall).map(|end| {
+            self.bounds.boxes.extend(taller(tall).map(|end| {
                 let mut p = cell.probe();
                 p[up] = end[up];
                 [p, p]
             }));
         }
-        self.enclose(field);
-        self.lines.clear();
-        for k in 0..self.tall.len() {
-            let (cell, _) = self.tall[k];
-            let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.known[end].value);
+        self.bounds.enclose(field, self.search.part);
+        self.batch.lines.clear();
+        for k in 0..self.batch.tall.len() {
+            let (cell, _) = self.batch.tall[k];
+            let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
             let known = away_from_zero(bottom).and(away_from_zero(top)).is_some();
-            if self.rises[k].is_none() || !known {
+            if self.batch.rises[k].is_none() || !known {
                 self.halve(cell, DEPTH);
             } else if (bottom[0] > 0.0) != (top[0] > 0.0) {
                 let (_, up) = cell.axes();
-                let (lo, hi) = (self.boxes[2 * k][0][up], self.boxes[2 * k + 1][0][up]);
-                self.lines.push((k, lo, hi, 0.5 * (lo + hi)));
+                let (lo, hi) = (self.bounds.boxes[2 * k][0][up], self.bounds.boxes[2 * k + 1][0][up]);
+                self.batch.lines.push((k, lo, hi, 0.5 * (lo + hi)));
             }
         }
         self.find_roots(field);
-        for line in 0..self.lines.len() {
-            let (k, _, _, height) = self.lines[line];
-            let (cell, _) = self.tall[k];
+        for line in 0..self.batch.lines.len() {
+            let (k, _, _, height) = self.batch.lines[line];
+            let (cell, _) = self.batch.tall[k];
             let (sides, up) = cell.axes();
-            let beside = BESIDE * self.rises[k].unwrap_or(0.0);
+            let beside = BESIDE * self.batch.rises[k].unwrap_or(0.0);
             if height + beside < self.lo[up] || height > self.hi[up] && height - beside >= self.lo[up] {
                 continue;
             }
-            // Over a single point there is nothing to leave by.
+            // Over a footprint of one point the graph cannot leave the box.
             if height - beside >= self.lo[up] || sides == [None; 2] {
                 let mut position = cell.probe();
                 position[up] = height;
-                self.witnesses.push(Witness { position, part: self.part });
+                self.witnesses.push(Witness { position, part: self.search.part });
             } else {
                 self.halve(cell, DEPTH);
             }
         }
     }
 
-    /// The zero of f on each of the `lines`, at whose ends it has different signs: Newton's method, kept between the ends by
-    /// bisection.
+    /// Finds the zero of f on each of the lines, at whose ends f has different signs, by Newton's method safeguarded by bisection.
     fn find_roots(&mut self, field: &mut dyn Field) {
-        /// Bisection alone would exhaust the digits of a number.
+        /// Bisection alone reaches the precision of a number in so many steps.
         const MOST_STEPS: u32 = 60;
-        let mut settled = self.lines.is_empty();
+        let mut settled = self.batch.lines.is_empty();
         for _ in 0..MOST_STEPS {
             if settled {
                 break;
             }
-            self.boxes.clear();
-            for &(k, _, _, height) in &self.lines {
-                let (cell, _) = self.tall[k];
+            self.bounds.boxes.clear();
+            for &(k, _, _, height) in &self.batch.lines {
+                let (cell, _) = self.batch.tall[k];
                 let mut p = cell.probe();
                 p[cell.axes().1] = height;
-                self.boxes.push([p, p]);
+                self.bounds.boxes.push([p, p]);
             }
-            self.enclose(field);
+            self.bounds.enclose(field, self.search.part);
             settled = true;
-            for (line, known) in self.lines.iter_mut().zip(&self.known) {
+            for (line, known) in self.batch.lines.iter_mut().zip(&self.bounds.known) {
                 let (k, lo, hi, height) = *line;
                 let [least, most] = known.value;
                 if away_from_zero(known.value).is_none() {
                     continue;
                 }
-                let slope = known.gradient[self.tall[k].0.axes().1];
+                let slope = known.gradient[self.batch.tall[k].0.axes().1];
                 let rising = slope[0] > 0.0;
                 let (lo, hi) = if (least > 0.0) == rising { (lo, height) } else { (height, hi) };
                 let newton = height - (least + most) / (slope[0] + slope[1]);
                 let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
                 settled &= (next - height).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
                 *line = (k, lo, hi, next);
-            }
-        }
-    }
-
-    fn enclose(&mut self, field: &mut dyn Field) {
-        let n = self.boxes.len();
-        self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
-        field.enclose(self.part, &self.boxes, &mut self.known[..n]);
-    }
-
-    /// Bounds over the boxes, the mean value forms included.
-    fn refine(&mut self, field: &mut dyn Field) {
-        let n = self.boxes.len();
-        if n == 0 {
-            return;
-        }
-        for k in 0..n {
-            let [lo, hi] = self.boxes[k];
-            let middle = 0.5 * (lo + hi);
-            self.boxes.push([middle, middle]);
-        }
-        self.enclose(field);
-        self.boxes.truncate(n);
-        self.second.resize(n.max(self.second.len()), UNBOUNDED);
-        field.enclose_second(self.part, &self.boxes, &mut self.second[..n]);
-        for k in 0..n {
-            let [lo, hi] = self.boxes[k];
-            let middle = self.known[n + k];
-            if self.known[k].defined && self.known[k].continuous {
-                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * (hi - lo));
             }
         }
     }
@@ -523,7 +558,7 @@ impl Octree {
                             end[axis] = middle[axis];
                         }
                     }
-                    self.halves.push(half);
+                    self.search.halves.push(half);
                 }
             }
         }
@@ -569,8 +604,8 @@ fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
         || sides.into_iter().flatten().any(|side| away_from_zero(known.gradient[side]).is_some())
 }
 
-/// Most that the surface rises or falls over the footprint of the cell, by the bounds of the gradient; none where f is
-/// not monotone along up.
+/// Returns a bound for the rise or fall of the surface over the footprint of the cell, by the bounds of the gradient; none where
+/// f is not monotone along up.
 fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
     let (sides, up) = cell.axes();
     let least = away_from_zero(known.gradient[up])?;
@@ -609,7 +644,7 @@ fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
     }
 }
 
-/// Whether the field bounds its values at all: asked of small boxes here and there.
+/// Whether the field has finite bounds at all, tested on a few small boxes.
 fn bounds_say_something(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> bool {
     const SIDE: usize = 3;
     let size = hi - lo;

@@ -1,5 +1,5 @@
-//! A first look at the field over the box: where the surface is (a first point on every component that a regular grid
-//! can see), how large it is, and how finely single precision resolves it.
+//! The survey of the field on a regular grid over the box. It finds a first point on every component that the grid resolves,
+//! and estimates the area of the surface and the precision with which single precision resolves it.
 
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
@@ -9,23 +9,23 @@ use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
 const CELLS: f64 = 32.0;
-/// The same where nothing but the grid tells where the surface is: a sphere whose radius is
-/// 1.4 % of the box's longest side is not missed.
+/// The same for fields without bounds, of which only the grid shows the surface. It does not miss a sphere whose radius is
+/// 1.4 % of the box's longest side.
 const DENSE_CELLS: f64 = 64.0;
-/// Most evaluations of the Newton projection of a candidate.
+/// Largest number of evaluations in the Newton projection of a candidate.
 const MAX_STEPS: u32 = 12;
-/// Candidates at which the resolution is measured.
+/// Number of points at which the resolution is measured.
 const RESOLUTION_SAMPLES: usize = 48;
-/// Distance to either side at which a touching is told from a crossing, as a share of the grid's spacing: far beyond the
-/// tolerance of the points, far below what the grid can tell apart.
+/// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
+/// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
 const TOUCH_PROBE: f32 = 0.02;
-/// Distance, in tolerances of the survey, at which a zero is told from a pole.
+/// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
 const POLE_PROBE: f32 = 4.0;
 
-/// Area that a place stands for where f does not change its sign.
+/// Stands for the area of a candidate where f does not change its sign.
 const NO_CROSSING: f32 = -1.0;
 
-/// What a survey found.
+/// The result of a survey.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
     /// What the field was multiplied by, so that its gradient can be squared in single precision.
@@ -40,22 +40,22 @@ pub(crate) struct Survey {
     pub(crate) area: f64,
     /// Median |∇f| over those points.
     pub(crate) gradient_scale: f32,
-    /// Distance that rounding can move the computed surface by.
+    /// Distance by which rounding can move the computed surface.
     pub(crate) resolution: f32,
     /// Largest distance of a point from the surface.
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
     pub(crate) touches: bool,
-    /// Verdict where there is no point.
+    /// Why there is no point, where there is none.
     pub(crate) absence: Absence,
-    /// Whether its points were found by other means.
+    /// Whether the points come from another search.
     pub(crate) is_adopted: bool,
 }
 
-/// Why a survey found no surface.
+/// Why the survey found no surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Absence {
-    /// It found one.
+    /// The survey found a surface.
     #[default]
     None,
     /// f has the same value everywhere.
@@ -66,20 +66,188 @@ pub(crate) enum Absence {
     Proven,
     /// The grid shows a change of sign, but no point where f comes to zero with a gradient.
     NoZero,
-    /// The grid shows none; too fine a feature could have been missed.
+    /// The grid shows no change of sign. A feature finer than the grid may have been missed.
     NotSeen,
 }
 
-/// One layer of grid nodes.
+/// The regular grid at whose nodes the field is evaluated.
+struct Grid {
+    lo: DVec3,
+    /// Distance between two nodes along each axis.
+    step: DVec3,
+    /// Number of nodes along each axis.
+    nodes: [usize; 3],
+    /// Wanted distance between two nodes; along the longest side of the box it is met.
+    spacing: f64,
+}
+
+impl Grid {
+    /// The grid over a box, which has a whole number of blocks if it `is_dense`.
+    fn over(bounds: &Bounds, is_dense: bool) -> Self {
+        let size = bounds.hi() - bounds.lo();
+        let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
+        let block = if is_dense { COARSEST as f64 } else { 1.0 };
+        let cells = block * (size / (block * spacing)).ceil();
+        let nodes = cells.to_array().map(|c| c as usize + 1);
+        Self { lo: bounds.lo(), step: size / cells, nodes, spacing }
+    }
+
+    fn node(&self, i: usize, j: usize, k: usize) -> Vec3 {
+        (self.lo + self.step * DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
+    }
+
+    /// Returns the number of nodes in a layer.
+    fn layer(&self) -> usize {
+        self.nodes[0] * self.nodes[1]
+    }
+}
+
+/// The nodes of the grid that have one third coordinate.
 struct Layer {
     value: Vec<f32>,
     gradient: Vec<Vec3>,
 }
 
+impl Layer {
+    fn new(grid: &Grid) -> Self {
+        Self { value: vec![f32::NAN; grid.layer()], gradient: vec![Vec3::ZERO; grid.layer()] }
+    }
+
+    /// Evaluates the field at layer `k`, or takes it from a dense grid.
+    fn fill(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        grid: &Grid,
+        dense: Option<&Dense>,
+        k: usize,
+    ) {
+        let count = grid.layer();
+        if let Some(dense) = dense {
+            let layer = k * count..(k + 1) * count;
+            self.value.copy_from_slice(&dense.value[layer.clone()]);
+            self.gradient.copy_from_slice(&dense.gradient[layer]);
+            return;
+        }
+        let nx = grid.nodes[0];
+        let mut points = Vec::with_capacity(BATCH);
+        for first in (0..count).step_by(BATCH) {
+            let last = (first + BATCH).min(count);
+            points.clear();
+            points.extend((first..last).map(|m| grid.node(m % nx, m / nx, k)));
+            let (value, gradient) = projector.evaluate_batch(field, &points);
+            self.value[first..last].copy_from_slice(value);
+            self.gradient[first..last].copy_from_slice(gradient);
+        }
+    }
+
+    /// Node (i, j) of layer `k`: where it is, f and ∇f there.
+    fn at(&self, grid: &Grid, [i, j, k]: [usize; 3]) -> (Vec3, f32, Vec3) {
+        let m = j * grid.nodes[0] + i;
+        (grid.node(i, j, k), self.value[m], self.gradient[m])
+    }
+}
+
+/// Candidates for points of the surface, and the range of the values on the grid.
+struct Candidates {
+    place: Vec<Vec3>,
+    /// Area that each candidate stands for; [`NO_CROSSING`] where f keeps its sign.
+    areas: Vec<f32>,
+    /// Sum of the areas.
+    area: f64,
+    least: f32,
+    greatest: f32,
+    /// Nodes at which f is defined.
+    defined: usize,
+}
+
+impl Candidates {
+    fn new() -> Self {
+        let (least, greatest) = (f32::INFINITY, f32::NEG_INFINITY);
+        Self { place: Vec::new(), areas: Vec::new(), area: 0.0, least, greatest, defined: 0 }
+    }
+
+    fn note_values(&mut self, values: &[f32]) {
+        for &v in values.iter().filter(|v| v.is_finite()) {
+            self.least = self.least.min(v);
+            self.greatest = self.greatest.max(v);
+            self.defined += 1;
+        }
+    }
+
+    /// Looks at the nodes of the layer `lower`, the number of which is `z`, and at their edges along the axes; there is no layer
+    /// above the last one.
+    fn look_at(
+        &mut self,
+        grid: &Grid,
+        dense: Option<&Dense>,
+        z: usize,
+        lower: &Layer,
+        upper: Option<&Layer>,
+    ) {
+        let [nx, ny, _] = grid.nodes;
+        for j in 0..ny {
+            for i in 0..nx {
+                if dense.is_some_and(|dense| !dense.is_near[z * nx * ny + j * nx + i]) {
+                    continue;
+                }
+                let here = lower.at(grid, [i, j, z]);
+                if !here.1.is_finite() {
+                    continue;
+                }
+                let mut crossings = 0;
+                let ends = [
+                    (i + 1 < nx).then(|| lower.at(grid, [i + 1, j, z])),
+                    (j + 1 < ny).then(|| lower.at(grid, [i, j + 1, z])),
+                    upper.map(|upper| upper.at(grid, [i, j, z + 1])),
+                ];
+                for (axis, end) in ends.into_iter().enumerate() {
+                    let Some(end) = end else { continue };
+                    if end.1.is_finite() && (here.1 <= 0.0) != (end.1 <= 0.0) {
+                        self.cross(grid, axis, here, end);
+                        crossings += 1;
+                    }
+                }
+                let slope = here.2.length();
+                if crossings == 0 && slope > 0.0 && here.1.abs() <= slope * grid.spacing as f32 {
+                    self.place.push(here.0 - here.2 * (here.1 / (slope * slope)));
+                    self.areas.push(NO_CROSSING);
+                }
+            }
+        }
+    }
+
+    /// Adds the place on an edge, whose ends differ in sign, where f vanishes if it is linear.
+    fn cross(&mut self, grid: &Grid, axis: usize, here: (Vec3, f32, Vec3), end: (Vec3, f32, Vec3)) {
+        let t = here.1 / (here.1 - end.1);
+        self.place.push(here.0 + (end.0 - here.0) * t);
+        let n = (here.2 + (end.2 - here.2) * t).normalize_or_zero().abs().as_dvec3();
+        let weight = n.x + n.y + n.z;
+        // Projected cell face perpendicular to the axis.
+        let face = grid.step[(axis + 1) % 3] * grid.step[(axis + 2) % 3];
+        let area = if weight > 0.0 { face / weight } else { 0.0 };
+        self.area += area;
+        self.areas.push(area as f32);
+    }
+
+    /// Why there is no point of the surface, where no place led to one.
+    fn absence(&self) -> Absence {
+        if self.defined == 0 {
+            Absence::Undefined
+        } else if self.least == self.greatest {
+            Absence::Constant
+        } else if self.areas.iter().any(|&area| area != NO_CROSSING) {
+            Absence::NoZero
+        } else {
+            Absence::NotSeen
+        }
+    }
+}
+
 /// The nodes of a dense grid, evaluated only where the surface can be.
 ///
 /// The box is cut into blocks of [`COARSEST`] grid cells to an edge, and those that may hold the surface are halved until
-/// they are grid cells. Of the others only the sign of f is told.
+/// they are grid cells. In the others only the sign of f is known.
 struct Dense {
     value: Vec<f32>,
     gradient: Vec<Vec3>,
@@ -94,13 +262,8 @@ const COARSEST: usize = 4;
 const REACH: f32 = 0.7;
 
 impl Dense {
-    fn new(
-        field: &mut dyn Field,
-        projector: &mut Projector,
-        [nx, ny, nz]: [usize; 3],
-        step: DVec3,
-        node: impl Fn(usize, usize, usize) -> Vec3,
-    ) -> Self {
+    fn new(field: &mut dyn Field, projector: &mut Projector, grid: &Grid) -> Self {
+        let [nx, ny, nz] = grid.nodes;
         let index = |[i, j, k]: [usize; 3]| (k * ny + j) * nx + i;
         // The eight places at the corners of a cube.
         let eight = |[i, j, k]: [usize; 3], width: usize| {
@@ -128,7 +291,7 @@ impl Dense {
             }
             for chunk in wanted.chunks(BATCH) {
                 points.clear();
-                points.extend(chunk.iter().map(|&[i, j, k]| node(i, j, k)));
+                points.extend(chunk.iter().map(|&[i, j, k]| grid.node(i, j, k)));
                 let (value, gradient) = projector.evaluate_batch(field, &points);
                 for ((&corner, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
                     (dense.value[index(corner)], dense.gradient[index(corner)]) = (value, gradient);
@@ -138,7 +301,7 @@ impl Dense {
             if width == 1 {
                 return dense;
             }
-            let reach = REACH * width as f32 * step.length() as f32;
+            let reach = REACH * width as f32 * grid.step.length() as f32;
             let mut halves = Vec::new();
             for block in blocks {
                 let corners = || eight(block, width).map(index);
@@ -165,9 +328,9 @@ impl Dense {
 
 /// Surveys `field` over `bounds`, on a finer grid if it `is_dense`.
 ///
-/// Two kinds of places are tried: grid edges whose ends differ in sign, and nodes whose first-order distance |f|/|∇f|
-/// is below the spacing (surfaces that f touches without changing sign, and sheets thinner than a cell). Every place is
-/// moved onto the surface by Newton's method and kept if it arrives nearby, which no pole does.
+/// Two kinds of candidates are tried: grid edges whose ends differ in sign, and nodes whose first-order distance |f|/|∇f|
+/// is below the spacing (surfaces that f touches without changing sign, and sheets thinner than a cell). Every candidate is
+/// moved onto the surface by Newton's method and kept if it converges nearby, which it does at no pole.
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
 /// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
@@ -177,116 +340,32 @@ pub(crate) fn survey(
     is_dense: bool,
     projector: &mut Projector,
 ) -> Survey {
-    let size = bounds.hi() - bounds.lo();
-    let spacing = size.max_element() / if is_dense { DENSE_CELLS } else { CELLS };
-    // Whole blocks.
-    let block = if is_dense { COARSEST as f64 } else { 1.0 };
-    let cells = block * (size / (block * spacing)).ceil();
-    let step = size / cells;
-    let [nx, ny, nz] = cells.to_array().map(|c| c as usize + 1);
-    let node = |i: usize, j: usize, k: usize| {
-        (bounds.lo() + step * DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
-    };
-    let mut out = Survey::default();
-    let mut start: Vec<Vec3> = Vec::new();
-    // Area that each place stands for; [`NO_CROSSING`] where f keeps its sign.
-    let mut areas: Vec<f32> = Vec::new();
-    let mut layers =
-        [0, 1].map(|_| Layer { value: vec![f32::NAN; nx * ny], gradient: vec![Vec3::ZERO; nx * ny] });
-    let (mut least, mut greatest, mut defined) = (f32::INFINITY, f32::NEG_INFINITY, 0_usize);
-    let mut points = Vec::with_capacity(BATCH);
-    let dense = is_dense.then(|| Dense::new(field, projector, [nx, ny, nz], step, node));
-    for k in 0..=nz {
+    let grid = Grid::over(bounds, is_dense);
+    let dense = is_dense.then(|| Dense::new(field, projector, &grid));
+    let mut found = Candidates::new();
+    let [mut lower, mut upper] = [0, 1].map(|_| Layer::new(&grid));
+    let layers = grid.nodes[2];
+    for k in 0..=layers {
         // The layer above; the last round only closes the layer below.
-        let (below, above) = layers.split_at_mut(1);
-        let (lower, upper) = (&mut below[0], &mut above[0]);
-        if let Some(dense) = dense.as_ref().filter(|_| k < nz) {
-            let layer = k * nx * ny..(k + 1) * nx * ny;
-            upper.value.copy_from_slice(&dense.value[layer.clone()]);
-            upper.gradient.copy_from_slice(&dense.gradient[layer]);
-        } else if k < nz {
-            for first in (0..nx * ny).step_by(BATCH) {
-                let last = (first + BATCH).min(nx * ny);
-                points.clear();
-                points.extend((first..last).map(|m| node(m % nx, m / nx, k)));
-                let (value, gradient) = projector.evaluate_batch(field, &points);
-                upper.value[first..last].copy_from_slice(value);
-                upper.gradient[first..last].copy_from_slice(gradient);
-            }
-        }
-        if k < nz {
-            for &v in upper.value.iter().filter(|v| v.is_finite()) {
-                least = least.min(v);
-                greatest = greatest.max(v);
-                defined += 1;
-            }
+        if k < layers {
+            upper.fill(field, projector, &grid, dense.as_ref(), k);
+            found.note_values(&upper.value);
         }
         if k > 0 {
-            let z = k - 1;
-            for j in 0..ny {
-                for i in 0..nx {
-                    let m = j * nx + i;
-                    if dense.as_ref().is_some_and(|dense| !dense.is_near[z * nx * ny + m]) {
-                        continue;
-                    }
-                    let here = (node(i, j, z), lower.value[m], lower.gradient[m]);
-                    if !here.1.is_finite() {
-                        continue;
-                    }
-                    let mut crossings = 0;
-                    let mut ends = [None; 3];
-                    if i + 1 < nx {
-                        ends[0] = Some((node(i + 1, j, z), lower.value[m + 1], lower.gradient[m + 1]));
-                    }
-                    if j + 1 < ny {
-                        ends[1] = Some((node(i, j + 1, z), lower.value[m + nx], lower.gradient[m + nx]));
-                    }
-                    if k < nz {
-                        ends[2] = Some((node(i, j, k), upper.value[m], upper.gradient[m]));
-                    }
-                    for (axis, end) in ends.iter().enumerate() {
-                        let Some(end) = end else { continue };
-                        if !end.1.is_finite() || (here.1 <= 0.0) == (end.1 <= 0.0) {
-                            continue;
-                        }
-                        let t = here.1 / (here.1 - end.1);
-                        start.push(here.0 + (end.0 - here.0) * t);
-                        crossings += 1;
-                        let n = (here.2 + (end.2 - here.2) * t).normalize_or_zero().abs().as_dvec3();
-                        let weight = n.x + n.y + n.z;
-                        // Projected cell face perpendicular to the axis.
-                        let face = step[(axis + 1) % 3] * step[(axis + 2) % 3];
-                        let area = if weight > 0.0 { face / weight } else { 0.0 };
-                        out.area += area;
-                        areas.push(area as f32);
-                    }
-                    let slope = here.2.length();
-                    if crossings == 0 && slope > 0.0 && here.1.abs() <= slope * spacing as f32 {
-                        start.push(here.0 - here.2 * (here.1 / (slope * slope)));
-                        areas.push(NO_CROSSING);
-                    }
-                }
-            }
+            found.look_at(&grid, dense.as_ref(), k - 1, &lower, (k < layers).then_some(&upper));
         }
-        layers.swap(0, 1);
+        core::mem::swap(&mut lower, &mut upper);
     }
-    project(field, bounds, projector, &mut start, &areas, spacing as f32, &mut out);
+    let mut out = Survey { area: found.area, ..Survey::default() };
+    project(field, bounds, projector, &mut found.place, &found.areas, grid.spacing as f32, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
-        out.absence = if defined == 0 {
-            Absence::Undefined
-        } else if least == greatest {
-            Absence::Constant
-        } else if areas.iter().any(|&area| area != NO_CROSSING) {
-            Absence::NoZero
-        } else {
-            Absence::NotSeen
-        };
+        out.absence = found.absence();
     }
     out
 }
 
-/// Moves the places in `start` onto the surface and keeps those that arrive inside the box. `areas` holds the area that
+/// Moves the candidates in `start` onto the surface and keeps those that converge inside the box. `areas` holds the area that
 /// each stands for, or [`NO_CROSSING`].
 fn project(
     field: &mut dyn Field,
@@ -345,7 +424,7 @@ impl Survey {
         tolerance(0.0, self.residual.max(self.resolution), self.gradient_scale)
     }
 
-    /// Takes over what another search has `found` where this one has found nothing, or its proof that there is nothing.
+    /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
     pub(crate) fn adopt(
         &mut self,
         field: &mut dyn Field,
@@ -358,12 +437,12 @@ impl Survey {
         for (position, normal) in found {
             let jet = field.jet(position.as_dvec3());
             slopes.push(jet.gradient.length() as f32);
-            // A sphere that bends as the surface does here has the area 4π/κ².
+            // A sphere of the same curvature has the area 4π/κ².
             let size = jet.gradient.length_squared()
                 / jet.hessian.apply(normal.any_orthonormal_vector().as_dvec3()).length_squared();
             let sphere = 4.0 * core::f64::consts::PI * size;
             let most = bounds.diagonal() * bounds.diagonal();
-            // Found from above and from below.
+            // The search finds two points on each sphere, the highest and the lowest.
             self.area += if sphere < most { 0.5 * sphere } else { 0.0 };
             self.position.push(position);
             self.normal.push(normal);
@@ -432,14 +511,12 @@ mod tests {
             let mut field = RbfField::new(fit.data).expect("a field");
             let n = [65, 49, 57];
             let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
-            let node = |i: usize, j: usize, k: usize| {
-                (fit.bounds.lo() + step * DVec3::new(i as f64, j as f64, k as f64)).as_vec3()
-            };
-            let dense = Dense::new(&mut field, &mut Projector::new(), n, step, node);
+            let grid = Grid { lo: fit.bounds.lo(), step, nodes: n, spacing: step.max_element() };
+            let dense = Dense::new(&mut field, &mut Projector::new(), &grid);
             let mut all = Vec::new();
             for k in 0..n[2] {
                 for j in 0..n[1] {
-                    all.extend((0..n[0]).map(|i| node(i, j, k)));
+                    all.extend((0..n[0]).map(|i| grid.node(i, j, k)));
                 }
             }
             let mut value = vec![0.0; all.len()];
