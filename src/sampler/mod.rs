@@ -108,7 +108,8 @@ impl Sampler {
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        Counts { fates: self.front.fates(), gaps_filled: self.front.filled(), ..self.counts.clone() }
+        let front = self.front.active();
+        Counts { fates: front.level().fates, gaps_filled: front.filled(), ..self.counts.clone() }
     }
 
     /// Energy per particle before the first relaxation step and after each. Of uniform sampling it is Σ s (exp(−d²/2σ²) −

@@ -74,7 +74,7 @@ impl Sampler {
     #[must_use]
     pub fn progress(&self) -> Progress {
         let particles = match self.phase {
-            PhaseState::Generation(_) | PhaseState::Filling => self.front.settled(self.particles.len()),
+            PhaseState::Generation(_) | PhaseState::Filling => self.front.active().level().settled,
             _ => self.particles.len(),
         };
         Progress {

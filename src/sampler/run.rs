@@ -3,10 +3,10 @@
 use super::Sampler;
 use crate::field::Field;
 use crate::sampler::attempt::Attempt;
-use crate::sampler::discovery::seeds::Place;
+use crate::sampler::discovery::seeds::Cover;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
-use crate::sampler::front::adaptive::Surface;
+use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
@@ -52,7 +52,7 @@ impl Sampler {
                 | PhaseState::Generation(_)
                 | PhaseState::Search
                 | PhaseState::Filling => {
-                    self.front.stop(&mut self.particles);
+                    self.front.active_mut().stop(&mut self.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 PhaseState::Relaxation => {
@@ -81,8 +81,14 @@ impl Sampler {
         let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
         self.particles.reserve(expected);
         self.pairs.reserve(expected);
-        let radii = (self.attempt.radius as f32, self.attempt.radii());
-        self.front.reset(&self.settings, radii, &self.survey, &self.bounds, expected);
+        self.front.reset(&FrontSetup {
+            settings: &self.settings,
+            bounds: &self.bounds,
+            survey: &self.survey,
+            radius: self.attempt.radius as f32,
+            radii: self.attempt.radii(),
+            expected,
+        });
         self.counts.seeds = 0;
         self.counts.left_out = 0;
         self.counts.front_evaluations = 0;
@@ -98,9 +104,12 @@ impl Sampler {
             *left -= 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
             let start = self.projector.evaluations;
-            let is_seed =
-                !self.front.is_covered(field, &mut self.projector, &self.particles, (position, normal))
-                    && self.survey.is_zero(field, &mut self.projector, i);
+            let is_seed = !self.front.active_mut().is_covered(
+                field,
+                &mut self.projector,
+                &self.particles,
+                (position, normal),
+            ) && self.survey.is_zero(field, &mut self.projector, i);
             self.counts.seeding_evaluations += self.projector.evaluations - start;
             if is_seed && let Some(next) = self.begin_front(field, position, normal, Some(cursor)) {
                 return next;
@@ -119,17 +128,11 @@ impl Sampler {
         after: Option<SurveyCursor>,
     ) -> Option<PhaseState> {
         if self.particles.len() >= self.settings.max_particles as usize {
-            self.front.cap();
+            self.front.active_mut().level_mut().capped = true;
             return Some(PhaseState::Search);
         }
-        let mut surface = Surface {
-            field,
-            projector: &mut self.projector,
-            sizing: self.attempt.sizing.as_ref(),
-            pairs: &mut self.pairs,
-            particles: &mut self.particles,
-        };
-        self.front.add_seed(&mut surface, position, normal).then(|| {
+        let is_started = self.with_front(field, |front, context| front.add_seed(context, position, normal));
+        is_started.then(|| {
             self.counts.seeds += 1;
             PhaseState::Generation(after)
         })
@@ -137,29 +140,43 @@ impl Sampler {
 
     /// Lets the front grow until it has met itself, another one or the box everywhere.
     fn grow(&mut self, field: &mut dyn Field, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
-        self.step_front(field, left);
-        if !self.front.is_done() {
+        self.spend_on_front(field, left, |front, context, budget| front.step(context, budget));
+        if !self.front.active().is_done() {
             return PhaseState::Generation(after);
         }
-        let placed = self.particles.len();
-        self.front.drop_lone_seed(&mut self.pairs, &mut self.particles);
-        self.counts.left_out += u32::from(self.particles.len() < placed);
+        let is_dropped = self.with_front(field, |front, context| front.drop_lone_seed(context));
+        self.counts.left_out += u32::from(is_dropped);
         match after {
-            Some(cursor) if !self.front.capped() => PhaseState::Seeding(cursor),
+            Some(cursor) if !self.front.is_capped() => PhaseState::Seeding(cursor),
             _ => PhaseState::Search,
         }
     }
 
-    fn step_front(&mut self, field: &mut dyn Field, left: &mut u32) {
-        let start = self.projector.evaluations;
-        let mut surface = Surface {
+    /// Calls a method of the front with what it works on.
+    fn with_front<R>(
+        &mut self,
+        field: &mut dyn Field,
+        call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext) -> R,
+    ) -> R {
+        let mut context = FrontContext {
             field,
             projector: &mut self.projector,
             sizing: self.attempt.sizing.as_ref(),
-            pairs: &mut self.pairs,
+            neighbours: &mut self.pairs,
             particles: &mut self.particles,
         };
-        *left = self.front.step(&mut surface, *left);
+        call(self.front.active_mut(), &mut context)
+    }
+
+    /// Calls a method of the front that spends of the budget, and counts its evaluations.
+    fn spend_on_front(
+        &mut self,
+        field: &mut dyn Field,
+        left: &mut u32,
+        call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext, u32) -> u32,
+    ) {
+        let start = self.projector.evaluations;
+        *left = self.with_front(field, |front, context| call(front, context, *left));
         let evaluations = self.projector.evaluations - start;
         self.counts.generation_evaluations += evaluations;
         self.counts.front_evaluations += evaluations;
@@ -168,7 +185,7 @@ impl Sampler {
     /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
     /// but for the gaps.
     fn search_components(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
-        if self.front.capped() {
+        if self.front.is_capped() {
             return self.end_generation();
         }
         let tolerance = self.attempt.tolerance(&self.survey);
@@ -183,15 +200,16 @@ impl Sampler {
             let (witness, unused) = self.seeds.next(*left);
             *left = unused;
             let Some(seed) = witness else {
-                let has_gaps = self.settings.gaps == GapPolicy::Fill && self.front.fill();
+                let has_gaps =
+                    self.settings.gaps == GapPolicy::Fill && self.front.active_mut().begin_filling();
                 return if has_gaps { PhaseState::Filling } else { self.end_generation() };
             };
             let mut near = self.seeds.take_near();
-            self.front.near(&self.particles, seed.position, seed.normal, &mut near);
+            self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
             let start = self.projector.evaluations;
-            let place = self.seeds.place(field, &mut self.projector, &self.particles, seed, near, tolerance);
+            let cover = self.seeds.cover(field, &mut self.projector, &self.particles, seed, near, tolerance);
             self.counts.seeding_evaluations += self.projector.evaluations - start;
-            if place == Place::Bare
+            if cover == Cover::Bare
                 && let Some(next) = self.begin_front(field, seed.position, seed.normal, None)
             {
                 return next;
@@ -202,8 +220,9 @@ impl Sampler {
 
     /// Fills gaps until none is left that a particle fits into.
     fn fill(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
-        self.step_front(field, left);
-        if !self.front.is_done() || self.front.fill() { PhaseState::Filling } else { self.end_generation() }
+        self.spend_on_front(field, left, |front, context, budget| front.fill(context, budget));
+        let front = self.front.active_mut();
+        if !front.is_filled() || front.begin_filling() { PhaseState::Filling } else { self.end_generation() }
     }
 
     /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
@@ -216,10 +235,10 @@ impl Sampler {
                 _ => StopReason::NoSurface,
             });
         }
-        if !self.front.capped() && self.attempt.is_corrected(&self.settings, count) {
+        if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
         }
-        if self.front.fates().added == 0 && !self.front.capped() {
+        if self.front.active().level().fates.added == 0 && !self.front.is_capped() {
             PhaseState::Marking(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
             PhaseState::Marking(self.reason_for_end())
@@ -272,7 +291,7 @@ impl Sampler {
     }
 
     fn reason_for_end(&self) -> StopReason {
-        if self.front.capped() { StopReason::Cap } else { StopReason::Complete }
+        if self.front.is_capped() { StopReason::Cap } else { StopReason::Complete }
     }
 
     /// Marks the particles next to singular points, where there are any.

@@ -1,4 +1,4 @@
-//! First points beyond those of the survey: the witnesses of the [octree](super::octree), one on every connected piece.
+//! The seeds beyond those of the survey are the witnesses of the [octree](super::octree), one on every connected component.
 
 use crate::field::Field;
 use crate::math::Bounds;
@@ -12,51 +12,51 @@ use crate::sampler::discovery::singular::Singular;
 use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance};
 use glam::{DVec3, Vec3};
 
-/// Units of work that a witness is charged for.
+/// Units of work that a witness counts for.
 const UNITS: u32 = 16;
-/// Particles that a witness is tried to be connected with.
+/// Largest number of particles with which a connection is tried.
 const MOST_TRIED: usize = 6;
-/// The same by a way of several pieces.
+/// The same for a connection through a chain of boxes.
 const MOST_TRIED_BY_PIECES: usize = 2;
-/// Most evaluations that bring a witness from double precision and from the margin of the box onto the surface.
+/// Largest number of evaluations in the projection of a witness onto the surface as single precision computes it.
 const MAX_STEPS: u32 = 12;
-/// Most steps that bring a witness in the margin outside the box to its piece within.
+/// Largest number of steps that move a witness from the margin around the box to its component inside.
 const MOST_INWARD: u32 = 32;
 
-/// What is left to be tried as the beginning of a front when the points of the survey are covered.
+/// The witnesses, which are tried as seeds when the points of the survey are covered.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seeds {
     octree: Octree,
     points: Vec<Seed>,
     is_projected: bool,
     next: usize,
-    /// Witnesses of which it is not proven that they lie on the piece of the particles around them.
+    /// Number of witnesses of which it is not proven that they lie on the component of the particles around them.
     unproven: u64,
-    /// Witnesses that single precision does not find.
+    /// Number of witnesses whose projection did not converge.
     lost: u64,
     near: Vec<u32>,
 }
 
-/// A witness on the surface as single precision sees it.
+/// A witness on the surface as single precision computes it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seed {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
-    /// Of which part of the field it is a zero.
+    /// The part of the field that vanishes there.
     part: usize,
 }
 
-/// Where a witness lies.
+/// Whether a witness needs a front of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
-    /// On a piece that has particles near it.
+pub(crate) enum Cover {
+    /// It lies on a component that has particles near it.
     Covered,
-    /// Where a front has to start.
+    /// A front has to start there.
     Bare,
 }
 
 impl Seeds {
-    /// Forgets an earlier field.
+    /// Begins with a new field.
     pub(crate) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
         self.octree.begin(field.has_bounds(), bounds);
         self.points.clear();
@@ -65,7 +65,7 @@ impl Seeds {
         self.restart();
     }
 
-    /// Says how many particles the run will have.
+    /// Sets the expected number of particles.
     pub(crate) fn expect(&mut self, particles: f64) {
         self.octree.expect(particles);
     }
@@ -76,12 +76,12 @@ impl Seeds {
         self.unproven = 0;
     }
 
-    /// Whether the search has come to its end.
+    /// Whether the search is complete.
     pub(crate) fn is_searched(&self) -> bool {
         self.octree.is_done()
     }
 
-    /// Does up to `budget` units of the search; returns what is left, nothing unless the search has come to its end.
+    /// Does up to `budget` units of the search. Returns the rest of the budget, 0 until the search is complete.
     pub(crate) fn search(
         &mut self,
         field: &mut dyn Field,
@@ -98,7 +98,7 @@ impl Seeds {
         if self.octree.is_done() { left } else { 0 }
     }
 
-    /// Brings the witnesses onto the surface as single precision sees it, and into the box.
+    /// Projects the witnesses onto the surface as single precision computes it, and into the box.
     fn project(
         &mut self,
         field: &mut dyn Field,
@@ -109,7 +109,7 @@ impl Seeds {
         let margin = self.octree.margin();
         let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
         self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
-        // Those that belong to nothing but the margin are no loss.
+        // A witness whose component lies in the margin alone is not needed.
         let starts: Vec<(Vec3, usize)> = self
             .octree
             .witnesses
@@ -205,9 +205,9 @@ impl Seeds {
         core::mem::take(&mut self.near)
     }
 
-    /// Whether the witness lies on the piece of one of the particles `near` it, the nearest first. By proof; or,
+    /// Whether the witness lies on the component of one of the particles `near` it, the nearest first. By proof; or,
     /// where the bounds are too wide for one, by the field at a point between the two, which is counted.
-    pub(crate) fn place(
+    pub(crate) fn cover(
         &mut self,
         field: &mut dyn Field,
         projector: &mut Projector,
@@ -215,7 +215,7 @@ impl Seeds {
         seed: Seed,
         near: Vec<u32>,
         tolerance: Tolerance,
-    ) -> Place {
+    ) -> Cover {
         let Seed { position, normal, part } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let from = (position.as_dvec3(), normal.as_dvec3());
@@ -226,27 +226,27 @@ impl Seeds {
             pair.1 = place_of(j);
         }
         let within = (self.octree.searched(), self.octree.margin());
-        let mut place = Place::Bare;
+        let mut cover = Cover::Bare;
         if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
                 .take(MOST_TRIED_BY_PIECES)
                 .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack, within))
         {
-            place = Place::Covered;
+            cover = Cover::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {
             let j = j as usize;
             let offset = particles.position[j] - position;
             is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
         }) {
             self.unproven += 1;
-            place = Place::Covered;
+            cover = Cover::Covered;
         }
         self.near = near;
-        place
+        cover
     }
 
-    /// Whether every piece is proven to have been found.
+    /// Whether every component is proven to have been found.
     pub(crate) fn verdict(&self) -> Search {
         if self.octree.is_available() && self.octree.is_done() && self.open_cells() == Some(0) {
             Search::Proven
@@ -255,7 +255,7 @@ impl Seeds {
         }
     }
 
-    /// Cells left undecided, and those whose witness was lost or not proven to be on the piece it was taken for; none without
+    /// Cells left undecided, and those whose witness was lost or not proven to be on the component it was taken for; none without
     /// a search.
     pub(crate) fn open_cells(&self) -> Option<u64> {
         (self.octree.is_available() && self.octree.is_done())

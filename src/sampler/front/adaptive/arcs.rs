@@ -1,8 +1,8 @@
-//! Free arcs around a parent, paper §5.3: between the particles that are there, and the children that fit into them.
+//! The free arcs around a parent between the particles that are there, and the children that fit into them: paper §5.3.
 //!
 //! A child of radius r_c touches its parent, so its centre lies on a circle of radius D = r_p + r_c around it. A particle
-//! at distance d, of radius r_j, is in the way of such a child within an angle β of its own direction: the law of cosines
-//! in the triangle with the sides D, d and r_c + r_j. What is left of the circle are the free arcs.
+//! at distance d, of radius r_j, blocks such a child within an angle β of its own direction. β follows from the law of cosines
+//! in the triangle with the sides D, d and r_c + r_j. The angles that no particle blocks form the free arcs.
 //!
 //! In each arc the free circumference τ is compared with φ, the angle that the child's own diameter takes (Figs 7g and 8):
 //! a child has room if τ ≥ φ, and gets in, pressing its neighbours aside, if τ ≥ [`FIT`] φ.
@@ -11,29 +11,29 @@
 //!
 //! * The angles are those of the curved surface, not of the tangent plane: both legs of the triangle dip below the plane.
 //! * Particles that do not touch the parent but would overlap a child count too.
-//! * τ < φ by a little is no refusal: on a perfect lattice τ equals φ and rounding would decide.
+//! * A child is placed although τ is a little less than φ. On a perfect lattice τ equals φ, and rounding would decide.
 
 use crate::math::functions::{acos, asin, atan2, cos, sin};
 use crate::math::{LANES, Lanes};
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
-/// A child gets in if the free circumference is at least this share of what it takes: at ½ it is 0.77 (r_i + r_j) from
-/// either neighbour.
+/// A child has room if the free angle τ is at least this share of φ. At ½ its distance from either neighbour is
+/// 0.77 (r_i + r_j).
 pub(crate) const FIT: f32 = 0.5;
 
-/// Another child is pressed into an arc with room for this share of it.
+/// An arc takes another child if it has room for this share of it.
 const CROWDING: f32 = 0.5;
 
-/// The radius changes by at most this much per unit of length, as far as a prediction goes.
+/// Bound for the predicted change of the radius per unit of length.
 const MAX_SLOPE: f32 = 0.45;
 
-/// No angle: an interval that ends this far from its middle is empty.
+/// Stands for no angle: an interval that ends this far from its middle is empty.
 const NOWHERE: f32 = -100.0;
 
-/// The tangent plane of a parent and what is known of the surface and the radius there.
+/// The tangent plane of a parent, with the second fundamental form and the gradient of the radius there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Base {
+pub(crate) struct ParentFrame {
     /// Radius of the parent.
     pub(crate) radius: f32,
     /// Unit tangent vector at angle 0.
@@ -48,8 +48,8 @@ pub(crate) struct Base {
     pub(crate) slope: Vec2,
 }
 
-impl Base {
-    /// Slope of the radius in a direction, kept where a child can touch.
+impl ParentFrame {
+    /// Slope of the radius in a direction, bounded so that a child can touch the parent.
     fn slope_along(&self, x: f32, y: f32) -> f32 {
         let slope = self.slope.x * x + self.slope.y * y;
         let slope = if slope < MAX_SLOPE { slope } else { MAX_SLOPE };
@@ -62,7 +62,7 @@ impl Base {
         a * x * x + (b + b) * x * y + c * y * y
     }
 
-    /// Radius to expect of a child in a direction: r_c = r_p + s (r_p + r_c).
+    /// Predicted radius of a child in a direction: r_c = r_p + s (r_p + r_c).
     fn child_radius(&self, x: f32, y: f32) -> f32 {
         let slope = self.slope_along(x, y);
         self.radius * (1.0 + slope) / (1.0 - slope)
@@ -75,8 +75,8 @@ impl Base {
         if dip > -MAX_DIP { dip } else { -MAX_DIP }
     }
 
-    /// The child to expect at an angle, no larger than `largest`.
-    pub(crate) fn child_at(&self, angle: f32, largest: f32) -> Guess {
+    /// Predicts the child at an angle, no larger than `largest`.
+    pub(crate) fn child_at(&self, angle: f32, largest: f32) -> PredictedChild {
         let (x, y) = (cos(angle), sin(angle));
         let radius = self.child_radius(x, y);
         let radius = if radius < largest { radius } else { largest };
@@ -86,7 +86,7 @@ impl Base {
         let direction = self.u * x + self.w * y;
         let [a, b, c] = self.shape;
         let turn = self.u * (a * x + b * y) + self.w * (b * x + c * y);
-        Guess {
+        PredictedChild {
             direction,
             turn: [cos_theta, sin_theta],
             distance,
@@ -109,7 +109,7 @@ impl Base {
     }
 }
 
-/// Steepest chord that is predicted: beyond it the curvature is not resolved by the radius.
+/// Largest sine of a predicted dip. Beyond it the radius does not resolve the curvature.
 const MAX_DIP: f32 = 0.9;
 
 /// Angle in the tangent plane between two chords of lengths `d` and `e`, whose ends are `apart`, with the sines `s` and
@@ -121,9 +121,9 @@ fn wedge(d: f32, e: f32, apart: f32, s: f32, t: f32) -> f32 {
     acos(if flat > -1.0 { flat } else { -1.0 })
 }
 
-/// A child to expect.
+/// A predicted child.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Guess {
+pub(crate) struct PredictedChild {
     /// Unit tangent vector V̂.
     pub(crate) direction: Vec3,
     /// cos θ and sin θ on the circle C.
@@ -149,9 +149,9 @@ pub(crate) struct Arc {
     pub(crate) from: f32,
     /// Where a child touches the particle behind the arc; less than `from` where it does not fit between them.
     pub(crate) to: f32,
-    /// Where no child gets in before this angle.
+    /// No child has room before this angle.
     pub(crate) start: f32,
-    /// Nothing is there: the arc is the whole circle.
+    /// Whether no particle is near and the arc is the whole circle.
     pub(crate) whole: bool,
 }
 
@@ -160,17 +160,18 @@ pub(crate) struct Arc {
 pub(crate) struct Room {
     /// φ: the angle at the parent that the child's diameter takes.
     pub(crate) phi: f32,
-    /// τ: the free angle, of which φ is used up where the child just fits.
+    /// τ: the free angle, which equals φ where the child just fits.
     pub(crate) tau: f32,
 }
 
 impl Room {
-    /// That of a child beside nothing.
+    /// The room of a child that has no neighbour.
     pub(crate) fn whole(parent_radius: f32, radius: f32) -> Self {
         Self { phi: taken(parent_radius, radius), tau: TAU }
     }
 
-    /// That of a child between two others, given by place and radius, the second one in the direction of growing angles.
+    /// The room of a child between two neighbours, each given by its centre and radius. The second one is in the direction of
+    /// growing angles.
     pub(crate) fn between(
         parent_radius: f32,
         radius: f32,
@@ -191,28 +192,28 @@ pub(crate) fn taken(parent_radius: f32, radius: f32) -> f32 {
     2.0 * asin(radius / (parent_radius + radius))
 }
 
-/// Eight neighbours. Lanes without one are infinitely far.
+/// Eight neighbours. A lane without a neighbour is infinitely far away.
 #[derive(Clone, Copy, Debug)]
-struct Chunk {
+struct NeighbourLanes {
     x: Lanes,
     y: Lanes,
     z: Lanes,
     radius: Lanes,
-    /// 1 where the radius counts for its gradient.
+    /// 1 where the radius enters the fit of its gradient, else 0.
     weight: Lanes,
     /// Direction in the tangent plane.
     angle: Lanes,
-    /// Angles within which it is in the way of a child, towards smaller and larger angles.
+    /// Angles within which it blocks a child, towards smaller and larger angles.
     before: Lanes,
     behind: Lanes,
-    /// Those within which no child gets in.
+    /// Angles within which no child has room even if it is pressed in.
     closed_before: Lanes,
     closed_behind: Lanes,
 }
 
-const NO_CHUNK: Chunk = {
+const NO_NEIGHBOURS: NeighbourLanes = {
     let (none, far) = (Lanes::splat(0.0), Lanes::splat(f32::INFINITY));
-    Chunk {
+    NeighbourLanes {
         x: far,
         y: far,
         z: far,
@@ -230,12 +231,12 @@ const NO_CHUNK: Chunk = {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ring {
     len: usize,
-    chunks: Vec<Chunk>,
+    chunks: Vec<NeighbourLanes>,
     /// Start and end of the closed intervals, sorted by start.
     closed: Vec<(f32, f32)>,
     pub(crate) arcs: Vec<Arc>,
     pub(crate) children: Vec<f32>,
-    /// What each child of the arc gave up to the others, or they to it, in radians.
+    /// Distance that was added between two children of the arc, in radians; negative where they are pressed together.
     slack: f32,
 }
 
@@ -248,15 +249,15 @@ impl Ring {
         self.len
     }
 
-    /// Adds a neighbour by its offset from the parent; `counts` says that its radius is exact.
+    /// Adds a neighbour by its offset from the parent. `counts` says whether its radius is exact and enters the fit.
     pub(crate) fn push(&mut self, offset: Vec3, radius: f32, counts: bool) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if chunk == self.chunks.len() {
-            self.chunks.push(NO_CHUNK);
+            self.chunks.push(NO_NEIGHBOURS);
         }
         let chunk = &mut self.chunks[chunk];
         if lane == 0 {
-            *chunk = NO_CHUNK;
+            *chunk = NO_NEIGHBOURS;
         }
         chunk.x.0[lane] = offset.x;
         chunk.y.0[lane] = offset.y;
@@ -298,16 +299,16 @@ impl Ring {
     }
 
     /// Finds the free arcs, in the order of their angles.
-    pub(crate) fn find_arcs(&mut self, base: &Base) {
+    pub(crate) fn find_arcs(&mut self, frame: &ParentFrame) {
         self.closed.clear();
         self.arcs.clear();
-        let p = base.radius;
+        let p = frame.radius;
         for (k, chunk) in self.chunks[..self.len.div_ceil(LANES)].iter_mut().enumerate() {
             for lane in 0..LANES {
                 let (x, y, z) = (chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
-                let fx = x * base.u.x + y * base.u.y + z * base.u.z;
-                let fy = x * base.w.x + y * base.w.y + z * base.w.z;
-                let rise = x * base.n.x + y * base.n.y + z * base.n.z;
+                let fx = x * frame.u.x + y * frame.u.y + z * frame.u.z;
+                let fy = x * frame.w.x + y * frame.w.y + z * frame.w.z;
+                let rise = x * frame.n.x + y * frame.n.y + z * frame.n.z;
                 let flat_sq = fx * fx + fy * fy;
                 let distance = (x * x + y * y + z * z).sqrt();
                 let inverse = 1.0 / flat_sq.sqrt();
@@ -321,11 +322,11 @@ impl Ring {
                 for (out, sixty) in side.iter_mut().zip([-SIN_60, SIN_60]) {
                     // The child that touches it is about 60° away.
                     let (dx, dy) = (0.5 * cx - sixty * cy, sixty * cx + 0.5 * cy);
-                    let r = base.child_radius(dx, dy);
+                    let r = frame.child_radius(dx, dy);
                     let d = p + r;
-                    let wide = wedge(d, distance, r + other, base.dip(dx, dy, d), t);
+                    let wide = wedge(d, distance, r + other, frame.dip(dx, dy, d), t);
                     let pressed = wide - (1.0 - FIT) * asin(r / d);
-                    // Where a child gets in beside it unpressed, it is no neighbour.
+                    // A particle that no child beside it touches is no neighbour.
                     *out = if pressed > 0.0 { [wide, pressed] } else { [NOWHERE; 2] };
                 }
                 chunk.before.0[lane] = side[0][0];
@@ -372,7 +373,7 @@ impl Ring {
         }
     }
 
-    /// The arc that begins at `start` and is `length` long: from where to where a child touches nothing.
+    /// Returns the arc that begins at `start` and is `length` long, with the angles between which a child touches nothing.
     fn between(&self, start: f32, length: f32) -> Arc {
         let mut from = Lanes::splat(0.0);
         let mut to = Lanes::splat(length);
@@ -394,7 +395,7 @@ impl Ring {
         Arc { from: start + most, to: start + least, start, whole: false }
     }
 
-    /// The neighbours at the two ends of an arc: those that a child at either end touches.
+    /// Returns the neighbours at the two ends of an arc: a child at either end touches them.
     pub(crate) fn ends(&self, arc: Arc) -> Option<(usize, usize)> {
         if arc.whole {
             return None;
@@ -422,21 +423,21 @@ impl Ring {
     }
 
     /// Neighbour `i` in the tangent plane, at its true distance, and its radius.
-    pub(crate) fn disc(&self, i: usize, base: &Base) -> (Vec2, f32) {
+    pub(crate) fn disc(&self, i: usize, frame: &ParentFrame) -> (Vec2, f32) {
         let (chunk, lane) = (&self.chunks[i / LANES], i % LANES);
         let offset = Vec3::new(chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
-        let flat = Vec2::new(offset.dot(base.u), offset.dot(base.w));
+        let flat = Vec2::new(offset.dot(frame.u), offset.dot(frame.w));
         (flat.normalize_or_zero() * offset.length(), chunk.radius.0[lane])
     }
 
-    /// Angles of the children of an arc: as many as fit, evenly spread, so that no gap is left that is wider than the others.
-    pub(crate) fn spread(&mut self, base: &Base, arc: Arc) -> &[f32] {
+    /// Returns the angles of the children of an arc: as many as fit, evenly spread, so that all gaps are equally wide.
+    pub(crate) fn spread(&mut self, frame: &ParentFrame, arc: Arc) -> &[f32] {
         self.children.clear();
         let mut at = arc.from;
         loop {
             self.children.push(at);
-            let mut step = base.between(at, at + 1.05);
-            step = base.between(at, at + step);
+            let mut step = frame.between(at, at + 1.05);
+            step = frame.between(at, at + step);
             let room = (arc.to - at) / step;
             if room.is_nan() || room < CROWDING || self.children.len() > MAX_CHILDREN {
                 break;
@@ -445,7 +446,7 @@ impl Ring {
         }
         let count = self.children.len();
         if arc.whole {
-            // The last one has come round to the first.
+            // The last one stands where the first one does.
             self.children.pop();
             self.slack = 0.0;
             let stretch = TAU / (at - arc.from);
@@ -460,17 +461,18 @@ impl Ring {
         &self.children
     }
 
-    /// φ and τ of child `k` of an arc that was spread, of the given radius: τ is what the children before it left.
-    pub(crate) fn room(&self, base: &Base, arc: Arc, k: usize, radius: f32) -> Room {
-        let phi = taken(base.radius, radius);
+    /// Returns φ and τ of child `k`, of the given radius, in an arc that was spread: τ is the angle that the children before it
+    /// left.
+    pub(crate) fn room(&self, frame: &ParentFrame, arc: Arc, k: usize, radius: f32) -> Room {
+        let phi = taken(frame.radius, radius);
         if arc.whole {
             return Room { phi, tau: TAU - self.children[k] };
         }
         Room { phi, tau: arc.to - (self.children[k] - self.slack * (k + 1) as f32) + phi }
     }
 
-    /// What the neighbours leave to a place at `offset` with the radius `radius`: the room beyond `share` (r_i + r_j), negative
-    /// where one is nearer, and the largest radius that a slope of `grading` away from each of them allows.
+    /// Returns two limits that the neighbours set to a particle at `offset` with the radius `radius`: the least distance beyond
+    /// `share` (r_i + r_j), negative where one is nearer, and the largest radius that the slope `grading` allows.
     pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let mut room = Lanes::splat(f32::INFINITY);
@@ -493,8 +495,8 @@ impl Ring {
 
 const SIN_60: f32 = 0.866_025_4;
 
-/// Ridge of the fit of the radius's gradient, as a share of the squared distances.
+/// Ridge parameter of the fit of the radius's gradient, as a share of the squared distances.
 const SLOPE_PULL: f32 = 0.02;
 
-/// Most children of an arc, whatever the prediction says.
+/// Largest number of children in an arc, whatever the prediction says.
 pub(crate) const MAX_CHILDREN: usize = 16;

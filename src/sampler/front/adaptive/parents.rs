@@ -1,14 +1,14 @@
-//! Who places children in a level of the adaptive front, and what they know. It is kept for the level under way, for those
-//! born in it and for those that are to look for room again, not for the particles behind the front.
+//! The parents of a level of the adaptive front, with the curvature and the gradient of the radius at each. These are kept for
+//! the level under way, for its children and for the parents of a later filling, not for the particles behind the front.
 
 use crate::differential::Curvature;
 use glam::Vec3;
 
-/// What a particle knows of the surface and of the radii around it.
+/// The second-order shape of the surface at a particle and the gradient of the radius there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bend {
+pub(crate) struct LocalShape {
     pub(crate) curvature: Curvature,
-    /// Gradient of the radius; that of its parent until the particle places its children.
+    /// Gradient of the radius along the surface. Until the particle places its children it is the parent's.
     pub(crate) slope: Vec3,
 }
 
@@ -16,19 +16,19 @@ pub(crate) struct Bend {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parent {
     pub(crate) particle: u32,
-    /// Whether it has placed some before.
+    /// Whether the particle has placed children before.
     pub(crate) has_placed: bool,
-    pub(crate) bend: Bend,
+    pub(crate) local: LocalShape,
 }
 
-/// The parents of a level and of those to come.
+/// The parents of this level, of the next one and of the next filling.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parents {
-    /// Of the level under way.
+    /// Parents of the level under way.
     pub(crate) level: Vec<Parent>,
-    /// What the particles born in this level know, in their order.
-    pub(crate) born: Vec<Bend>,
-    /// Those that lost a child to another particle, or were surprised by a radius.
+    /// The local shapes at the children placed in this level, in their order.
+    pub(crate) born: Vec<LocalShape>,
+    /// Parents of the next filling: a child of theirs collided, or a radius differed much from its prediction.
     seams: Vec<Parent>,
 }
 
@@ -39,16 +39,16 @@ impl Parents {
         self.seams.clear();
     }
 
-    /// Adds a particle that has placed no children to the level.
-    pub(crate) fn add(&mut self, particle: u32, bend: Bend) {
-        self.level.push(Parent { particle, has_placed: false, bend });
+    /// Adds a particle that has placed no children to this level.
+    pub(crate) fn add(&mut self, particle: u32, local: LocalShape) {
+        self.level.push(Parent { particle, has_placed: false, local });
     }
 
-    /// Goes on to the particles born, the first of which is `first`.
+    /// Makes the children the parents of the next level. `first` is the index of the first of them.
     pub(crate) fn next_level(&mut self, first: usize) {
         self.level.clear();
         let born = (first as u32..).zip(self.born.drain(..));
-        self.level.extend(born.map(|(particle, bend)| Parent { particle, has_placed: false, bend }));
+        self.level.extend(born.map(|(particle, local)| Parent { particle, has_placed: false, local }));
     }
 
     /// Ends the level and begins no other.
@@ -57,7 +57,7 @@ impl Parents {
         self.born.clear();
     }
 
-    /// Has a particle look for room again.
+    /// Makes a particle a parent of the next filling.
     pub(crate) fn note_seam(&mut self, parent: Parent) {
         // The children of a parent come one after the other.
         if self.seams.last().is_none_or(|last| last.particle != parent.particle) {
@@ -70,18 +70,18 @@ impl Parents {
         self.seams.retain(|parent| (parent.particle as usize) < len);
     }
 
-    /// Goes on to the particles that are to look for room again; false if there are none.
+    /// Begins a level with the parents of the filling. Returns false if there are none.
     pub(crate) fn fill(&mut self) -> bool {
         core::mem::swap(&mut self.level, &mut self.seams);
         self.seams.clear();
-        // What a particle knew when it placed its children is newer than what it knew when it was placed.
+        // The local shape from the time when a particle placed its children is newer than the one from its own placement.
         self.level.sort_unstable_by_key(|parent| (parent.particle, !parent.has_placed));
         self.level.dedup_by_key(|parent| parent.particle);
         !self.level.is_empty()
     }
 }
 
-/// Second fundamental form in the frame (u, w).
+/// Returns the second fundamental form in the frame (u, w): a, b, c of [a b; b c].
 pub(crate) fn shape_in(curvature: &Curvature, u: Vec3, w: Vec3) -> [f32; 3] {
     let d = curvature.direction;
     let (x, y) = (d.dot(u), d.dot(w));

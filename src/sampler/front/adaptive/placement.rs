@@ -12,32 +12,32 @@ use glam::Vec3;
 /// Largest difference between the distance from the parent and r_p + r_c, as a share of r_c.
 pub(crate) const TOUCH: f32 = 2e-3;
 
-/// A correction of the distance shorter than this share of r_c is trusted without another evaluation: what it leaves is
-/// the change of the radius that the slope did not foresee.
+/// A correction of the distance shorter than this share of r_c is accepted without another evaluation. The error that remains
+/// is the change of the radius beyond its slope.
 const TRUSTED_PULL: f32 = 0.02;
 
-/// Most evaluations of Newton's method; a good guess takes one or two.
+/// Largest number of evaluations of Newton's method. A good guess takes one or two.
 const MAX_STEPS: u32 = 8;
 
-/// The slope of the radius along the way, as far as it is believed.
+/// Bound for the slope of the radius along the way from the parent.
 const MAX_SLOPE: f32 = 0.7;
 
-/// A step turns by at most this, in half-angle tangents.
+/// Largest turn of a step, in half-angle tangents.
 const MAX_TURN: f32 = 0.2;
 
-/// A step changes the distance by at most this share of it.
+/// Largest change of the distance in a step, as a share of the distance.
 const MAX_PULL: f32 = 0.3;
 
-/// Newton's method is trusted while the circle crosses the surface at more than about 6°.
+/// Newton's method is used while the circle crosses the surface at more than about 6°: this is the sine of that angle.
 const MIN_CROSSING: f32 = 0.1;
 
-/// Rounds of the safeguarded search: a root on the circle, then the distance anew.
+/// Rounds of the safeguarded search. Each finds a root on the circle, then corrects the distance.
 const MAX_ROUNDS: u32 = 6;
 
-/// Where the radius jumps no distance fits: a child is taken if it misses by no more than this share of its radius.
+/// Where the radius jumps, no distance fits exactly. A child is accepted if it misses by at most this share of its radius.
 const LOOSE_TOUCH: f32 = 0.5;
 
-/// A child on its way.
+/// A child to be placed: the data of the problem |c − p| = r_p + r(c).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// The circle of the first guess; its radius is the guessed distance from the parent.
@@ -51,8 +51,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// The radius that the law gives, as far as the particles around allow it. They never ask for less than `least`, the
-    /// law's own least, but siblings may, whose radii are still guesses.
+    /// Limits the radius that the sizing law gives to what the particles around allow. Final particles never ask for less than
+    /// `least`, the smallest radius of the law, but siblings may, because their radii are predictions.
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.
@@ -60,18 +60,18 @@ impl Proposal {
     }
 }
 
-/// Where a child came to lie.
+/// The solution of a proposal.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Landed {
+pub(crate) enum DirectLanding {
     /// On the surface, touching the parent.
     On(Spot),
-    /// No such place met.
+    /// No such place was found.
     NotConverged,
-    /// The field has no value there, or no gradient to speak of.
+    /// The field has no value there, or its gradient vanishes.
     Undefined,
 }
 
-/// A place on the surface and what is known there.
+/// A point of the surface, with the radius and the curvature there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot {
     pub(crate) position: Vec3,
@@ -80,22 +80,22 @@ pub(crate) struct Spot {
     pub(crate) curvature: Curvature,
 }
 
-/// One child under way.
+/// A proposal that is not solved yet.
 #[derive(Clone, Copy)]
-struct Active {
+struct ActiveProposal {
     proposal: u32,
     steps: u32,
     turn: [f32; 2],
     distance: f32,
     slope: f32,
-    /// Distance and radius of the step before.
+    /// Distance and radius of the previous step.
     last: [f32; 2],
     last_value: f32,
 }
 
-/// Solves batches of proposals; owns the memory that takes.
+/// Solver for batches of proposals, with its buffers.
 #[derive(Clone, Debug)]
-pub(crate) struct Placement {
+pub(crate) struct DirectPlacement {
     points: Vec<Vec3>,
     value: Vec<f32>,
     gradient: Vec<Vec3>,
@@ -104,7 +104,7 @@ pub(crate) struct Placement {
     landing: Vec<Landing>,
 }
 
-impl Placement {
+impl DirectPlacement {
     pub(crate) fn new() -> Self {
         Self {
             points: Vec::with_capacity(BATCH),
@@ -123,7 +123,7 @@ impl Placement {
         curvatures_of(&self.gradient[..n], &self.hessian[..n], &mut self.curvature[..n]);
     }
 
-    /// What is known at one point, on the surface or near it.
+    /// Evaluates normal, radius and curvature at one point on the surface or near it.
     pub(crate) fn look(
         &mut self,
         field: &mut dyn Field,
@@ -148,12 +148,12 @@ impl Placement {
         sizing: &Sizing,
         proposals: &[Proposal],
         tolerance: &dyn Fn(f32) -> Tolerance,
-        landed: &mut Vec<Landed>,
+        landed: &mut Vec<DirectLanding>,
     ) {
         debug_assert!(proposals.len() <= BATCH);
         landed.clear();
-        landed.resize(proposals.len(), Landed::NotConverged);
-        let idle = Active {
+        landed.resize(proposals.len(), DirectLanding::NotConverged);
+        let idle = ActiveProposal {
             proposal: 0,
             steps: 0,
             turn: [1.0, 0.0],
@@ -164,7 +164,7 @@ impl Placement {
         };
         let mut active = [idle; BATCH];
         for (i, proposal) in proposals.iter().enumerate() {
-            active[i] = Active {
+            active[i] = ActiveProposal {
                 proposal: i as u32,
                 turn: proposal.circle.guess,
                 distance: proposal.circle.radius,
@@ -186,12 +186,12 @@ impl Placement {
                 let mut a = active[k];
                 let i = a.proposal as usize;
                 match self.advance(sizing, &proposals[i], tolerance, k, &mut a) {
-                    Step::Landed(spot) => landed[i] = Landed::On(spot),
-                    Step::Again => {
+                    NewtonStep::Landed(spot) => landed[i] = DirectLanding::On(spot),
+                    NewtonStep::Again => {
                         active[kept] = a;
                         kept += 1;
                     }
-                    Step::Lost => {
+                    NewtonStep::Lost => {
                         unsettled[unsettled_count] = a.proposal;
                         unsettled_count += 1;
                     }
@@ -204,15 +204,15 @@ impl Placement {
         }
     }
 
-    /// One step of the two unknowns, from the evaluation at place `k` of the batch.
+    /// Makes one step in the two unknowns, from the evaluation at place `k` of the batch.
     fn advance(
         &self,
         sizing: &Sizing,
         proposal: &Proposal,
         tolerance: &dyn Fn(f32) -> Tolerance,
         k: usize,
-        a: &mut Active,
-    ) -> Step {
+        a: &mut ActiveProposal,
+    ) -> NewtonStep {
         let (position, value, gradient) = (self.points[k], self.value[k], self.gradient[k]);
         let hessian = &self.hessian[k];
         let curvature = self.curvature[k];
@@ -222,7 +222,7 @@ impl Placement {
         let residual = tolerance.residual;
         // NaN is never greater.
         if !(tolerance.is_slope(slope) && radius > 0.0) {
-            return Step::Lost;
+            return NewtonStep::Lost;
         }
         let touch = a.distance - proposal.parent_radius - radius;
         let way = a.distance - a.last[0];
@@ -239,7 +239,7 @@ impl Placement {
         a.turn = turned(a.turn, half);
         a.distance += pull;
         a.steps += 1;
-        // What the correction leaves is known from the Hessian; if that is on the surface, no evaluation is needed.
+        // The Hessian predicts f at the corrected place. If that is within the tolerance, no evaluation is needed there.
         let corrected = Circle { radius: a.distance, ..proposal.circle }.point(a.turn);
         let moved = corrected - position;
         let corrected_gradient = gradient + hessian.apply(moved);
@@ -250,7 +250,7 @@ impl Placement {
             && moved.length_squared() <= (TRUSTED_MOVE * radius) * (TRUSTED_MOVE * radius)
             && pull.abs() <= TRUSTED_PULL * radius
         {
-            return Step::Landed(Spot {
+            return NewtonStep::Landed(Spot {
                 position: corrected,
                 normal: corrected_gradient / corrected_slope,
                 radius: a.distance - proposal.parent_radius,
@@ -258,7 +258,7 @@ impl Placement {
             });
         }
         if value.abs() <= residual * slope && touch.abs() <= TOUCH * radius {
-            return Step::Landed(Spot { position, normal: gradient / slope, radius, curvature });
+            return NewtonStep::Landed(Spot { position, normal: gradient / slope, radius, curvature });
         }
         let settles = value.abs() <= a.last_value
             && derivative.abs() > MIN_CROSSING * slope * circle.radius
@@ -266,12 +266,12 @@ impl Placement {
             && a.steps < MAX_STEPS
             && half.is_finite()
             && a.distance.is_finite();
-        // The value may stay: a step that is mostly a pull moves along the surface.
+        // |f| need not fall in a step that mostly changes the distance: it moves along the surface.
         a.last_value = value.abs() + residual * slope;
-        if settles { Step::Again } else { Step::Lost }
+        if settles { NewtonStep::Again } else { NewtonStep::Lost }
     }
 
-    /// The root on the circle and the distance by turns: ends on any field.
+    /// Solves for the root on the circle and for the distance by turns. It ends on any field.
     fn search(
         &mut self,
         field: &mut dyn Field,
@@ -279,10 +279,10 @@ impl Placement {
         sizing: &Sizing,
         proposal: &Proposal,
         tolerance: &dyn Fn(f32) -> Tolerance,
-    ) -> Landed {
+    ) -> DirectLanding {
         let mut circle = proposal.circle;
         let guess = circle.radius;
-        // The sign of the miss tells on which side the distance lies that fits.
+        // The sign of the miss brackets the distance that fits.
         let (mut near, mut far) = (0.0_f32, f32::INFINITY);
         let mut best: Option<(f32, Spot)> = None;
         for _ in 0..MAX_ROUNDS {
@@ -293,13 +293,13 @@ impl Placement {
             self.landing = landing;
             let position = match result {
                 Landing::On { position, .. } => position,
-                Landing::Undefined if best.is_none() => return Landed::Undefined,
+                Landing::Undefined if best.is_none() => return DirectLanding::Undefined,
                 _ => break,
             };
             let mut spot = self.look(field, projector, sizing, position);
             spot.radius = proposal.graded(spot.radius, sizing.least());
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
-                return Landed::Undefined;
+                return DirectLanding::Undefined;
             }
             let miss = circle.radius - proposal.parent_radius - spot.radius;
             let relative = miss.abs() / spot.radius;
@@ -319,18 +319,18 @@ impl Placement {
                 if next > near && next < far { next } else { 0.5 * (near + far.min(2.0 * guess)) };
         }
         match best {
-            Some((miss, spot)) if miss <= LOOSE_TOUCH => Landed::On(spot),
-            _ => Landed::NotConverged,
+            Some((miss, spot)) if miss <= LOOSE_TOUCH => DirectLanding::On(spot),
+            _ => DirectLanding::NotConverged,
         }
     }
 }
 
-/// A correction no longer than this share of the radius is trusted: the third order that the Hessian does not know is then
-/// below a thousandth of it.
+/// A correction shorter than this share of the radius is accepted without another evaluation: the third-order term that the
+/// Hessian leaves out is then below a thousandth of the radius.
 const TRUSTED_MOVE: f32 = 0.06;
 
-/// What a step led to.
-enum Step {
+/// The outcome of a step of Newton's method.
+enum NewtonStep {
     Landed(Spot),
     Again,
     Lost,

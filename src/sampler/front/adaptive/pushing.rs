@@ -1,28 +1,31 @@
-//! Placement of children as the paper has it, §5.1 and Fig. 7: each is pushed in small steps, with the radius evaluated
-//! anew at every one, until it touches its parent and overlaps the others least.
+//! The paper's placement of children, §5.1 and Fig. 7. Each child is pushed in small steps, and its radius is evaluated after
+//! every step, until it touches its parent and overlaps the other particles least.
 //!
 //! # Differs from the paper
 //!
 //! * The paper names no step lengths.
 //! * After the projection on the circle C(p, r_i + r_j) the radius is evaluated once more, on the surface.
 
-use super::parents::Bend;
-use super::{AdaptiveFront, MAX_CHILDREN, Occupant, SLOTS, Surface, What, initial_slots};
+use super::AdaptiveFront;
 use crate::math::functions::{atan2, cos, sin};
 use crate::particles::{Particles, SlotFate};
-use crate::sampler::front::adaptive::arcs::{Arc, Base, FIT, Room};
-use crate::sampler::projection::{Circle, Landing, tolerance};
+use crate::sampler::front::adaptive::arcs::{Arc, FIT, MAX_CHILDREN, ParentFrame, Room};
+use crate::sampler::front::adaptive::parents::LocalShape;
+use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
+use crate::sampler::front::level::{FrontContext, MAX_SLOTS, initial_slots};
+use crate::sampler::projection::{Circle, Landing};
 use crate::trace::Step;
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
-/// Length of a push away from the parent, in radii of the parent.
+/// Length of a push away from the parent, as a share of the parent's radius.
 const PUSH: f32 = 1.0 / 16.0;
 
 /// Angle of a push along the circle, in radians.
 const TURN: f32 = 1.0 / 32.0;
 
-/// Most pushes of a child each way: the radius grows no faster than a child is pushed, so it comes to touch long before.
+/// Largest number of pushes in each direction. The radius grows more slowly than the distance, so a child touches its parent
+/// long before.
 const MAX_PUSHES: u32 = 200;
 
 /// A particle as a disc in the tangent plane, at its true distance from the parent.
@@ -40,28 +43,30 @@ impl Disc {
 
 impl AdaptiveFront {
     /// Places the children of `parent` in its free arcs one by one.
-    pub(crate) fn push_children(&mut self, surface: &mut Surface, parent: usize, base: &Base) {
-        for k in 0..self.ring.arcs.len() {
-            let arc = self.ring.arcs[k];
-            self.push_into(surface, parent, base, arc);
+    pub(super) fn push_children(&mut self, context: &mut FrontContext, parent: usize, frame: &ParentFrame) {
+        for k in 0..self.around.ring.arcs.len() {
+            let arc = self.around.ring.arcs[k];
+            self.push_into(context, parent, frame, arc);
         }
     }
 
-    fn push_into(&mut self, surface: &mut Surface, parent: usize, base: &Base, arc: Arc) {
+    /// Places children in one arc, from its beginning on, until the next one has no room.
+    fn push_into(&mut self, context: &mut FrontContext, parent: usize, frame: &ParentFrame, arc: Arc) {
         let disc = |front: &Self, i: usize| {
-            let (centre, radius) = front.ring.disc(i, base);
+            let (centre, radius) = front.around.ring.disc(i, frame);
             Disc { centre, radius }
         };
-        let ends = self.ring.ends(arc).map(|(before, behind)| (disc(self, before), disc(self, behind)));
+        let ends =
+            self.around.ring.ends(arc).map(|(before, behind)| (disc(self, before), disc(self, behind)));
         let mut last = ends.map(|(before, _)| before);
         let mut behind = ends.map(|(_, behind)| behind);
         let mut at = arc.start;
         for _ in 0..MAX_CHILDREN {
-            // Every child needs a slot to tell its fate in.
-            if self.born as usize + 1 >= SLOTS {
+            // Every child needs a slot for its fate.
+            if self.around.born as usize + 1 >= MAX_SLOTS {
                 break;
             }
-            let child = self.pushed(surface, parent, base, last);
+            let child = self.pushed(context, parent, frame, last);
             let angle = child.angle();
             // Angles grow along the arc.
             let angle = if angle < at { angle + TAU } else { angle };
@@ -69,21 +74,22 @@ impl AdaptiveFront {
             let room = match (last, behind) {
                 (Some(last), Some(behind)) => {
                     let (d, e) = ((last.centre, last.radius), (behind.centre, behind.radius));
-                    Room::between(base.radius, child.radius, d, e)
+                    Room::between(frame.radius, child.radius, d, e)
                 }
-                _ => Room::whole(base.radius, child.radius),
+                _ => Room::whole(frame.radius, child.radius),
             };
             let id = parent as u32;
-            self.trace.note_child(id, self.born, || Step::Room { phi_rad: room.phi, tau_rad: room.tau });
+            self.trace
+                .note_child(id, self.around.born, || Step::Room { phi_rad: room.phi, tau_rad: room.tau });
             let fits = room.tau >= FIT * room.phi;
             let fate =
-                if fits { self.settle_pushed(surface, parent, base, child) } else { SlotFate::Matched };
+                if fits { self.settle_pushed(context, parent, frame, child) } else { SlotFate::Matched };
             let particle =
-                if fate == SlotFate::Added { self.settled as u32 - 1 } else { Particles::NO_PARENT };
-            self.trace.note_child(id, self.born, || Step::Fate { fate, particle });
-            self.born += 1;
+                if fate == SlotFate::Added { self.level.settled as u32 - 1 } else { Particles::NO_PARENT };
+            self.trace.note_child(id, self.around.born, || Step::Fate { fate, particle });
+            self.around.born += 1;
             let around = if angle >= TAU { angle - TAU } else { angle };
-            self.enter(Occupant { angle: around, what: What::Known(fate) });
+            self.around.enter(Occupant { angle: around, kind: OccupantKind::Known(fate) });
             if !fits {
                 break;
             }
@@ -93,11 +99,17 @@ impl AdaptiveFront {
         }
     }
 
-    /// The child beside `last` after all pushes.
-    fn pushed(&mut self, surface: &mut Surface, parent: usize, base: &Base, last: Option<Disc>) -> Disc {
+    /// Pushes the child beside `last` until it touches the parent and overlaps least.
+    fn pushed(
+        &mut self,
+        context: &mut FrontContext,
+        parent: usize,
+        frame: &ParentFrame,
+        last: Option<Disc>,
+    ) -> Disc {
         let id = parent as u32;
-        let p = surface.particles.position[parent];
-        let place = |c: Vec2| p + base.u * c.x + base.w * c.y;
+        let p = context.particles.position[parent];
+        let place = |c: Vec2| p + frame.u * c.x + frame.w * c.y;
         // Start, Fig. 7c: I lies on the circle of the last child, square to the way there; s on the circle of the parent.
         let way = match last {
             None => Vec2::X,
@@ -106,40 +118,40 @@ impl AdaptiveFront {
             }
         };
         let mut child =
-            Disc { centre: way * base.radius, radius: self.radius_at(surface, place(way * base.radius)) };
-        self.trace.note_child(id, self.born, || Step::Start {
+            Disc { centre: way * frame.radius, radius: self.radius_at(context, place(way * frame.radius)) };
+        self.trace.note_child(id, self.around.born, || Step::Start {
             position: place(child.centre),
             radius: child.radius,
         });
         // Along V̂ until parent and child touch, Fig. 7b and 7e.
         for _ in 0..MAX_PUSHES {
-            if child.centre.length() >= base.radius + child.radius {
+            if child.centre.length() >= frame.radius + child.radius {
                 break;
             }
-            child.centre += way * (PUSH * base.radius);
-            child.radius = self.radius_at(surface, place(child.centre));
-            self.trace.note_child(id, self.born, || Step::Push {
+            child.centre += way * (PUSH * frame.radius);
+            child.radius = self.radius_at(context, place(child.centre));
+            self.trace.note_child(id, self.around.born, || Step::Push {
                 position: place(child.centre),
                 radius: child.radius,
             });
         }
         // Along the circle until it overlaps least, Fig. 7f.
-        let mut overlap = self.overlap(base, child);
+        let mut overlap = self.overlap(frame, child);
         let mut angle = child.angle();
         for _ in 0..MAX_PUSHES {
             if overlap <= 0.0 {
                 break;
             }
             let turned = Vec2::new(cos(angle + TURN), sin(angle + TURN));
-            let centre = turned * (base.radius + child.radius);
-            let radius = self.radius_at(surface, place(centre));
-            let next = Disc { centre: turned * (base.radius + radius), radius };
-            let next_overlap = self.overlap(base, next);
+            let centre = turned * (frame.radius + child.radius);
+            let radius = self.radius_at(context, place(centre));
+            let next = Disc { centre: turned * (frame.radius + radius), radius };
+            let next_overlap = self.overlap(frame, next);
             if next_overlap >= overlap {
                 break;
             }
             (child, overlap, angle) = (next, next_overlap, angle + TURN);
-            self.trace.note_child(id, self.born, || Step::PushOnCircle {
+            self.trace.note_child(id, self.around.born, || Step::PushOnCircle {
                 position: place(child.centre),
                 radius,
                 overlap,
@@ -148,64 +160,70 @@ impl AdaptiveFront {
         child
     }
 
-    fn radius_at(&mut self, surface: &mut Surface, position: Vec3) -> f32 {
-        let sizing = surface.sizing();
-        self.placement.look(surface.field, surface.projector, sizing, position).radius
+    fn radius_at(&mut self, context: &mut FrontContext, position: Vec3) -> f32 {
+        let sizing = context.sizing();
+        self.solver.look(context.field, context.projector, sizing, position).radius
     }
 
-    /// Largest share of r_i + r_j by which a disc overlaps a neighbour; negative if it overlaps none.
-    fn overlap(&self, base: &Base, child: Disc) -> f32 {
-        (0..self.ring.len()).fold(f32::NEG_INFINITY, |most, i| {
-            let (centre, radius) = self.ring.disc(i, base);
+    /// Returns the largest overlap of a disc with a neighbour, as a share of r_i + r_j; negative if there is none.
+    fn overlap(&self, frame: &ParentFrame, child: Disc) -> f32 {
+        (0..self.around.ring.len()).fold(f32::NEG_INFINITY, |most, i| {
+            let (centre, radius) = self.around.ring.disc(i, frame);
             let overlap = 1.0 - (centre - child.centre).length() / (child.radius + radius);
             if overlap > most { overlap } else { most }
         })
     }
 
-    /// Projects a child that has room and adds it, if no particle is in its way.
-    fn settle_pushed(&mut self, surface: &mut Surface, parent: usize, base: &Base, child: Disc) -> SlotFate {
+    /// Projects a child that has room and adds it, unless a particle is in its way.
+    fn settle_pushed(
+        &mut self,
+        context: &mut FrontContext,
+        parent: usize,
+        frame: &ParentFrame,
+        child: Disc,
+    ) -> SlotFate {
         let id = parent as u32;
         let distance = child.centre.length();
         let way = child.centre / distance;
         let circle = Circle {
-            centre: surface.particles.position[parent],
-            normal: base.n,
-            direction: base.u * way.x + base.w * way.y,
+            centre: context.particles.position[parent],
+            normal: frame.n,
+            direction: frame.u * way.x + frame.w * way.y,
             radius: distance,
             guess: [1.0, 0.0],
         };
-        if surface.particles.len() >= self.max_particles {
-            self.capped = true;
+        if context.particles.len() >= self.level.max_particles {
+            self.level.capped = true;
             return SlotFate::Capped;
         }
-        let allowed = tolerance(child.radius, self.resolution, self.gradient_scale);
-        surface.projector.land_on_circles(surface.field, &[circle], allowed, &mut self.landing);
+        let allowed = self.rules.tolerance(child.radius);
+        context.projector.land_on_circles(context.field, &[circle], allowed, &mut self.landing);
         let position = match self.landing[0] {
             Landing::On { position, .. } => position,
             Landing::NotConverged => return SlotFate::NotConverged,
             Landing::Undefined => return SlotFate::Undefined,
         };
-        if !self.bounds.contains(position) {
+        if !self.level.bounds.contains(position) {
             return SlotFate::Outside;
         }
-        let sizing = surface.sizing();
-        let spot = self.placement.look(surface.field, surface.projector, sizing, position);
+        let sizing = context.sizing();
+        let spot = self.solver.look(context.field, context.projector, sizing, position);
         let (normal, radius) = (spot.normal, spot.radius);
         if !(radius > 0.0 && normal.is_finite()) {
             return SlotFate::Undefined;
         }
-        self.trace.note_child(id, self.born, || Step::Landed { position, normal, radius });
-        if self.collides(surface.particles, position, normal, radius) {
+        self.trace.note_child(id, self.around.born, || Step::Landed { position, normal, radius });
+        if self.collides(context.particles, position, normal, radius) {
             return SlotFate::Matched;
         }
-        let particles: &mut Particles = surface.particles;
+        let particles: &mut Particles = context.particles;
         let level = particles.level[parent] + 1;
-        self.grids.insert(position, radius, self.settled as u32);
+        self.grids.insert(position, radius, self.level.settled as u32);
         particles.push(position, normal, radius, id, level, initial_slots());
-        self.parents.born.push(Bend { curvature: spot.curvature, slope: Vec3::ZERO });
-        self.settled += 1;
+        self.parents.born.push(LocalShape { curvature: spot.curvature, slope: Vec3::ZERO });
+        self.level.settled += 1;
         self.filled += u64::from(self.fills > 0);
-        self.ring.push(position - circle.centre, radius, true);
+        self.around.ring.push(position - circle.centre, radius, true);
         SlotFate::Added
     }
 }

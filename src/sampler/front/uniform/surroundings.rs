@@ -1,18 +1,16 @@
-//! What a parent of the uniform front needs to know of the particles around it, worked out four at a time.
+//! The particles around a parent of the uniform front, processed four at a time: second fundamental form, nearest particle,
+//! sheet test.
 
 use crate::sampler::discovery::sheets::MAX_LIFT;
+use crate::sampler::front::level::MAX_RISE_SQ;
 use glam::{Vec3, Vec4};
 
-/// Particles within this many radii of a parent tell its curvature: the six ideal neighbours are at 2, the next ring
+/// Particles within this many radii of a parent enter the fit of its curvature. The six ideal neighbours are at 2, the next ring
 /// at 3.46.
 const RING: f32 = 2.6;
 
-/// Weight of "equal curvature in all directions" in the fit, which decides what the neighbours leave open.
+/// Weight of the prior "equal curvature in all directions" in the fit. It decides where the neighbours determine no curvature.
 const ISOTROPY: f32 = 0.005;
-
-/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
-/// no more than 45°, give or take a slack: this is sin² 45°.
-pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
 /// Particles in a chunk.
 const CHUNK: usize = 4;
@@ -26,7 +24,7 @@ pub(crate) struct Surroundings {
 
 /// Second fundamental form in a frame (u, w): the normal turns by `[a b; b c] · offset`.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Shape {
+pub(crate) struct SecondForm {
     pub(crate) a: f32,
     pub(crate) b: f32,
     pub(crate) c: f32,
@@ -62,7 +60,8 @@ impl Surroundings {
         self.chunks[..self.len.div_ceil(CHUNK)].iter().map(|chunk| chunk.map(Vec4::from_array))
     }
 
-    /// Whether any of the particles is [doubtful](crate::sampler::discovery::sheets::is_doubtful) beside the parent with the unit normal `normal`.
+    /// Whether any of the particles is [doubtful](crate::sampler::discovery::sheets::is_doubtful) for a parent with the unit normal
+    /// `normal`.
     pub(crate) fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
         let unit = 1.0 / (spacing * spacing);
         // The lift is half of what is summed here.
@@ -79,12 +78,13 @@ impl Surroundings {
 
     /// Least-squares fit of the second fundamental form to the normals of the final particles within [`RING`] radii of the
     /// parent, whose normal is `n`.
-    pub(crate) fn fit_shape(&self, radius: f32, n: Vec3, u: Vec3, w: Vec3) -> Shape {
+    pub(crate) fn fit_second_form(&self, radius: f32, n: Vec3, u: Vec3, w: Vec3) -> SecondForm {
         let reach_sq = Vec4::splat((RING * radius) * (RING * radius));
         let [mut xx, mut xy, mut yy, mut xp, mut yp, mut xq, mut yq] = [Vec4::ZERO; 7];
         for [x, y, z, mx, my, mz, tells] in self.chunks() {
             let (tx, ty, tz) = (mx - n.x, my - n.y, mz - n.z);
-            // More than 60° within one spacing is another sheet or a crease, and tells nothing of the curvature.
+            // A normal that differs by more than 60° belongs to another sheet or lies beyond a crease: it says nothing about the
+            // curvature.
             let is_told = tells.cmpgt(Vec4::ZERO)
                 & (x * x + y * y + z * z).cmple(reach_sq)
                 & (tx * tx + ty * ty + tz * tz).cmple(Vec4::ONE);
@@ -110,15 +110,15 @@ impl Surroundings {
         let determinant = m11 * c11 + m12 * c12 + m13 * c13;
         let (c22, c23, c33) = (m11 * m33 - m13 * m13, m12 * m13 - m11 * m23, m11 * m22 - m12 * m12);
         let inverse = 1.0 / determinant;
-        let shape = Shape {
+        let form = SecondForm {
             a: (c11 * r1 + c12 * r2 + c13 * r3) * inverse,
             b: (c12 * r1 + c22 * r2 + c23 * r3) * inverse,
             c: (c13 * r1 + c23 * r2 + c33 * r3) * inverse,
         };
-        if shape.a.is_finite() && shape.b.is_finite() && shape.c.is_finite() {
-            shape
+        if form.a.is_finite() && form.b.is_finite() && form.c.is_finite() {
+            form
         } else {
-            Shape::default()
+            SecondForm::default()
         }
     }
 

@@ -1,0 +1,163 @@
+//! Prediction of the children of a parent: how many each free arc takes, which slots they get, and where they stand until they
+//! are projected.
+
+use super::{AdaptiveChild, AdaptiveFront};
+use crate::particles::{Particles, SlotFate};
+use crate::sampler::front::adaptive::arcs::{Arc, ParentFrame, PredictedChild, Room};
+use crate::sampler::front::adaptive::placement::Proposal;
+use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
+use crate::sampler::front::level::{MAX_SLOTS, initial_slots};
+use crate::sampler::projection::Circle;
+use crate::trace::Step;
+use core::f32::consts::TAU;
+
+impl AdaptiveFront {
+    /// Spreads children over the free arcs.
+    pub(super) fn predict_children(
+        &mut self,
+        particles: &Particles,
+        parent: usize,
+        frame: &ParentFrame,
+        alone_on_sheet: bool,
+    ) {
+        for k in 0..self.around.ring.arcs.len() {
+            let arc = self.around.ring.arcs[k];
+            let count = self.around.ring.spread(frame, arc).len();
+            for m in 0..count {
+                let angle = self.around.ring.children[m];
+                let (child, room) = self.predict_child(frame, angle);
+                // Only the particles within the reach are known.
+                let beyond = 2.0 * self.rules.match_tolerance * child.radius;
+                let seen = self.rules.reach * frame.radius - child.distance - beyond;
+                let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
+                let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
+                let fits = room >= 0.0;
+                let kind = if fits {
+                    OccupantKind::Child(child, self.around.born, clearance)
+                } else {
+                    OccupantKind::Known(SlotFate::Matched)
+                };
+                self.around.enter(Occupant { angle: angle + turn, kind });
+                if self.trace.follows(parent as u32) {
+                    self.note_prediction(particles, parent, frame, (arc, m), &child, fits);
+                }
+                self.around.born += 1;
+                if fits {
+                    self.around.ring.push(child.offset, child.radius, false);
+                }
+            }
+        }
+    }
+
+    /// Predicts the child at an angle, no larger than its neighbours allow; and the room beyond the match tolerance that they
+    /// leave it, negative if it is in their way.
+    fn predict_child(&self, frame: &ParentFrame, angle: f32) -> (PredictedChild, f32) {
+        let limits = |child: &PredictedChild| {
+            let (share, grading) = (self.rules.match_tolerance, self.rules.grading);
+            self.around.ring.limits(child.offset, child.radius, share, grading)
+        };
+        let mut child = frame.child_at(angle, f32::INFINITY);
+        let (mut room, largest) = limits(&child);
+        if child.radius > largest {
+            child = frame.child_at(angle, largest);
+            (room, _) = limits(&child);
+        }
+        child.largest = largest.min(frame.radius + self.rules.grading * child.distance);
+        (child, room)
+    }
+
+    /// Notes a child of a parent that is followed: child `m` of the arc.
+    fn note_prediction(
+        &mut self,
+        particles: &Particles,
+        parent: usize,
+        frame: &ParentFrame,
+        (arc, m): (Arc, usize),
+        child: &PredictedChild,
+        fits: bool,
+    ) {
+        let (id, number, radius) = (parent as u32, self.around.born, child.radius);
+        let position = particles.position[parent] + child.offset;
+        let Room { phi, tau } = self.around.ring.room(frame, arc, m, radius);
+        self.trace.note_child(id, number, || Step::Start { position, radius });
+        self.trace.note_child(id, number, || Step::Room { phi_rad: phi, tau_rad: tau });
+        if !fits {
+            let (fate, particle) = (SlotFate::Matched, Particles::NO_PARENT);
+            self.trace.note_child(id, number, || Step::Fate { fate, particle });
+        }
+    }
+
+    /// Gives every occupant of the circle around parent `which` of the level a slot, and the children a provisional place. A
+    /// parent that places children `again` keeps the slots that it has filled.
+    pub(super) fn fill_slots(&mut self, particles: &mut Particles, which: usize, again: bool) {
+        let parent = self.parents.level[which].particle as usize;
+        let mut slots = particles.slots[parent];
+        let is_child = |occupant: &&Occupant| !occupant.kind.is_matched();
+        let mut children = self.around.occupants.iter().filter(is_child).count();
+        // A bit for every slot given out here.
+        let mut given = 0_u32;
+        if !again && particles.parent[parent] != Particles::NO_PARENT {
+            slots.set(0, SlotFate::Parent);
+            given = 1;
+        }
+        for k in 0..self.around.occupants.len() {
+            let kind = self.around.occupants[k].kind;
+            children -= usize::from(!kind.is_matched());
+            // If there are more occupants than slots, the ones that were there before get none.
+            if kind.is_matched() && (again || given.count_ones() as usize + children >= MAX_SLOTS) {
+                continue;
+            }
+            let is = |k: usize, fate| given >> k & 1 == 0 && slots.get(k) == fate;
+            let Some(slot) = (0..MAX_SLOTS)
+                .find(|&k| is(k, SlotFate::Open))
+                .or_else(|| (0..MAX_SLOTS).rev().find(|&k| is(k, SlotFate::Matched)))
+            else {
+                break;
+            };
+            given |= 1 << slot;
+            self.level.fates.uncount(slots.get(slot));
+            let fate = match kind {
+                OccupantKind::Known(fate) => fate,
+                OccupantKind::Child(..) if particles.len() >= self.level.max_particles => {
+                    self.level.capped = true;
+                    SlotFate::Capped
+                }
+                OccupantKind::Child(child, number, clearance) => {
+                    let child = (&child, number, clearance);
+                    self.enter_child(particles, which, slot as u32, child);
+                    SlotFate::Open
+                }
+            };
+            slots.set(slot, fate);
+            self.level.fates.count(fate);
+        }
+        particles.slots[parent] = slots;
+    }
+
+    /// Gives a child of parent `which` of the level its provisional place.
+    fn enter_child(
+        &mut self,
+        particles: &mut Particles,
+        which: usize,
+        slot: u32,
+        (child, number, clearance): (&PredictedChild, u32, f32),
+    ) {
+        let parent = self.parents.level[which].particle as usize;
+        let index = particles.len() as u32;
+        let (centre, normal) = (particles.position[parent], particles.normal[parent]);
+        let position = centre + child.offset;
+        let level = particles.level[parent] + 1;
+        particles.push(position, child.normal, child.radius, parent as u32, level, initial_slots());
+        let &PredictedChild { direction, distance, turn, slope, largest, .. } = child;
+        let circle = Circle { centre, normal, direction, radius: distance, guess: turn };
+        let parent_radius = particles.radius[parent];
+        self.children.list.push(AdaptiveChild {
+            proposal: Proposal { circle, parent_radius, slope, largest },
+            slot,
+            number,
+            handle: self.grids.insert(position, child.radius, index),
+            parent: which as u32,
+            clearance,
+        });
+    }
+}

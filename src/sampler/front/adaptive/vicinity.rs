@@ -1,0 +1,144 @@
+//! What is known of the circle around a parent: the particles near it, and who takes which angle of it.
+
+use super::{LISTED, RING, TOUCHING, is_same_sheet_by_size};
+use crate::math::functions::atan2;
+use crate::particles::{Particles, SlotFate};
+use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild, Ring};
+use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
+use crate::sampler::neighbours::packed::PackedNeighbours;
+use crate::spatial::Neighbour;
+use crate::trace::{Event, Trace};
+use core::f32::consts::TAU;
+
+/// A particle or a child on the circle around a parent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Occupant {
+    /// Direction in the tangent plane, from 0 to 2π.
+    pub(super) angle: f32,
+    pub(super) kind: OccupantKind,
+}
+
+/// What is known of an occupant.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum OccupantKind {
+    /// A particle that was there, or a child whose fate is known.
+    Known(SlotFate),
+    /// A child to be projected, with its number and its distance to the nearest collision.
+    Child(PredictedChild, u32, f32),
+}
+
+impl OccupantKind {
+    /// Whether the occupant was there before the parent placed its children, or stands for a child that matched such a one.
+    pub(super) fn is_matched(&self) -> bool {
+        matches!(self, Self::Known(SlotFate::Matched))
+    }
+}
+
+/// The surroundings of the parent that places its children.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Vicinity {
+    /// The particles of its sheet.
+    pub(super) ring: Ring,
+    /// Numbers in the ring of those that touch the parent, but for the one that placed it.
+    touching: Vec<u32>,
+    /// In the order of their angles.
+    pub(super) occupants: Vec<Occupant>,
+    /// Children of the parent so far, placed or not.
+    pub(super) born: u32,
+}
+
+impl Vicinity {
+    /// Reads the particles `found` around `parent`: into the ring those that its children may collide with, and into
+    /// `neighbours` those before it that repel it. The ones before it are final, and so is the list. Particles before `settled`
+    /// have their exact radius. Says whether all that were found are of the parent's sheet.
+    pub(super) fn read(
+        &mut self,
+        found: &[Neighbour],
+        neighbours: &mut PackedNeighbours,
+        particles: &Particles,
+        parent: usize,
+        settled: usize,
+    ) -> bool {
+        let (normal, radius) = (particles.normal[parent], particles.radius[parent]);
+        let exact_sq = (RING * radius) * (RING * radius);
+        let grandparent = particles.parent[parent];
+        self.ring.clear();
+        self.touching.clear();
+        let mut alone = true;
+        let mut is_weighted = false;
+        let list = found.iter().map(|near| {
+            let j = near.index as usize;
+            if j == parent {
+                return (near.index, false);
+            }
+            let (other, both) = (particles.normal[j], radius + particles.radius[j]);
+            if is_same_sheet_by_size(near, normal, other, both) {
+                if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
+                    self.touching.push(self.ring.len() as u32);
+                }
+                let is_exact = j < settled && near.distance_sq <= exact_sq;
+                self.ring.push(near.offset, particles.radius[j], is_exact);
+            } else {
+                alone = false;
+            }
+            let reach = LISTED * both;
+            let along = other.dot(normal);
+            let is_listed = (j < parent) & (near.distance_sq <= reach * reach);
+            is_weighted |= is_listed & (along < FULL_COSINE);
+            (near.index, is_listed & (along > LISTED_COSINE))
+        });
+        if neighbours.len() == parent {
+            neighbours.push(list);
+            if is_weighted {
+                found.iter().for_each(|near| neighbours.note_weighted(near.index as usize));
+            }
+        } else {
+            list.for_each(drop);
+        }
+        alone
+    }
+
+    /// Empties the circle, or has it begin with the particles that touch the parent.
+    pub(super) fn begin_circle(&mut self, with_touching: bool) {
+        self.occupants.clear();
+        self.born = 0;
+        let touching = if with_touching { self.touching.len() } else { 0 };
+        for k in 0..touching {
+            let angle = self.ring.angle(self.touching[k] as usize);
+            let angle = if angle < 0.0 { angle + TAU } else { angle };
+            self.enter(Occupant { angle, kind: OccupantKind::Known(SlotFate::Matched) });
+        }
+    }
+
+    /// Enters an occupant in the order of the angles.
+    pub(super) fn enter(&mut self, occupant: Occupant) {
+        let mut at = self.occupants.len();
+        self.occupants.push(occupant);
+        while at > 0 && self.occupants[at - 1].angle > occupant.angle {
+            self.occupants.swap(at, at - 1);
+            at -= 1;
+        }
+    }
+}
+
+/// Notes a parent that is followed and the particles of its sheet that were `found` around it.
+pub(super) fn note_parent(
+    trace: &mut Trace,
+    found: &[Neighbour],
+    particles: &Particles,
+    parent: usize,
+    frame: &ParentFrame,
+) {
+    let position = particles.position[parent];
+    let &ParentFrame { n: normal, u: zero, w, radius: own, .. } = frame;
+    trace.note(parent as u32, || Event::Parent { position, normal, radius: own, zero });
+    for near in found {
+        let j = near.index as usize;
+        let radius = particles.radius[j];
+        if j != parent && is_same_sheet_by_size(near, normal, particles.normal[j], own + radius) {
+            let angle_rad = atan2(near.offset.dot(w), near.offset.dot(zero));
+            let (particle, position) = (near.index, particles.position[j]);
+            trace.note(parent as u32, || Event::Neighbour { particle, position, radius, angle_rad });
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! The generation levels of a front: the loop that both kinds of front share, and what they keep of a level.
+//!
+//! A level has three stages. Every parent predicts its children, which get provisional places in the particle columns. All
+//! children are projected onto the surface, a batch at a time. Their fates are then decided one by one in the order of the
+//! queue, and those that are placed close up over those that are not.
+
+use crate::field::Field;
+use crate::math::{Bounds, sort_few, tangent_frame};
+use crate::particles::{Particles, SlotFate, Slots};
+use crate::sampler::discovery::sheets::is_near_own;
+use crate::sampler::discovery::survey::Survey;
+use crate::sampler::fates::FateCounts;
+use crate::sampler::neighbours::packed::PackedNeighbours;
+use crate::sampler::projection::{BATCH, Projector};
+use crate::sampler::settings::Settings;
+use crate::sampler::sizing::Sizing;
+use crate::spatial::Neighbour;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
+/// no more than 45°, give or take a slack: this is sin² 45°.
+pub(crate) const MAX_RISE_SQ: f32 = 0.5;
+
+/// Slots of a particle, at most.
+pub(crate) const MAX_SLOTS: usize = 10;
+
+/// What a front works with and on, besides itself.
+pub(crate) struct FrontContext<'a> {
+    pub(crate) field: &'a mut dyn Field,
+    pub(crate) projector: &'a mut Projector,
+    /// The radius field, which the adaptive front needs.
+    pub(crate) sizing: Option<&'a Sizing>,
+    pub(crate) neighbours: &'a mut PackedNeighbours,
+    pub(crate) particles: &'a mut Particles,
+}
+
+impl<'a> FrontContext<'a> {
+    /// The radius field of an adaptive run.
+    pub(crate) fn sizing(&self) -> &'a Sizing {
+        self.sizing.expect("an adaptive run begins with a radius field")
+    }
+}
+
+/// What a front has to know of an attempt before its first seed.
+pub(crate) struct FrontSetup<'a> {
+    pub(crate) settings: &'a Settings,
+    pub(crate) bounds: &'a Bounds,
+    pub(crate) survey: &'a Survey,
+    /// Radius of the particles of the uniform front.
+    pub(crate) radius: f32,
+    /// Smallest and largest radius of those of the adaptive front.
+    pub(crate) radii: [f32; 2],
+    /// Particles to reserve room for.
+    pub(crate) expected: usize,
+}
+
+/// What a front does next within a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LevelStage {
+    /// Predict the children of a parent.
+    Place,
+    /// Project children onto the surface.
+    Project,
+    /// Decide the fate of a child.
+    Settle,
+}
+
+/// How far a front has come, and its limits.
+#[derive(Clone, Debug)]
+pub(crate) struct Level {
+    stage: LevelStage,
+    /// Next parent of the stage, or next child.
+    next: usize,
+    /// Index of the first provisional child of this level, and of the first one placed.
+    pub(crate) first_child: usize,
+    /// Particles before this index are final. Provisional children stand from here on.
+    pub(crate) settled: usize,
+    pub(crate) bounds: Bounds,
+    pub(crate) max_particles: usize,
+    pub(crate) fates: FateCounts,
+    /// Whether the limit on particles was reached.
+    pub(crate) capped: bool,
+}
+
+impl Level {
+    pub(crate) fn new(bounds: Bounds, max_particles: usize) -> Self {
+        Self {
+            stage: LevelStage::Place,
+            next: 0,
+            first_child: 0,
+            settled: 0,
+            bounds,
+            max_particles,
+            fates: FateCounts::default(),
+            capped: false,
+        }
+    }
+
+    /// Begins a level. Its children follow the particles that are final.
+    pub(crate) fn begin(&mut self) {
+        (self.stage, self.next) = (LevelStage::Place, 0);
+        self.first_child = self.settled;
+    }
+}
+
+/// The children of a level between their prediction and their fate: a child `C` poses a problem `P`, whose solution is an `L`.
+#[derive(Clone, Debug)]
+pub(crate) struct ProvisionalChildren<C, P, L> {
+    /// In the order of their provisional places.
+    pub(crate) list: Vec<C>,
+    /// Where each of them came to lie, in the same order.
+    pub(crate) landings: Vec<L>,
+    /// Largest distance between a provisional and a final place in this level.
+    pub(crate) drift: f32,
+    /// The problems of a batch and their solutions.
+    pub(crate) problems: Vec<P>,
+    pub(crate) solutions: Vec<L>,
+}
+
+impl<C, P, L> ProvisionalChildren<C, P, L> {
+    pub(crate) fn new() -> Self {
+        Self {
+            list: Vec::new(),
+            landings: Vec::new(),
+            drift: 0.0,
+            problems: Vec::with_capacity(BATCH),
+            solutions: Vec::with_capacity(BATCH),
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
+        self.landings.clear();
+        self.drift = 0.0;
+    }
+}
+
+/// A front that grows in levels.
+pub(crate) trait LevelFront {
+    /// Forgets an earlier run.
+    fn reset(&mut self, setup: &FrontSetup);
+
+    /// Gives back the memory that only the front needs.
+    fn release(&mut self);
+
+    /// How far the front has come.
+    fn level(&self) -> &Level;
+
+    /// The same, to be changed.
+    fn level_mut(&mut self) -> &mut Level;
+
+    /// Number of parents in the level; none if the front has come to its end.
+    fn parents(&self) -> usize;
+
+    /// Number of provisional children in the level.
+    fn children(&self) -> usize;
+
+    /// Stage one: finds the free slots of a parent of the level and enters a provisional child in each.
+    fn place_children(&mut self, context: &mut FrontContext, parent: usize);
+
+    /// Stage two: projects a batch of children onto the surface.
+    fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>);
+
+    /// Stage three: decides the fate of a child.
+    fn settle_child(&mut self, context: &mut FrontContext, child: usize);
+
+    /// Makes the children that were placed the parents of the next level.
+    fn end_level(&mut self);
+
+    /// Drops the parents and the provisional children.
+    fn clear_level(&mut self);
+
+    /// Adds a seed, between two levels. Says whether it could: an adaptive one needs a curvature.
+    fn add_seed(&mut self, context: &mut FrontContext, position: Vec3, normal: Vec3) -> bool;
+
+    /// Whether the last particle, a seed that stayed alone, touches another one of whatever sheet.
+    fn is_seed_crowded(&mut self, particles: &Particles) -> bool;
+
+    /// Forgets the last seed, which has the index `seed`.
+    fn forget_seed(&mut self, seed: usize);
+
+    /// Collects the particles of the sheet of (`position`, `normal`) that are so near that no front need start there.
+    fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour>;
+
+    /// Goes on to the gaps, once the surface is covered; false if there is none to fill.
+    fn begin_filling(&mut self) -> bool;
+
+    /// Fills gaps with up to `budget` units of work and returns what is left.
+    fn fill(&mut self, context: &mut FrontContext, budget: u32) -> u32;
+
+    /// Whether no gap is left.
+    fn is_filled(&self) -> bool;
+
+    /// Particles placed in gaps.
+    fn filled(&self) -> u64;
+
+    /// Whether every particle has placed its children.
+    fn is_done(&self) -> bool {
+        self.parents() == 0
+    }
+
+    /// Does up to `budget` units (the slots of a parent, the projection of a child, the fate of a child) and returns what is
+    /// left.
+    fn step(&mut self, context: &mut FrontContext, mut budget: u32) -> u32 {
+        while budget > 0 && !self.is_done() {
+            let &Level { stage, next, .. } = self.level();
+            let count = match stage {
+                LevelStage::Place => (self.parents() - next).min(1),
+                LevelStage::Project => (self.children() - next).min(BATCH).min(budget as usize),
+                LevelStage::Settle => (self.children() - next).min(1),
+            };
+            if count == 0 {
+                self.end_stage(context.particles);
+                continue;
+            }
+            match stage {
+                LevelStage::Place => self.place_children(context, next),
+                LevelStage::Project => self.project_children(context, next..next + count),
+                LevelStage::Settle => self.settle_child(context, next),
+            }
+            self.level_mut().next += count;
+            budget -= count as u32;
+        }
+        budget
+    }
+
+    /// Goes on to the next stage, or to the next level.
+    fn end_stage(&mut self, particles: &mut Particles) {
+        let level = self.level_mut();
+        level.next = 0;
+        match level.stage {
+            LevelStage::Place => level.stage = LevelStage::Project,
+            LevelStage::Project => level.stage = LevelStage::Settle,
+            LevelStage::Settle => {
+                particles.truncate(level.settled);
+                self.end_level();
+                if self.level().capped {
+                    self.clear_level();
+                }
+                self.level_mut().begin();
+            }
+        }
+    }
+
+    /// Ends the front where it is: what is not final is dropped.
+    fn stop(&mut self, particles: &mut Particles) {
+        particles.truncate(self.level().settled);
+        self.clear_level();
+    }
+
+    /// Takes the last seed back if it stayed alone beside another particle: it is the far side of something too small for the
+    /// radius. Says whether it was.
+    fn drop_lone_seed(&mut self, context: &mut FrontContext) -> bool {
+        let last = context.particles.len() - 1;
+        let is_lone = context.particles.parent[last] == Particles::NO_PARENT;
+        if !is_lone || !self.is_seed_crowded(context.particles) {
+            return false;
+        }
+        self.forget_seed(last);
+        let level = self.level_mut();
+        for k in 0..MAX_SLOTS {
+            level.fates.uncount(context.particles.slots[last].get(k));
+        }
+        level.settled = last;
+        context.particles.truncate(last);
+        context.neighbours.truncate(last);
+        true
+    }
+
+    /// Whether a particle of the sheet of (`position`, `normal`) is so near that no front need start there.
+    fn is_covered(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        (position, normal): (Vec3, Vec3),
+    ) -> bool {
+        let found = self.gather_cover(particles, position, normal);
+        let spacing = |j: usize| 2.0 * particles.radius[j];
+        is_near_own(field, projector, particles, (position, normal), found, spacing)
+    }
+
+    /// Those particles, nearest first, in `near`.
+    fn near(&mut self, particles: &Particles, position: Vec3, normal: Vec3, near: &mut Vec<u32>) {
+        let found = self.gather_cover(particles, position, normal);
+        sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
+        near.clear();
+        near.extend(found.iter().map(|found| found.index));
+    }
+}
+
+/// The directions in the tangent plane of a parent from which the angles of its slots are measured.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlotFrame {
+    /// Unit normal.
+    pub(crate) n: Vec3,
+    /// Unit tangent vector at angle 0, where the parent's own parent is (paper §4.4).
+    pub(crate) u: Vec3,
+    /// Unit tangent vector at 90°.
+    pub(crate) w: Vec3,
+    /// Whether the parent has no parent, and any direction will do.
+    pub(crate) is_seed: bool,
+}
+
+impl SlotFrame {
+    /// The frame of a particle.
+    pub(crate) fn of(particles: &Particles, particle: usize) -> Self {
+        let (p, n) = (particles.position[particle], particles.normal[particle]);
+        let parent = particles.parent[particle];
+        let is_seed = parent == Particles::NO_PARENT;
+        let towards = if is_seed {
+            Vec3::ZERO
+        } else {
+            let towards = particles.position[parent as usize] - p;
+            (towards - n * towards.dot(n)).normalize_or_zero()
+        };
+        let (u, w) = if towards == Vec3::ZERO { tangent_frame(n) } else { (towards, n.cross(towards)) };
+        Self { n, u, w, is_seed }
+    }
+}
+
+/// Slots of a new particle: the first one is its parent's.
+pub(crate) fn initial_slots() -> Slots {
+    let mut slots = Slots::default();
+    slots.set(0, SlotFate::Parent);
+    slots
+}
+
+/// Whether a particle at `offset` with the normal `other` belongs to the sheet of a point with the unit normal `normal`. Below
+/// the distance whose square is `slack_sq` the direction between the two tells nothing.
+pub(crate) fn is_same_sheet(
+    offset: Vec3,
+    distance_sq: f32,
+    normal: Vec3,
+    other: Vec3,
+    slack_sq: f32,
+) -> bool {
+    let rise = offset.dot(normal);
+    normal.dot(other) > 0.0 && rise * rise <= MAX_RISE_SQ * (distance_sq + slack_sq)
+}
