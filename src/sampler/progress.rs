@@ -96,16 +96,15 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
-        match self.phase {
-            PhaseState::Idle => 0.0,
-            PhaseState::Seeding(_) | PhaseState::Generation(_) | PhaseState::Search | PhaseState::Filling => {
-                generation * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
-            }
-            PhaseState::Relaxation => {
+        match self.phase.name() {
+            Phase::Idle => 0.0,
+            Phase::Relaxation => {
                 let relaxed = f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
-            PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
+            Phase::Done => 1.0,
+            // In all other phases the number of particles grows.
+            _ => generation * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99),
         }
     }
 }
