@@ -1,18 +1,18 @@
-//! The syntax tree of a formula.
+//! Syntax tree of a formula.
 //!
-//! Sums and products are flat lists, so that the depth of a tree is bounded by the nesting that the parser allows
-//! and every walk over it may recurse.
+//! Sums and products are flat lists. The depth of a tree is therefore bounded by [`MAX_DEPTH`](super::MAX_DEPTH), which
+//! the parser enforces, and recursive walks cannot overflow the stack.
 
 use core::ops::Range;
 
-/// An expression and the bytes it was read from.
+/// An expression and the range of bytes it was parsed from.
 #[derive(Clone, Debug)]
 pub(crate) struct Expr {
     pub(crate) kind: Kind,
     pub(crate) span: Range<usize>,
 }
 
-/// Trees are equal if they mean the same, wherever they were read.
+/// Equality compares structure only and ignores spans.
 impl PartialEq for Expr {
     fn eq(&self, other: &Self) -> bool {
         self.kind == other.kind
@@ -28,7 +28,7 @@ pub(crate) enum Kind {
     Negated(Box<Expr>),
     /// Two or more terms.
     Sum(Vec<(Sign, Expr)>),
-    /// Two or more factors, from left to right; the first one is `Times`.
+    /// Two or more factors, from left to right; the first one is always `Times`.
     Product(Vec<(Factor, Expr)>),
     Power(Box<Expr>, Box<Expr>),
     Call(Function, Vec<Expr>),
@@ -46,7 +46,7 @@ pub(crate) enum Factor {
     Over,
 }
 
-/// `left`, or `left = right`.
+/// The formula `left`, or the equation `left = right`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Equation {
     pub(crate) left: Expr,
@@ -104,7 +104,7 @@ macro_rules! functions {
                 match self { $(Self::$variant => $name),* }
             }
 
-            /// The least and the greatest number of arguments.
+            /// Minimum and maximum number of arguments.
             pub(crate) const fn arity(self) -> (usize, usize) {
                 match self { $(Self::$variant => ($least, $most)),* }
             }
@@ -114,20 +114,20 @@ macro_rules! functions {
             }
         }
 
-        /// Every function of the language, for a help page.
+        /// Every function of the language, in the order of the help page.
         pub const FUNCTIONS: &[FunctionInfo] =
             &[$(FunctionInfo { name: $name, signature: $signature, help: $help }),*];
     };
 }
 
-/// A line of the function reference.
+/// Entry of the function reference.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct FunctionInfo {
-    /// The name as typed.
+    /// Name as typed in a formula.
     pub name: &'static str,
-    /// The name with its arguments.
+    /// Name with its arguments.
     pub signature: &'static str,
-    /// What it is, in one sentence.
+    /// Description in one sentence.
     pub help: &'static str,
 }
 

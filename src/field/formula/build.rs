@@ -1,4 +1,4 @@
-//! Syntax tree to SSA graph.
+//! Translation of the syntax tree into the SSA graph.
 
 use super::MAX_OPERATIONS;
 use super::ast::{Equation, Expr, Factor, Function, Kind, Sign};
@@ -6,7 +6,12 @@ use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 
-/// Adds the field of `equation` (left − right) to `graph`; `parameters` are the names by index.
+/// Adds f = left − right to `graph` and returns its node. `parameters` are the parameter names by index.
+///
+/// # Errors
+///
+/// [`ErrorKind::NotFinite`] for a constant subexpression without a finite value, [`ErrorKind::TooComplex`] if the graph
+/// grows beyond [`MAX_OPERATIONS`] nodes.
 pub(super) fn build(graph: &mut Graph, equation: &Equation, parameters: &[&str]) -> Result<Id, FormulaError> {
     let mut builder = Builder { graph, parameters };
     let left = builder.expression(&equation.left)?;
@@ -52,7 +57,7 @@ impl Builder<'_> {
         if self.graph.as_constant(id).is_some_and(|value| !value.is_finite()) {
             return Err(not_finite(expr));
         }
-        // Before derivatives are taken, so that a hostile formula stays cheap.
+        // Checked before differentiation, which multiplies the nodes: a hostile formula is refused cheaply.
         if self.graph.len() > MAX_OPERATIONS {
             return Err(too_complex(expr));
         }
@@ -128,7 +133,7 @@ impl Builder<'_> {
                 graph.unary(Unary::Sqrt, sum)
             }
             Function::Smin => graph.smin(ids[0], ids[1], ids[2]),
-            // max(a, b) = −min(−a, −b), and likewise when smooth.
+            // smax(a, b, k) = −smin(−a, −b, k).
             Function::Smax => {
                 let (a, b) = (graph.neg(ids[0]), graph.neg(ids[1]));
                 let smooth = graph.smin(a, b, ids[2]);
@@ -138,7 +143,7 @@ impl Builder<'_> {
     }
 }
 
-/// ((a₀ ∘ a₁) ∘ a₂) ∘ …
+/// Left fold ((a₀ ∘ a₁) ∘ a₂) ∘ …
 fn fold(graph: &mut Graph, operation: Binary, ids: &[Id]) -> Id {
     ids[1..].iter().fold(ids[0], |total, &id| graph.binary(operation, total, id))
 }

@@ -1,45 +1,69 @@
-//! Exact derivatives by transforming the graph: the partial derivatives of a node are again nodes.
+//! Exact derivatives by graph transformation: the partial derivatives of a node are again nodes.
 //!
-//! The gradient comes from one backward sweep (each operation passes its adjoint to its operands) or from three
-//! forward sweeps, the Hessian from forward or backward sweeps over the gradient; hash-consing shares what the
-//! sweeps have in common, and the caller keeps the cheaper result. Being graphs of the same kind, derivatives are
-//! evaluated by the same code as the field itself, without a single multiplication by a known zero.
+//! The gradient comes from one backward (reverse-mode) sweep, in which each operation passes its adjoint to its
+//! operands, or from three forward-mode sweeps. The Hessian comes from sweeps of either kind over the gradient.
+//! Hash-consing shares the subexpressions that sweeps have in common, and the caller keeps the cheaper result
+//! (A. Griewank & A. Walther, "Evaluating Derivatives", 2008). Derivatives are graphs of the same kind as the field, so
+//! the same code evaluates them; multiplications by a known zero are folded away.
 //!
-//! At a kink the rules choose one side: abs and sign have slope 0 at 0, min and max take the first operand's slope
+//! A kink has the derivative of one of its sides: abs has slope 0 at 0, min and max take the slope of the first operand
 //! at a tie, floor and sign have slope 0 everywhere.
 
 use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
 use super::operations::{Binary, Unary};
+use super::program::cost;
 
-/// ∂root/∂(x, y, z), by a backward sweep.
+/// Nodes of ∇root, by the cheaper of one backward and three forward sweeps.
+pub(super) fn gradient(graph: &mut Graph, root: Id) -> [Id; 3] {
+    let backward = backward(graph, root);
+    let forward = [0, 1, 2].map(|axis| forward(graph, &[root], axis)[0]);
+    let cost = |graph: &Graph, [x, y, z]: [Id; 3]| cost(graph, &[root, x, y, z]);
+    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
+}
+
+/// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), by the cheaper of forward and backward sweeps over the gradient.
+pub(super) fn hessian(graph: &mut Graph, gradient: [Id; 3]) -> [Id; 6] {
+    let columns = [0, 1, 2].map(|axis| forward(graph, &gradient, axis));
+    let forward = [columns[0][0], columns[1][0], columns[2][0], columns[1][1], columns[2][1], columns[2][2]];
+    let [x, y, z] = gradient.map(|component| backward(graph, component));
+    let backward = [x[0], x[1], x[2], y[1], y[2], z[2]];
+    let cost = |graph: &Graph, hessian: [Id; 6]| {
+        let mut outputs = gradient.to_vec();
+        outputs.extend(hessian);
+        cost(graph, &outputs)
+    };
+    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
+}
+
+/// Nodes of ∂root/∂(x, y, z), by a backward sweep.
 pub(super) fn backward(graph: &mut Graph, root: Id) -> [Id; 3] {
     let live = graph.live(&[root]);
     let one = graph.constant(1.0);
     let zero = graph.constant(0.0);
-    let mut adjoint: Vec<Option<Id>> = vec![None; live.len()];
-    adjoint[root as usize] = Some(one);
+    let mut adjoints: Vec<Option<Id>> = vec![None; live.len()];
+    adjoints[root as usize] = Some(one);
     let mut gradient = [zero; 3];
     for id in (0..=root).rev() {
-        let Some(seed) = adjoint[id as usize] else { continue };
+        let Some(adjoint) = adjoints[id as usize] else { continue };
         if !live[id as usize] || graph.is_uniform(id) {
             continue;
         }
         if let Node::Coordinate(axis) = graph.node(id) {
-            gradient[usize::from(axis)] = seed;
+            gradient[usize::from(axis)] = adjoint;
             continue;
         }
-        for (operand, share) in shares(graph, id, seed).into_iter().flatten() {
-            let slot = &mut adjoint[operand as usize];
-            *slot = Some(match *slot {
-                None => share,
-                Some(before) => graph.add(before, share),
+        for (operand, term) in operand_adjoints(graph, id, adjoint).into_iter().flatten() {
+            let sum = &mut adjoints[operand as usize];
+            *sum = Some(match *sum {
+                None => term,
+                Some(before) => graph.add(before, term),
             });
         }
     }
     gradient
 }
 
-/// ∂roots/∂(coordinate `axis`), by a forward sweep.
+/// Nodes of ∂root/∂(coordinate `axis`) for each of `roots`, by a forward sweep.
 pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
     let live = graph.live(roots);
     let zero = graph.constant(0.0);
@@ -51,8 +75,8 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
         }
         tangent[id as usize] = match graph.node(id) {
             Node::Coordinate(_) => one,
-            // A choice between branches chooses between their tangents, so that the branch not taken cannot spoil
-            // the result, whatever its slope.
+            // The tangent is selected, not multiplied by 0 or 1: the branch not taken may have an infinite or undefined
+            // slope.
             Node::Binary(Binary::Min, a, b) => choose(graph, a, b, tangent[a as usize], tangent[b as usize]),
             Node::Binary(Binary::Max, a, b) => choose(graph, b, a, tangent[a as usize], tangent[b as usize]),
             Node::IfLe(a, b, v) => {
@@ -65,7 +89,7 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
             }
             _ => {
                 let mut total = zero;
-                for (operand, slope) in shares(graph, id, one).into_iter().flatten() {
+                for (operand, slope) in operand_adjoints(graph, id, one).into_iter().flatten() {
                     let product = graph.mul(slope, tangent[operand as usize]);
                     total = graph.add(total, product);
                 }
@@ -76,7 +100,7 @@ pub(super) fn forward(graph: &mut Graph, roots: &[Id], axis: u8) -> Vec<Id> {
     roots.iter().map(|&root| tangent[root as usize]).collect()
 }
 
-/// `first` where a ≤ b, else `second`.
+/// Node that is `first` where a ≤ b and `second` elsewhere.
 fn choose(graph: &mut Graph, a: Id, b: Id, first: Id, second: Id) -> Id {
     if first == second {
         return first;
@@ -86,95 +110,94 @@ fn choose(graph: &mut Graph, a: Id, b: Id, first: Id, second: Id) -> Id {
     graph.add(first, second)
 }
 
-/// What the operands of `id` receive of its adjoint `seed`: seed · ∂id/∂operand. Operands that no coordinate
-/// reaches are left out.
-fn shares(graph: &mut Graph, id: Id, seed: Id) -> [Option<(Id, Id)>; 3] {
+/// Contribution adjoint · ∂id/∂operand of node `id` to the adjoint of each operand. Uniform operands are left out.
+fn operand_adjoints(graph: &mut Graph, id: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     match graph.node(id) {
         Node::Constant(_) | Node::Parameter(_) | Node::Coordinate(_) => [None; 3],
-        Node::Unary(operation, a) => [Some((a, unary(graph, operation, a, id, seed))), None, None],
+        Node::Unary(operation, a) => [Some((a, unary(graph, operation, a, id, adjoint))), None, None],
         Node::Power(a, n) => {
             let lower = graph.power(a, n - 1);
             let exponent = graph.constant(f64::from(n));
-            let scaled = graph.mul(seed, exponent);
+            let scaled = graph.mul(adjoint, exponent);
             [Some((a, graph.mul(scaled, lower))), None, None]
         }
-        Node::Binary(operation, a, b) => binary(graph, operation, a, b, id, seed),
-        Node::Smin(a, b, k) => smin(graph, a, b, k, seed),
-        Node::IfLe(a, b, v) => [Some((v, graph.if_le(a, b, seed))), None, None],
-        Node::IfGt(a, b, v) => [Some((v, graph.if_gt(a, b, seed))), None, None],
+        Node::Binary(operation, a, b) => binary(graph, operation, a, b, id, adjoint),
+        Node::Smin(a, b, k) => smin(graph, a, b, k, adjoint),
+        Node::IfLe(a, b, v) => [Some((v, graph.if_le(a, b, adjoint))), None, None],
+        Node::IfGt(a, b, v) => [Some((v, graph.if_gt(a, b, adjoint))), None, None],
     }
 }
 
-/// seed · d(operation(a))/da, where `id` is operation(a).
-fn unary(graph: &mut Graph, operation: Unary, a: Id, id: Id, seed: Id) -> Id {
+/// Product of `adjoint` and d(operation(a))/da, where `id` is operation(a).
+fn unary(graph: &mut Graph, operation: Unary, a: Id, id: Id, adjoint: Id) -> Id {
     match operation {
-        Unary::Neg => graph.neg(seed),
+        Unary::Neg => graph.neg(adjoint),
         Unary::Square => {
             let two = graph.constant(2.0);
             let slope = graph.mul(a, two);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
         Unary::Sqrt => {
             let half = graph.constant(0.5);
-            let scaled = graph.mul(seed, half);
+            let scaled = graph.mul(adjoint, half);
             graph.div(scaled, id)
         }
         Unary::Cbrt => {
             let third = graph.constant(1.0 / 3.0);
-            let scaled = graph.mul(seed, third);
+            let scaled = graph.mul(adjoint, third);
             let square = graph.power(id, 2);
             graph.div(scaled, square)
         }
         Unary::Abs => {
             let sign = graph.unary(Unary::Sign, a);
-            graph.mul(seed, sign)
+            graph.mul(adjoint, sign)
         }
         Unary::Sign | Unary::Floor => graph.constant(0.0),
-        Unary::Exp => graph.mul(seed, id),
-        Unary::Ln => graph.div(seed, a),
+        Unary::Exp => graph.mul(adjoint, id),
+        Unary::Ln => graph.div(adjoint, a),
         Unary::Log10 => {
             let scale = graph.constant(core::f64::consts::LOG10_E);
-            let scaled = graph.mul(seed, scale);
+            let scaled = graph.mul(adjoint, scale);
             graph.div(scaled, a)
         }
         Unary::Sin => {
             let slope = graph.unary(Unary::Cos, a);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
         Unary::Cos => {
             let sine = graph.unary(Unary::Sin, a);
-            let product = graph.mul(seed, sine);
+            let product = graph.mul(adjoint, sine);
             graph.neg(product)
         }
         Unary::Tan => {
             let slope = one_plus_square(graph, id);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
         Unary::Asin | Unary::Acos => {
             let square = graph.power(a, 2);
             let one = graph.constant(1.0);
             let rest = graph.sub(one, square);
             let root = graph.unary(Unary::Sqrt, rest);
-            let slope = graph.div(seed, root);
+            let slope = graph.div(adjoint, root);
             if operation == Unary::Asin { slope } else { graph.neg(slope) }
         }
         Unary::Atan => {
             let denominator = one_plus_square(graph, a);
-            graph.div(seed, denominator)
+            graph.div(adjoint, denominator)
         }
         Unary::Sinh => {
             let slope = graph.unary(Unary::Cosh, a);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
         Unary::Cosh => {
             let slope = graph.unary(Unary::Sinh, a);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
         Unary::Tanh => {
             let square = graph.power(id, 2);
             let one = graph.constant(1.0);
             let slope = graph.sub(one, square);
-            graph.mul(seed, slope)
+            graph.mul(adjoint, slope)
         }
     }
 }
@@ -185,33 +208,34 @@ fn one_plus_square(graph: &mut Graph, a: Id) -> Id {
     graph.add(square, one)
 }
 
-fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, seed: Id) -> [Option<(Id, Id)>; 3] {
+/// Contributions of a binary operation, where `id` is operation(a, b).
+fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     let varies = |graph: &Graph, id| !graph.is_uniform(id);
     let (of_a, of_b) = (varies(graph, a), varies(graph, b));
     let (to_a, to_b);
     match operation {
-        Binary::Add => (to_a, to_b) = (Some(seed), Some(seed)),
-        Binary::Sub => (to_a, to_b) = (Some(seed), of_b.then(|| graph.neg(seed))),
+        Binary::Add => (to_a, to_b) = (Some(adjoint), Some(adjoint)),
+        Binary::Sub => (to_a, to_b) = (Some(adjoint), of_b.then(|| graph.neg(adjoint))),
         Binary::Mul => {
-            to_a = of_a.then(|| graph.mul(seed, b));
-            to_b = of_b.then(|| graph.mul(seed, a));
+            to_a = of_a.then(|| graph.mul(adjoint, b));
+            to_b = of_b.then(|| graph.mul(adjoint, a));
         }
         Binary::Div => {
-            let share = graph.div(seed, b);
-            to_a = Some(share);
+            let quotient = graph.div(adjoint, b);
+            to_a = Some(quotient);
             to_b = of_b.then(|| {
-                let product = graph.mul(share, id);
+                let product = graph.mul(quotient, id);
                 graph.neg(product)
             });
         }
         Binary::Min => {
-            to_a = of_a.then(|| graph.if_le(a, b, seed));
-            to_b = of_b.then(|| graph.if_gt(a, b, seed));
+            to_a = of_a.then(|| graph.if_le(a, b, adjoint));
+            to_b = of_b.then(|| graph.if_gt(a, b, adjoint));
         }
         // max(a, b) is a where b ≤ a.
         Binary::Max => {
-            to_a = of_a.then(|| graph.if_le(b, a, seed));
-            to_b = of_b.then(|| graph.if_gt(b, a, seed));
+            to_a = of_a.then(|| graph.if_le(b, a, adjoint));
+            to_b = of_b.then(|| graph.if_gt(b, a, adjoint));
         }
         Binary::Pow => {
             to_a = of_a.then(|| {
@@ -219,32 +243,32 @@ fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, seed: Id) 
                 let lower = graph.sub(b, one);
                 let power = graph.pow(a, lower);
                 let slope = graph.mul(power, b);
-                graph.mul(seed, slope)
+                graph.mul(adjoint, slope)
             });
             to_b = of_b.then(|| {
                 let logarithm = graph.unary(Unary::Ln, a);
                 let slope = graph.mul(id, logarithm);
-                graph.mul(seed, slope)
+                graph.mul(adjoint, slope)
             });
         }
         // d atan2(a, b) = (b da − a db)/(a² + b²)
         Binary::Atan2 => {
             let (aa, bb) = (graph.power(a, 2), graph.power(b, 2));
             let sum = graph.add(aa, bb);
-            let share = graph.div(seed, sum);
-            to_a = of_a.then(|| graph.mul(share, b));
+            let scaled = graph.div(adjoint, sum);
+            to_a = of_a.then(|| graph.mul(scaled, b));
             to_b = of_b.then(|| {
-                let product = graph.mul(share, a);
+                let product = graph.mul(scaled, a);
                 graph.neg(product)
             });
         }
     }
-    [to_a.filter(|_| of_a).map(|share| (a, share)), to_b.filter(|_| of_b).map(|share| (b, share)), None]
+    [to_a.filter(|_| of_a).map(|term| (a, term)), to_b.filter(|_| of_b).map(|term| (b, term)), None]
 }
 
-/// With u = (a − b)/k cut to −1 … 1 and w = u − u|u|/2, the slopes of the smooth minimum are ½ − w in a, ½ + w in
-/// b and u²/2 − |u|³/3 − 1/6 in k: no branch, and smooth where a = b.
-fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, seed: Id) -> [Option<(Id, Id)>; 3] {
+/// Contributions of a smooth minimum. With u = (a − b)/k clamped to −1 … 1 and w = u − u|u|/2, its partial derivatives
+/// are ½ − w in a, ½ + w in b and u²/2 − |u|³/3 − 1/6 in k. The form needs no branch and is smooth at a = b.
+fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     let (of_a, of_b, of_k) = (!graph.is_uniform(a), !graph.is_uniform(b), !graph.is_uniform(k));
     let least = graph.constant(SMIN_LEAST_WIDTH);
     let width = graph.binary(Binary::Max, k, least);
@@ -255,15 +279,15 @@ fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, seed: Id) -> [Option<(Id, Id)>; 
     let u = graph.binary(Binary::Max, below, minus_one);
     let magnitude = graph.unary(Unary::Abs, u);
     let square = graph.mul(u, magnitude);
-    let bend = graph.mul(square, half);
-    let w = graph.sub(u, bend);
+    let correction = graph.mul(square, half);
+    let w = graph.sub(u, correction);
     let to_a = of_a.then(|| {
         let slope = graph.sub(half, w);
-        (a, graph.mul(seed, slope))
+        (a, graph.mul(adjoint, slope))
     });
     let to_b = of_b.then(|| {
         let slope = graph.add(w, half);
-        (b, graph.mul(seed, slope))
+        (b, graph.mul(adjoint, slope))
     });
     let to_k = of_k.then(|| {
         let (third, sixth) = (graph.constant(1.0 / 3.0), graph.constant(1.0 / 6.0));
@@ -271,8 +295,8 @@ fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, seed: Id) -> [Option<(Id, Id)>; 
         let (uu, uuu) = (graph.mul(uu, half), graph.mul(uuu, third));
         let rise = graph.sub(uu, uuu);
         let slope = graph.sub(rise, sixth);
-        // Below the least width the minimum does not depend on k.
-        let slope = graph.mul(seed, slope);
+        // The minimum does not depend on widths below the smallest one.
+        let slope = graph.mul(adjoint, slope);
         (k, graph.if_le(least, k, slope))
     });
     [to_a, to_b, to_k]

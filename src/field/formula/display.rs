@@ -1,13 +1,13 @@
-//! A formula as plain text that parses back to the same tree.
+//! Plain text of a formula, which parses back to the same tree.
 
 use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
 use crate::math::decimal;
 
-/// Binding strength, weakest first.
+/// Precedence, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Level {
     Sum,
-    /// A sign in front, as strong as a product whose first factor it may be part of.
+    /// A leading sign, with the precedence of a product whose first factor it may belong to.
     Sign,
     Product,
     Power,
@@ -26,19 +26,19 @@ pub(super) fn level(kind: &Kind) -> Level {
     }
 }
 
-/// The shortest text that reads back as `value`; with an exponent if it is very large or very small.
+/// Shortest decimal text that reads back as `value`, with an exponent if the value is very large or very small.
 pub(super) fn number(value: f64) -> String {
     decimal::text(value)
 }
 
-/// The expression as text.
+/// Text of an expression.
 pub(super) fn plain(expr: &Expr) -> String {
     let mut out = String::new();
     write(&mut out, expr);
     out
 }
 
-/// The equation as text.
+/// Text of an equation.
 pub(super) fn plain_equation(equation: &Equation) -> String {
     let mut out = plain(&equation.left);
     if let Some(right) = &equation.right {
@@ -48,7 +48,7 @@ pub(super) fn plain_equation(equation: &Equation) -> String {
     out
 }
 
-/// `expr`, in brackets if it binds weaker than `least`.
+/// Writes `expr`, in brackets if its precedence is below `least`.
 fn write_at(out: &mut String, expr: &Expr, least: Level) {
     if level(&expr.kind) < least {
         out.push('(');

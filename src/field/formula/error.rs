@@ -1,4 +1,4 @@
-//! What can be wrong with a formula, said so that a person can mend it.
+//! Errors of a formula: their class, a message for the user, the text concerned and a suggested correction.
 
 use core::ops::Range;
 
@@ -7,53 +7,53 @@ use core::ops::Range;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FormulaErrorKind {
-    /// Nothing but white space.
+    /// The text holds nothing but white space.
     Empty,
-    /// More than [`MAX_FORMULA_BYTES`](super::MAX_FORMULA_BYTES) of text; refused before parsing.
+    /// The text is longer than [`MAX_FORMULA_BYTES`](super::MAX_FORMULA_BYTES). It is refused before parsing.
     TooLong,
-    /// Nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
+    /// The formula is nested deeper than [`MAX_DEPTH`](super::MAX_DEPTH).
     TooDeep,
-    /// More than [`MAX_OPERATIONS`](super::MAX_OPERATIONS) operations.
+    /// The formula has more than [`MAX_OPERATIONS`](super::MAX_OPERATIONS) operations.
     TooComplex,
-    /// The formula stops where an operand or a bracket is due.
+    /// The formula ends where an operand or a bracket is expected.
     UnexpectedEnd,
-    /// A symbol that cannot stand where it stands.
+    /// A symbol is not allowed in its place.
     UnexpectedSymbol,
-    /// A character that the language does not know, named by its code point.
+    /// A character is not part of the language. The message gives its code point.
     UnexpectedCharacter,
-    /// A malformed number.
+    /// A number is malformed.
     BadNumber,
-    /// `0,5`: a comma where a decimal point is meant.
+    /// A comma stands where a decimal point is meant, as in `0,5`.
     DecimalComma,
-    /// A text with two possible readings.
+    /// The text has two possible readings.
     Ambiguous,
-    /// A function name without its brackets.
+    /// A function name is not followed by brackets.
     MissingBrackets,
-    /// A function with too few or too many arguments.
+    /// A function has too few or too many arguments.
     WrongArity,
-    /// More than one `=`.
+    /// There is more than one `=`.
     TooManyEquations,
-    /// A name that is neither a coordinate, a constant, a function nor a parameter.
+    /// A name is neither a coordinate, a constant, a function nor a parameter.
     UnknownName,
-    /// An unknown name used like a function.
+    /// An unknown name is used like a function.
     UnknownFunction,
-    /// A constant expression without a finite value, such as `1/0` or `1e999`.
+    /// A constant expression has no finite value, such as `1/0` or `1e999`.
     NotFinite,
-    /// A declared parameter with an unusable name, range or value.
+    /// A declared parameter has an unusable name, range or value.
     BadParameter,
 }
 
-/// Why a text is not a formula.
+/// Error of [`FormulaField::parse`](super::FormulaField::parse) and of the other operations on formulas.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct FormulaError {
     /// The class of the error.
     pub kind: FormulaErrorKind,
-    /// One sentence for a person; plain text.
+    /// One sentence for the user, in plain text.
     pub message: String,
-    /// Bytes of the formula that the error is about; empty at the place where something is missing.
+    /// Byte range of the formula that the error concerns. It is empty where something is missing.
     pub span: Range<usize>,
-    /// Text that would mend the span, if there is a good guess.
+    /// Text that would correct the span, if there is a good guess.
     pub suggestion: Option<String>,
     /// Unknown names that could be declared as parameters ("add a slider"), in order of appearance.
     pub names: Vec<String>,
@@ -74,16 +74,16 @@ impl FormulaError {
         self
     }
 
-    /// The span in UTF-16 code units of `text`, the formula that was parsed: what a browser's text field counts
-    /// in.
+    /// Span in UTF-16 code units, which a browser's text field counts in. `text` is the formula that was parsed.
     #[must_use]
     pub fn utf16_span(&self, text: &str) -> Range<usize> {
         utf16_offset(text, self.span.start)..utf16_offset(text, self.span.end)
     }
 }
 
-/// The offset in UTF-16 code units of byte `byte` of `text`; an offset past the end gives the length, one inside
-/// a character the start of that character.
+/// Offset in UTF-16 code units of byte `byte` of `text`.
+///
+/// An offset past the end gives the length; one inside a character gives the start of that character.
 #[must_use]
 pub fn utf16_offset(text: &str, byte: usize) -> usize {
     text.char_indices().take_while(|&(at, c)| at + c.len_utf8() <= byte).map(|(_, c)| c.len_utf16()).sum()

@@ -1,35 +1,34 @@
-//! Runs a program over points, a block at a time.
+//! Interpreter of a program over points, a block at a time.
 //!
-//! Registers hold up to [`BLOCK`] × 8 points each, so that the cost of reading an instruction is spread over many
-//! points; every lane is computed by the same IEEE operations wherever it stands, so a point's result does not
-//! depend on its neighbours.
+//! A register holds up to [`BLOCK`] × 8 points, which spreads the cost of decoding an instruction over many points. The
+//! same IEEE operations are applied in every lane, so the result at a point does not depend on the other points.
 
 use super::operations::{Binary, Unary};
-use super::program::{Instruction, Op, Place, Program};
+use super::program::{Instruction, Location, Op, Program};
 use crate::math::functions;
 use crate::math::{LANES, Lanes, Sym3};
 use core::cell::Cell;
 use glam::Vec3;
 
-/// Most lanes of eight points in a block.
+/// Maximum number of [`Lanes`], of eight points each, in a block.
 pub(super) const BLOCK: usize = 16;
 
-/// Bytes of the register file that should not be exceeded: half of a small first-level cache.
+/// Intended maximum size of the register file in bytes: half of a small first-level cache.
 const FILE_BYTES: usize = 16 * 1024;
 
-/// Registers for a block of points; grows as needed and is reused.
+/// Register file for a block of points, which grows as needed and is reused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     file: Vec<Lanes>,
 }
 
-/// Where the results of one block go.
+/// Receiver of the results of each block.
 pub(super) trait Sink {
-    /// Takes the `count` results that start at point `first`; `outputs` gives lane `k` of result `n`.
+    /// Takes the results of the points `first..first + count`.
     fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>);
 }
 
-/// The results of one block.
+/// Results of a block.
 pub(super) struct Outputs<'a> {
     program: &'a Program,
     file: &'a [Lanes],
@@ -37,19 +36,19 @@ pub(super) struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// Lanes `8 lane ..` of result `n`.
-    fn lanes(&self, n: usize, lane: usize) -> Lanes {
+    /// Result `n` of the points `8 group..8 group + 8` of the block.
+    fn lanes(&self, n: usize, group: usize) -> Lanes {
         match self.program.outputs[n] {
-            Place::Register(register) => self.file[register as usize * self.stride + lane],
-            Place::Uniform(uniform) => Lanes::splat(self.program.uniforms[uniform as usize]),
+            Location::Register(register) => self.file[register as usize * self.stride + group],
+            Location::Uniform(uniform) => Lanes::splat(self.program.uniforms[uniform as usize]),
         }
     }
 }
 
-/// Evaluates `program` at `points` and hands the results to `sink`, block by block.
+/// Evaluates `program` at `points` and passes the results to `sink`, block by block.
 pub(super) fn run(program: &Program, scratch: &mut Scratch, points: &[Vec3], sink: &mut impl Sink) {
-    let row_bytes = size_of::<Lanes>() * program.registers.max(1);
-    let stride = (FILE_BYTES / row_bytes).clamp(1, BLOCK);
+    let bytes_per_group = size_of::<Lanes>() * program.registers.max(1);
+    let stride = (FILE_BYTES / bytes_per_group).clamp(1, BLOCK);
     let needed = stride * program.registers;
     if scratch.file.len() < needed {
         scratch.file.resize(needed, Lanes::default());
@@ -57,136 +56,144 @@ pub(super) fn run(program: &Program, scratch: &mut Scratch, points: &[Vec3], sin
     let file = &mut scratch.file[..needed];
     let mut first = 0;
     for block in points.chunks(stride * LANES) {
-        let rows = block.len().div_ceil(LANES);
+        let groups = block.len().div_ceil(LANES);
         for (axis, register) in program.coordinates.iter().enumerate() {
             if let Some(register) = register {
-                load(&mut file[*register as usize * stride..][..rows], block, axis);
+                load(&mut file[*register as usize * stride..][..groups], block, axis);
             }
         }
         let cells = Cell::from_mut(&mut *file).as_slice_of_cells();
         for instruction in &program.instructions {
-            execute(instruction, &program.uniforms, &Rows { cells, stride, rows });
+            execute(instruction, &program.uniforms, &Registers { cells, stride, groups });
         }
         sink.store(first, block.len(), &Outputs { program, file, stride });
         first += block.len();
     }
 }
 
-/// One coordinate of every point; the last lanes are filled up with the last point.
-fn load(row: &mut [Lanes], points: &[Vec3], axis: usize) {
+/// Loads one coordinate of every point. The last lanes are padded with the last point.
+fn load(register: &mut [Lanes], points: &[Vec3], axis: usize) {
     let (whole, rest) = points.as_chunks::<LANES>();
-    for (lanes, points) in row.iter_mut().zip(whole) {
+    for (lanes, points) in register.iter_mut().zip(whole) {
         *lanes = Lanes(core::array::from_fn(|k| points[k][axis]));
     }
-    if let (Some(last), Some(lanes)) = (rest.len().checked_sub(1), row.get_mut(whole.len())) {
+    if let (Some(last), Some(lanes)) = (rest.len().checked_sub(1), register.get_mut(whole.len())) {
         *lanes = Lanes(core::array::from_fn(|k| rest[k.min(last)][axis]));
     }
 }
 
-struct Rows<'a> {
+/// The register file in cells, since the result of an instruction may be one of its operands.
+struct Registers<'a> {
     cells: &'a [Cell<Lanes>],
+    /// Distance between registers in the file.
     stride: usize,
-    rows: usize,
+    /// Number of [`Lanes`] in use of each register.
+    groups: usize,
 }
 
-impl<'a> Rows<'a> {
-    fn row(&self, register: u32) -> &'a [Cell<Lanes>] {
-        &self.cells[register as usize * self.stride..][..self.rows]
+impl<'a> Registers<'a> {
+    fn get(&self, register: u32) -> &'a [Cell<Lanes>] {
+        &self.cells[register as usize * self.stride..][..self.groups]
     }
 }
 
-fn unary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
-    for (out, a) in rows.row(i.out).iter().zip(rows.row(i.a)) {
+fn unary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes) -> Lanes) {
+    for (out, a) in registers.get(i.out).iter().zip(registers.get(i.a)) {
         out.set(f(a.get()));
     }
 }
 
-fn binary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
-    for ((out, a), b) in rows.row(i.out).iter().zip(rows.row(i.a)).zip(rows.row(i.b)) {
+fn binary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
+    for ((out, a), b) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.b)) {
         out.set(f(a.get(), b.get()));
     }
 }
 
-/// Operands a and c.
-fn binary_ac(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
-    for ((out, a), c) in rows.row(i.out).iter().zip(rows.row(i.a)).zip(rows.row(i.c)) {
+/// Applies `f` to the operands a and c.
+fn binary_ac(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes) -> Lanes) {
+    for ((out, a), c) in registers.get(i.out).iter().zip(registers.get(i.a)).zip(registers.get(i.c)) {
         out.set(f(a.get(), c.get()));
     }
 }
 
-fn ternary(rows: &Rows<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
-    let operands = rows.row(i.a).iter().zip(rows.row(i.b)).zip(rows.row(i.c));
-    for (out, ((a, b), c)) in rows.row(i.out).iter().zip(operands) {
+fn ternary(registers: &Registers<'_>, i: &Instruction, f: impl Fn(Lanes, Lanes, Lanes) -> Lanes) {
+    let operands = registers.get(i.a).iter().zip(registers.get(i.b)).zip(registers.get(i.c));
+    for (out, ((a, b), c)) in registers.get(i.out).iter().zip(operands) {
         out.set(f(a.get(), b.get(), c.get()));
     }
 }
 
-/// A long function, on a copy of the whole row so that its loop is one that the compiler turns into SIMD code.
-/// Called through a pointer, once per row, so that the copying exists once and not per function.
-fn long(rows: &Rows<'_>, i: &Instruction, f: fn(&mut [f32])) {
+/// Applies a long function `f` to a copy of the register, in one loop that the compiler vectorises. A function pointer,
+/// called once per register, keeps a single copy of this code.
+fn long(registers: &Registers<'_>, i: &Instruction, f: fn(&mut [f32])) {
     let mut buffer = [0.0; BLOCK * LANES];
     let (chunks, _) = buffer.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(rows.row(i.a)) {
+    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
         *chunk = a.get().0;
     }
-    f(&mut buffer[..rows.rows * LANES]);
+    f(&mut buffer[..registers.groups * LANES]);
     let (chunks, _) = buffer.as_chunks::<LANES>();
-    for (out, chunk) in rows.row(i.out).iter().zip(chunks) {
+    for (out, chunk) in registers.get(i.out).iter().zip(chunks) {
         out.set(Lanes(*chunk));
     }
 }
 
-/// Sine and cosine at once.
-fn sine_cosine(rows: &Rows<'_>, i: &Instruction) {
+/// Computes sine and cosine together.
+fn sine_cosine(registers: &Registers<'_>, i: &Instruction) {
     let mut sine = [0.0; BLOCK * LANES];
     let mut cosine = [0.0; BLOCK * LANES];
     let (chunks, _) = sine.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(rows.row(i.a)) {
+    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
         *chunk = a.get().0;
     }
-    let length = rows.rows * LANES;
+    let length = registers.groups * LANES;
     functions::sin_cos_all(&mut sine[..length], &mut cosine[..length]);
     for (register, result) in [(i.out, &sine), (i.b, &cosine)] {
         let (chunks, _) = result.as_chunks::<LANES>();
-        for (out, chunk) in rows.row(register).iter().zip(chunks) {
+        for (out, chunk) in registers.get(register).iter().zip(chunks) {
             out.set(Lanes(*chunk));
         }
     }
 }
 
-/// A long function of two operands.
-fn long_binary(rows: &Rows<'_>, i: &Instruction, b: &dyn Fn(usize) -> Lanes, f: fn(&mut [f32], &[f32])) {
+/// Applies a long function of two operands; see [`long`].
+fn long_binary(
+    registers: &Registers<'_>,
+    i: &Instruction,
+    b: &dyn Fn(usize) -> Lanes,
+    f: fn(&mut [f32], &[f32]),
+) {
     let mut first = [0.0; BLOCK * LANES];
     let mut second = [0.0; BLOCK * LANES];
     let (chunks, _) = first.as_chunks_mut::<LANES>();
-    for (chunk, a) in chunks.iter_mut().zip(rows.row(i.a)) {
+    for (chunk, a) in chunks.iter_mut().zip(registers.get(i.a)) {
         *chunk = a.get().0;
     }
     let (chunks, _) = second.as_chunks_mut::<LANES>();
-    for (k, chunk) in chunks.iter_mut().enumerate().take(rows.rows) {
+    for (k, chunk) in chunks.iter_mut().enumerate().take(registers.groups) {
         *chunk = b(k).0;
     }
-    let length = rows.rows * LANES;
+    let length = registers.groups * LANES;
     f(&mut first[..length], &second[..length]);
     let (chunks, _) = first.as_chunks::<LANES>();
-    for (out, chunk) in rows.row(i.out).iter().zip(chunks) {
+    for (out, chunk) in registers.get(i.out).iter().zip(chunks) {
         out.set(Lanes(*chunk));
     }
 }
 
-/// Exponents up to this size are products: faster than a power of two functions, and as accurate.
-const MOST_SMALL_WHOLE: f32 = 8.0;
+/// Largest exponent of a parameter that is evaluated by products, which are faster than exp(b ln a) and as accurate.
+const MAX_SMALL_INTEGER: f32 = 8.0;
 
-/// `exponent` as a small whole number other than 0; the exponents of parameters often are.
-fn small_whole(exponent: f32) -> Option<i32> {
+/// `exponent` as an integer, if it is a small one other than 0. The exponents of parameters often are.
+fn small_integer(exponent: f32) -> Option<i32> {
     let small =
-        exponent != 0.0 && exponent.abs() <= MOST_SMALL_WHOLE && functions::floor(exponent) == exponent;
-    #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
+        exponent != 0.0 && exponent.abs() <= MAX_SMALL_INTEGER && functions::floor(exponent) == exponent;
+    #[expect(clippy::cast_possible_truncation, reason = "a small integer")]
     small.then_some(exponent as i32)
 }
 
-/// a^n by squaring, the reciprocal's power for n < 0.
-fn whole_power(a: Lanes, n: i32) -> Lanes {
+/// a^n by repeated squaring. For n < 0 the reciprocal is raised to −n.
+fn integer_power(a: Lanes, n: i32) -> Lanes {
     let mut square = if n < 0 { Lanes::splat(1.0) / a } else { a };
     let mut rest = n.unsigned_abs();
     let mut result = Lanes::splat(1.0);
@@ -200,41 +207,41 @@ fn whole_power(a: Lanes, n: i32) -> Lanes {
     result
 }
 
-fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
+fn execute(i: &Instruction, uniforms: &[f32], registers: &Registers<'_>) {
     let u = |operand: u32| Lanes::splat(uniforms[operand as usize]);
     match i.op {
         Op::Splat => {
             let value = u(i.a);
-            rows.row(i.out).iter().for_each(|out| out.set(value));
+            registers.get(i.out).iter().for_each(|out| out.set(value));
         }
-        Op::Unary(operation) => execute_unary(operation, i, rows),
-        Op::Reciprocal => unary(rows, i, |a| Lanes::splat(1.0) / a),
-        Op::SineCosine => sine_cosine(rows, i),
+        Op::Unary(operation) => execute_unary(operation, i, registers),
+        Op::Reciprocal => unary(registers, i, |a| Lanes::splat(1.0) / a),
+        Op::SineCosine => sine_cosine(registers, i),
         Op::Second => unreachable!("removed when registers are allocated"),
-        Op::Binary(Binary::Add) => binary(rows, i, |a, b| a + b),
-        Op::Binary(Binary::Sub) => binary(rows, i, |a, b| a - b),
-        Op::Binary(Binary::Mul) => binary(rows, i, |a, b| a * b),
-        Op::Binary(Binary::Div) => binary(rows, i, |a, b| a / b),
-        Op::Binary(Binary::Min) => binary(rows, i, |a, b| a.zip(b, functions::min)),
-        Op::Binary(Binary::Max) => binary(rows, i, |a, b| a.zip(b, functions::max)),
+        Op::Binary(Binary::Add) => binary(registers, i, |a, b| a + b),
+        Op::Binary(Binary::Sub) => binary(registers, i, |a, b| a - b),
+        Op::Binary(Binary::Mul) => binary(registers, i, |a, b| a * b),
+        Op::Binary(Binary::Div) => binary(registers, i, |a, b| a / b),
+        Op::Binary(Binary::Min) => binary(registers, i, |a, b| a.zip(b, functions::min)),
+        Op::Binary(Binary::Max) => binary(registers, i, |a, b| a.zip(b, functions::max)),
         Op::Binary(Binary::Pow) => {
-            let b = rows.row(i.b);
-            long_binary(rows, i, &|k| b[k].get(), functions::pow_all);
+            let b = registers.get(i.b);
+            long_binary(registers, i, &|k| b[k].get(), functions::pow_all);
         }
         Op::Binary(Binary::Atan2) => {
-            let b = rows.row(i.b);
-            long_binary(rows, i, &|k| b[k].get(), functions::atan2_all);
+            let b = registers.get(i.b);
+            long_binary(registers, i, &|k| b[k].get(), functions::atan2_all);
         }
         Op::Uniform(operation) => {
             let b = u(i.b);
             match operation {
-                Binary::Add => unary(rows, i, |a| a + b),
-                Binary::Mul => unary(rows, i, |a| a * b),
-                Binary::Min => unary(rows, i, |a| a.zip(b, functions::min)),
-                Binary::Max => unary(rows, i, |a| a.zip(b, functions::max)),
-                Binary::Pow => match small_whole(uniforms[i.b as usize]) {
-                    Some(n) => unary(rows, i, |a| whole_power(a, n)),
-                    None => long_binary(rows, i, &|_| b, functions::pow_all),
+                Binary::Add => unary(registers, i, |a| a + b),
+                Binary::Mul => unary(registers, i, |a| a * b),
+                Binary::Min => unary(registers, i, |a| a.zip(b, functions::min)),
+                Binary::Max => unary(registers, i, |a| a.zip(b, functions::max)),
+                Binary::Pow => match small_integer(uniforms[i.b as usize]) {
+                    Some(n) => unary(registers, i, |a| integer_power(a, n)),
+                    None => long_binary(registers, i, &|_| b, functions::pow_all),
                 },
                 Binary::Sub | Binary::Div | Binary::Atan2 => unreachable!("never compiled with a uniform"),
             }
@@ -242,72 +249,72 @@ fn execute(i: &Instruction, uniforms: &[f32], rows: &Rows<'_>) {
         Op::Reversed(operation) => {
             let b = u(i.b);
             match operation {
-                Binary::Sub => unary(rows, i, |a| b - a),
-                Binary::Div => unary(rows, i, |a| b / a),
+                Binary::Sub => unary(registers, i, |a| b - a),
+                Binary::Div => unary(registers, i, |a| b / a),
                 _ => unreachable!("only differences and quotients are compiled reversed"),
             }
         }
-        Op::IfLe => ternary(rows, i, |a, b, c| {
+        Op::IfLe => ternary(registers, i, |a, b, c| {
             Lanes(core::array::from_fn(|k| if a.0[k] <= b.0[k] { c.0[k] } else { 0.0 }))
         }),
-        Op::IfGt => ternary(rows, i, |a, b, c| {
+        Op::IfGt => ternary(registers, i, |a, b, c| {
             Lanes(core::array::from_fn(|k| if a.0[k] <= b.0[k] { 0.0 } else { c.0[k] }))
         }),
-        Op::MulAdd => ternary(rows, i, |a, b, c| a * b + c),
-        Op::MulSub => ternary(rows, i, |a, b, c| a * b - c),
-        Op::SubMul => ternary(rows, i, |a, b, c| c - a * b),
+        Op::MulAdd => ternary(registers, i, |a, b, c| a * b + c),
+        Op::MulSub => ternary(registers, i, |a, b, c| a * b - c),
+        Op::SubMul => ternary(registers, i, |a, b, c| c - a * b),
         Op::MulAddUniform => {
             let c = u(i.c);
-            binary(rows, i, |a, b| a * b + c);
+            binary(registers, i, |a, b| a * b + c);
         }
         Op::ScaleAdd => {
             let b = u(i.b);
-            binary_ac(rows, i, |a, c| a * b + c);
+            binary_ac(registers, i, |a, c| a * b + c);
         }
         Op::ScaleAddUniform => {
             let (b, c) = (u(i.b), u(i.c));
-            unary(rows, i, |a| a * b + c);
+            unary(registers, i, |a| a * b + c);
         }
-        Op::SquareAdd => binary_ac(rows, i, |a, c| a * a + c),
+        Op::SquareAdd => binary_ac(registers, i, |a, c| a * a + c),
     }
 }
 
-fn execute_unary(operation: Unary, i: &Instruction, rows: &Rows<'_>) {
+fn execute_unary(operation: Unary, i: &Instruction, registers: &Registers<'_>) {
     match operation {
-        Unary::Neg => unary(rows, i, |a| -a),
-        Unary::Square => unary(rows, i, |a| a * a),
-        Unary::Sqrt => unary(rows, i, Lanes::sqrt),
-        Unary::Abs => unary(rows, i, Lanes::abs),
-        Unary::Sign => unary(rows, i, |a| a.map(functions::sign)),
-        Unary::Floor => unary(rows, i, |a| a.map(functions::floor)),
-        Unary::Cbrt => long(rows, i, functions::cbrt_all),
-        Unary::Exp => long(rows, i, functions::exp_all),
-        Unary::Ln => long(rows, i, functions::ln_all),
-        Unary::Log10 => long(rows, i, functions::log10_all),
-        Unary::Sin => long(rows, i, functions::sin_all),
-        Unary::Cos => long(rows, i, functions::cos_all),
-        Unary::Tan => long(rows, i, functions::tan_all),
-        Unary::Asin => long(rows, i, functions::asin_all),
-        Unary::Acos => long(rows, i, functions::acos_all),
-        Unary::Atan => long(rows, i, functions::atan_all),
-        Unary::Sinh => long(rows, i, functions::sinh_all),
-        Unary::Cosh => long(rows, i, functions::cosh_all),
-        Unary::Tanh => long(rows, i, functions::tanh_all),
+        Unary::Neg => unary(registers, i, |a| -a),
+        Unary::Square => unary(registers, i, |a| a * a),
+        Unary::Sqrt => unary(registers, i, Lanes::sqrt),
+        Unary::Abs => unary(registers, i, Lanes::abs),
+        Unary::Sign => unary(registers, i, |a| a.map(functions::sign)),
+        Unary::Floor => unary(registers, i, |a| a.map(functions::floor)),
+        Unary::Cbrt => long(registers, i, functions::cbrt_all),
+        Unary::Exp => long(registers, i, functions::exp_all),
+        Unary::Ln => long(registers, i, functions::ln_all),
+        Unary::Log10 => long(registers, i, functions::log10_all),
+        Unary::Sin => long(registers, i, functions::sin_all),
+        Unary::Cos => long(registers, i, functions::cos_all),
+        Unary::Tan => long(registers, i, functions::tan_all),
+        Unary::Asin => long(registers, i, functions::asin_all),
+        Unary::Acos => long(registers, i, functions::acos_all),
+        Unary::Atan => long(registers, i, functions::atan_all),
+        Unary::Sinh => long(registers, i, functions::sinh_all),
+        Unary::Cosh => long(registers, i, functions::cosh_all),
+        Unary::Tanh => long(registers, i, functions::tanh_all),
     }
 }
 
-/// Stores result 0 as the value.
+/// Sink of result 0 as value.
 pub(super) struct Values<'a>(pub(super) &'a mut [f32]);
 
 impl Sink for Values<'_> {
     fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
-        for (lane, chunk) in self.0[first..first + count].chunks_mut(LANES).enumerate() {
-            chunk.copy_from_slice(&outputs.lanes(0, lane).0[..chunk.len()]);
+        for (group, chunk) in self.0[first..first + count].chunks_mut(LANES).enumerate() {
+            chunk.copy_from_slice(&outputs.lanes(0, group).0[..chunk.len()]);
         }
     }
 }
 
-/// Stores results 0 … 3 as value and gradient.
+/// Sink of results 0 … 3 as value and gradient.
 pub(super) struct Gradients<'a> {
     pub(super) value: &'a mut [f32],
     pub(super) gradient: &'a mut [Vec3],
@@ -317,15 +324,15 @@ impl Sink for Gradients<'_> {
     fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
         Values(self.value).store(first, count, outputs);
         let (whole, rest) = self.gradient[first..first + count].as_chunks_mut::<LANES>();
-        for (lane, chunk) in whole.iter_mut().enumerate() {
-            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, lane).0);
+        for (group, chunk) in whole.iter_mut().enumerate() {
+            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, group).0);
             for (k, gradient) in chunk.iter_mut().enumerate() {
                 *gradient = Vec3::new(x[k], y[k], z[k]);
             }
         }
-        let lane = whole.len();
+        let group = whole.len();
         if !rest.is_empty() {
-            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, lane).0);
+            let [x, y, z] = [1, 2, 3].map(|n| outputs.lanes(n, group).0);
             for (k, gradient) in rest.iter_mut().enumerate() {
                 *gradient = Vec3::new(x[k], y[k], z[k]);
             }
@@ -333,7 +340,7 @@ impl Sink for Gradients<'_> {
     }
 }
 
-/// Stores results 0 … 9 as value, gradient and Hessian (xx, xy, xz, yy, yz, zz).
+/// Sink of results 0 … 9 as value, gradient and Hessian (xx, xy, xz, yy, yz, zz).
 pub(super) struct Hessians<'a> {
     pub(super) value: &'a mut [f32],
     pub(super) gradient: &'a mut [Vec3],
@@ -343,8 +350,8 @@ pub(super) struct Hessians<'a> {
 impl Sink for Hessians<'_> {
     fn store(&mut self, first: usize, count: usize, outputs: &Outputs<'_>) {
         Gradients { value: self.value, gradient: self.gradient }.store(first, count, outputs);
-        for (lane, chunk) in self.hessian[first..first + count].chunks_mut(LANES).enumerate() {
-            let [xx, xy, xz, yy, yz, zz] = [4, 5, 6, 7, 8, 9].map(|n| outputs.lanes(n, lane).0);
+        for (group, chunk) in self.hessian[first..first + count].chunks_mut(LANES).enumerate() {
+            let [xx, xy, xz, yy, yz, zz] = [4, 5, 6, 7, 8, 9].map(|n| outputs.lanes(n, group).0);
             for (k, hessian) in chunk.iter_mut().enumerate() {
                 *hessian = Sym3 { xx: xx[k], xy: xy[k], xz: xz[k], yy: yy[k], yz: yz[k], zz: zz[k] };
             }

@@ -1,13 +1,15 @@
-//! The SSA form of a formula: a list of operations in which operands precede their uses, every operation occurs
-//! once (hash-consing), and constants are folded.
+//! Graph of a formula in static single-assignment (SSA) form.
+//!
+//! It is a list of operations in which operands precede their uses. Equal operations are one node (hash-consing), and
+//! constants are folded.
 
 use super::operations::{Binary, Unary};
 use std::collections::BTreeMap;
 
-/// Index of a node; operands have smaller indices than their uses.
+/// Index of a node. Operands have smaller indices than their uses.
 pub(super) type Id = u32;
 
-/// One operation. Constants are kept by their bits, so that nodes can be compared and ordered.
+/// An operation. A constant is stored as its bits, so that nodes can be compared and ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Node {
     Constant(u64),
@@ -15,13 +17,13 @@ pub(super) enum Node {
     Coordinate(u8),
     Unary(Unary, Id),
     Binary(Binary, Id, Id),
-    /// An integer power with an exponent other than 0 and 1.
+    /// Integer power with an exponent other than 0 and 1.
     Power(Id, i32),
-    /// The smooth minimum of two values, with its blend width.
+    /// Smooth minimum of two values, with its blend width.
     Smin(Id, Id, Id),
-    /// The third value where the first one is at most the second, and 0 elsewhere.
+    /// The third value where the first is at most the second, else 0.
     IfLe(Id, Id, Id),
-    /// 0 where the first value is at most the second, and the third one elsewhere.
+    /// 0 where the first value is at most the second, else the third.
     IfGt(Id, Id, Id),
 }
 
@@ -47,7 +49,7 @@ impl Node {
         }
     }
 
-    /// The same operation on `map`ped operands.
+    /// The same operation on operands replaced through `map`.
     pub(super) fn mapped(self, map: impl Fn(Id) -> Id) -> Self {
         match self {
             Self::Constant(_) | Self::Parameter(_) | Self::Coordinate(_) => self,
@@ -60,7 +62,7 @@ impl Node {
         }
     }
 
-    /// The value of the node in double precision, its operands' values being `value`.
+    /// Value of the node in double precision. `value` gives the values of its operands.
     pub(super) fn evaluate(self, parameters: &[f64], point: [f64; 3], value: impl Fn(Id) -> f64) -> f64 {
         match self {
             Self::Constant(bits) => f64::from_bits(bits),
@@ -76,7 +78,7 @@ impl Node {
     }
 }
 
-/// x^n by repeated squaring; the reciprocal's power for n < 0.
+/// x^n by repeated squaring. For n < 0 the reciprocal is raised to −n.
 pub(super) fn power(x: f64, n: i32) -> f64 {
     let mut square = if n < 0 { 1.0 / x } else { x };
     let mut rest = n.unsigned_abs();
@@ -91,11 +93,11 @@ pub(super) fn power(x: f64, n: i32) -> f64 {
     result
 }
 
-/// The least blend width: narrower ones, and negative ones, count as this.
+/// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it.
 pub(super) const SMIN_LEAST_WIDTH: f64 = 1e-9;
 
-/// min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k cut to −1 … 1: twice continuously differentiable, and equal to
-/// the minimum where |a − b| ≥ k.
+/// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. It is twice continuously
+/// differentiable and equals the minimum where |a − b| ≥ k.
 pub(super) fn smin(a: f64, b: f64, k: f64) -> f64 {
     let k = Binary::Max.evaluate(k, SMIN_LEAST_WIDTH);
     let gap = 1.0 - Binary::Min.evaluate(((a - b) / k).abs(), 1.0);
@@ -112,15 +114,15 @@ fn if_le(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
     }
 }
 
-/// The nodes, and what is known of each.
+/// The nodes, with the coordinates that each depends on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Graph {
     nodes: Vec<Node>,
-    /// Bit k: the node depends on coordinate k.
+    /// Coordinates that each node depends on: bit k stands for coordinate k.
     axes: Vec<u8>,
     index: BTreeMap<Node, Id>,
-    /// Whether a product with the constant 0 is 0. True while derivatives are built, where the 0 means "does not
-    /// depend on it"; false for the formula itself, whose `0*ln(x)` is undefined for negative x.
+    /// Whether a product with the constant 0 folds to 0. It does in derivatives, where 0 means independence of the
+    /// coordinate. It does not in the formula itself: `0*ln(x)` is undefined for negative x.
     zero_annihilates: bool,
 }
 
@@ -137,11 +139,12 @@ impl Graph {
         &self.nodes
     }
 
-    /// Bit k: the node depends on coordinate k.
+    /// Coordinates that the node depends on: bit k stands for coordinate k.
     pub(super) fn axes(&self, id: Id) -> u8 {
         self.axes[id as usize]
     }
 
+    /// Whether the node depends on no coordinate.
     pub(super) fn is_uniform(&self, id: Id) -> bool {
         self.axes(id) == 0
     }
@@ -153,16 +156,17 @@ impl Graph {
         }
     }
 
+    /// Folds products with the constant 0 from now on; for derivatives.
     pub(super) fn let_zero_annihilate(&mut self) {
         self.zero_annihilates = true;
     }
 
-    /// The node's index, if it exists.
+    /// Index of the node, if it exists.
     pub(super) fn find(&self, node: Node) -> Option<Id> {
         self.index.get(&node).copied()
     }
 
-    /// The node itself, as it is; shared if it exists already.
+    /// Index of the node, which is added without simplification if it does not exist.
     pub(super) fn intern(&mut self, node: Node) -> Id {
         if let Some(&id) = self.index.get(&node) {
             return id;
@@ -176,7 +180,7 @@ impl Graph {
         id
     }
 
-    /// `node`, or its value if all its operands are constants.
+    /// Index of `node`, or of its value if all operands are constants.
     fn folded(&mut self, node: Node) -> Id {
         let mut constant = true;
         node.operands(|operand| constant &= matches!(self.node(operand), Node::Constant(_)));
@@ -195,7 +199,8 @@ impl Graph {
         self.as_constant(id) == Some(value)
     }
 
-    /// The operands in an order of their own, so that a + b and b + a are one node; a uniform one comes second.
+    /// Operands of a commutative operation in canonical order, so that a + b and b + a are one node. A uniform operand
+    /// comes second.
     fn ordered(&self, a: Id, b: Id) -> (Id, Id) {
         let key = |id: Id| (self.is_uniform(id), id);
         if key(a) <= key(b) { (a, b) } else { (b, a) }
@@ -213,7 +218,7 @@ impl Graph {
             return self.mul(a, two);
         }
         match (self.node(a), self.node(b)) {
-            // Not for a uniform beside a varying operand: there `sub` prefers the sum with the negated uniform.
+            // A varying operand plus a negated uniform stays a sum: `sub` would turn it back into one.
             (_, Node::Unary(Unary::Neg, inner)) if !self.is_uniform(inner) || self.is_uniform(a) => {
                 return self.sub(a, inner);
             }
@@ -223,7 +228,7 @@ impl Graph {
             _ => {}
         }
         let (a, b) = self.ordered(a, b);
-        // (v + u) + w = v + (u + w) for uniform u and w: one operation per point less.
+        // (v + u) + w = v + (u + w) for uniform u and w saves one operation per point.
         if self.is_uniform(b)
             && let Node::Binary(Binary::Add, v, u) = self.node(a)
             && self.is_uniform(u)
@@ -337,7 +342,7 @@ impl Graph {
         self.folded(Node::Binary(Binary::Div, a, b))
     }
 
-    /// a^n for a whole number n.
+    /// a^n for an integer n.
     pub(super) fn power(&mut self, a: Id, n: i32) -> Id {
         match n {
             0 => return self.constant(1.0),
@@ -359,10 +364,10 @@ impl Graph {
         self.folded(Node::Power(a, n))
     }
 
-    /// a^b for any exponent; whole and half-integer constants become products and square roots.
+    /// a^b for any exponent. Integer and half-integer constants become products and square roots.
     pub(super) fn pow(&mut self, a: Id, b: Id) -> Id {
-        // Beyond this a half-integer power is no faster by products.
-        const MOST_HALF_INTEGER: f64 = 32.0;
+        // Larger half-integer powers are no faster as products.
+        const MAX_HALF_INTEGER: f64 = 32.0;
         if self.is(a, core::f64::consts::E) {
             return self.unary(Unary::Exp, b);
         }
@@ -372,7 +377,7 @@ impl Graph {
                 return self.power(a, exponent as i32);
             }
             let twice = 2.0 * exponent;
-            if twice == libm::trunc(twice) && exponent.abs() <= MOST_HALF_INTEGER {
+            if twice == libm::trunc(twice) && exponent.abs() <= MAX_HALF_INTEGER {
                 let root = self.unary(Unary::Sqrt, a);
                 #[expect(clippy::cast_possible_truncation, reason = "a whole number within the range")]
                 return self.power(root, twice as i32);
@@ -408,7 +413,7 @@ impl Graph {
         if self.is(value, 0.0) { value } else { self.folded(Node::IfGt(a, b, value)) }
     }
 
-    /// For every node, whether `roots` need it.
+    /// For each node, whether one of `roots` depends on it.
     pub(super) fn live(&self, roots: &[Id]) -> Vec<bool> {
         let mut live = vec![false; self.len()];
         for &root in roots {

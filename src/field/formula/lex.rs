@@ -1,5 +1,7 @@
-//! Text to tokens. Look-alikes of the ASCII operators and digits are mapped, everything else is an error that
-//! names the code point.
+//! Lexer: text to tokens.
+//!
+//! Characters that look like ASCII operators or digits are mapped to them. Any other character outside the language is
+//! an error that names its code point.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use crate::math::decimal;
@@ -9,7 +11,7 @@ use core::ops::Range;
 pub(super) enum Token {
     Number(f64),
     Name(String),
-    /// An integer exponent written in superscript digits.
+    /// Integer exponent in superscript digits.
     Superscript(i32),
     Plus,
     Minus,
@@ -29,18 +31,18 @@ pub(super) struct Spanned {
     pub(super) span: Range<usize>,
 }
 
-/// The character that `c` stands for in a formula.
+/// Character that `c` stands for in a formula.
 fn mapped(c: char) -> char {
     match c {
-        // Full-width forms of ! … ~ follow the ASCII order.
+        // The full-width forms of ! … ~ are in ASCII order.
         '\u{FF01}'..='\u{FF5E}' => char::from_u32(u32::from(c) - 0xFEE0).unwrap_or(c),
         '\u{2212}' | '\u{2010}' | '\u{2011}' | '\u{2013}' | '\u{FE63}' => '-',
         '\u{00D7}' | '\u{00B7}' | '\u{22C5}' | '\u{2217}' | '\u{2219}' | '\u{2022}' => '*',
         '\u{00F7}' | '\u{2215}' | '\u{2044}' => '/',
         '\u{03D5}' => '\u{03C6}',
-        // Spaces of every width, and the byte-order mark that some editors leave at the front.
+        // Spaces of every width, and the byte-order mark with which some editors begin a file.
         '\u{00A0}' | '\u{2000}'..='\u{200A}' | '\u{202F}' | '\u{205F}' | '\u{3000}' | '\u{FEFF}' => ' ',
-        // Invisible times and invisible comma of mathematical text.
+        // INVISIBLE TIMES and INVISIBLE SEPARATOR.
         '\u{2062}' => '*',
         '\u{2063}' => ',',
         _ => c,
@@ -63,7 +65,7 @@ fn superscript(c: char) -> Option<u8> {
     })
 }
 
-/// The constant that a single Greek letter stands for.
+/// Constant that a Greek letter stands for.
 fn greek_constant(c: char) -> Option<&'static str> {
     match c {
         'π' => Some("pi"),
@@ -81,136 +83,182 @@ fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit() || c == '_'
 }
 
-/// Whether `name` can be the name of a parameter as far as its letters go.
+/// Whether `name` has the characters of a name. It may still be a reserved one.
 pub(super) fn is_name(name: &str) -> bool {
     let mut letters = name.chars();
     letters.next().is_some_and(starts_name) && letters.all(continues_name)
 }
 
-/// The tokens of `text`, the last one being `End`. `declared` are names to be kept whole where a run of
-/// coordinates such as `xy` would otherwise be read as a product.
+/// Tokens of `text`, the last of which is `End`.
+///
+/// A name in `declared` stays one token even where a run of coordinates such as `xy` would otherwise be a product.
 pub(super) fn tokens(text: &str, declared: &[&str]) -> Result<Vec<Spanned>, FormulaError> {
-    let characters: Vec<(usize, char)> = text.char_indices().map(|(at, c)| (at, mapped(c))).collect();
-    let at = |index: usize| characters.get(index).map_or(text.len(), |&(at, _)| at);
-    let get = |index: usize| characters.get(index).map(|&(_, c)| c);
-    let mut out: Vec<Spanned> = Vec::new();
-    let mut i = 0;
-    while let Some(c) = get(i) {
-        let start = i;
-        i += 1;
+    let characters = text.char_indices().map(|(at, c)| (at, mapped(c))).collect();
+    let mut lexer = Lexer { text, declared, characters, next: 0, tokens: Vec::new() };
+    while let Some(c) = lexer.get(lexer.next) {
+        lexer.token(c)?;
+    }
+    lexer.tokens.push(Spanned { token: Token::End, span: text.len()..text.len() });
+    Ok(lexer.tokens)
+}
+
+struct Lexer<'a> {
+    text: &'a str,
+    declared: &'a [&'a str],
+    /// Byte offset of each character, and the character that it stands for.
+    characters: Vec<(usize, char)>,
+    /// Index of the next character.
+    next: usize,
+    tokens: Vec<Spanned>,
+}
+
+impl Lexer<'_> {
+    /// Character `index`, if the text is so long.
+    fn get(&self, index: usize) -> Option<char> {
+        self.characters.get(index).map(|&(_, c)| c)
+    }
+
+    /// Byte offset of character `index`.
+    fn offset(&self, index: usize) -> usize {
+        self.characters.get(index).map_or(self.text.len(), |&(at, _)| at)
+    }
+
+    /// Bytes of the characters `from..to`.
+    fn span(&self, from: usize, to: usize) -> Range<usize> {
+        self.offset(from)..self.offset(to)
+    }
+
+    /// The characters `from..to`, mapped.
+    fn written(&self, from: usize, to: usize) -> String {
+        self.characters[from..to].iter().map(|&(_, c)| c).collect()
+    }
+
+    /// Index of the first character from `index` on that is no digit.
+    fn after_digits(&self, mut index: usize) -> usize {
+        while self.get(index).is_some_and(|c| c.is_ascii_digit()) {
+            index += 1;
+        }
+        index
+    }
+
+    /// Appends the token that begins with the next character, `c`, or skips white space.
+    fn token(&mut self, c: char) -> Result<(), FormulaError> {
+        let start = self.next;
+        self.next += 1;
         let token = match c {
-            _ if c.is_ascii_whitespace() => continue,
+            _ if c.is_ascii_whitespace() => return Ok(()),
             '+' => Token::Plus,
             '-' => Token::Minus,
-            '*' if get(i) == Some('*') => {
-                let span = at(start)..at(i + 1);
-                return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, "A power is written `^`")
-                    .suggest("^"));
+            '*' if self.get(self.next) == Some('*') => {
+                return Err(self.doubled(start, "A power is written `^`").suggest("^"));
             }
             '*' => Token::Star,
             '/' => Token::Slash,
             '^' => Token::Caret,
-            '[' | '{' => return Err(bracket(c, '(', at(start)..at(i))),
-            ']' | '}' => return Err(bracket(c, ')', at(start)..at(i))),
+            '[' | '{' => return Err(bracket(c, '(', self.span(start, self.next))),
+            ']' | '}' => return Err(bracket(c, ')', self.span(start, self.next))),
             '(' => Token::Open,
             ')' => Token::Close,
             ',' => Token::Comma,
-            '=' if get(i) == Some('=') => {
-                let span = at(start)..at(i + 1);
-                return Err(FormulaError::new(
-                    ErrorKind::UnexpectedSymbol,
-                    span,
-                    "An equation is written with one `=`",
-                )
-                .suggest("="));
+            '=' if self.get(self.next) == Some('=') => {
+                return Err(self.doubled(start, "An equation is written with one `=`").suggest("="));
             }
             '=' => Token::Equals,
-            '0'..='9' | '.' => {
-                let digits = |mut i: usize| {
-                    while get(i).is_some_and(|c| c.is_ascii_digit()) {
-                        i += 1;
-                    }
-                    i
-                };
-                i = digits(start);
-                if get(i) == Some('.') {
-                    i = digits(i + 1);
-                }
-                // `2e3` is a number; `2e` and `2e x` are twice Euler's number.
-                if matches!(get(i), Some('e' | 'E')) {
-                    let sign = usize::from(matches!(get(i + 1), Some('+' | '-')));
-                    let end = digits(i + 1 + sign);
-                    if end > i + 1 + sign {
-                        i = end;
-                    }
-                }
-                let span = at(start)..at(i);
-                let written: String = characters[start..i].iter().map(|&(_, c)| c).collect();
-                let bad = written == "." || get(i) == Some('.');
-                let value = if bad { None } else { decimal::read(&written) };
-                let Some(value) = value else {
-                    let span = at(start)..at((i + usize::from(get(i) == Some('.'))).max(start + 1));
-                    let message = format!("`{}` is not a number", part(text, &span));
-                    return Err(FormulaError::new(ErrorKind::BadNumber, span, message));
-                };
-                if !value.is_finite() {
-                    let message = format!("`{written}` is too large to be a number");
-                    return Err(FormulaError::new(ErrorKind::NotFinite, span, message));
-                }
-                if get(i) == Some(',') && get(i + 1).is_some_and(|c| c.is_ascii_digit()) {
-                    let whole = at(start)..at(digits(i + 1));
-                    let decimals: String = characters[i + 1..digits(i + 1)].iter().map(|&(_, c)| c).collect();
-                    let message = format!(
-                        "`{written},{decimals}`: decimals take a point; to separate two arguments put a space after the comma"
-                    );
-                    return Err(FormulaError::new(ErrorKind::DecimalComma, whole, message)
-                        .suggest(format!("{written}.{decimals}")));
-                }
-                Token::Number(value)
-            }
-            _ if superscript(c).is_some() || c == '⁻' => {
-                let mut value: i64 = 0;
-                let mut digits = 0;
-                i = start + usize::from(c == '⁻');
-                while let Some(digit) = get(i).and_then(superscript) {
-                    value = (value * 10 + i64::from(digit)).min(i64::from(i32::MAX));
-                    digits += 1;
-                    i += 1;
-                }
-                let span = at(start)..at(i.max(start + 1));
-                if digits == 0 {
-                    let message = "A raised minus needs raised digits after it, as in `x⁻²`";
-                    return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
-                }
-                let value = i32::try_from(value).unwrap_or(i32::MAX);
-                Token::Superscript(if c == '⁻' { -value } else { value })
-            }
+            '0'..='9' | '.' => Token::Number(self.number(start)?),
+            _ if superscript(c).is_some() || c == '⁻' => Token::Superscript(self.superscript(start)?),
             _ if greek_constant(c).is_some() => Token::Name(greek_constant(c).unwrap_or_default().into()),
             _ if starts_name(c) => {
-                while get(i).is_some_and(continues_name) {
-                    i += 1;
+                while self.get(self.next).is_some_and(continues_name) {
+                    self.next += 1;
                 }
-                let name: String = characters[start..i].iter().map(|&(_, c)| c).collect();
-                let product = name.len() > 1 && name.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'));
-                if product && !declared.contains(&name.as_str()) {
+                let name = self.written(start, self.next);
+                if self.is_product(&name) {
                     for (offset, letter) in name.chars().enumerate() {
-                        let span = at(start + offset)..at(start + offset + 1);
-                        out.push(Spanned { token: Token::Name(letter.into()), span });
+                        let span = self.span(start + offset, start + offset + 1);
+                        self.tokens.push(Spanned { token: Token::Name(letter.into()), span });
                     }
-                    continue;
+                    return Ok(());
                 }
                 Token::Name(name)
             }
-            _ => return Err(stranger(text, c, at(start)..at(i))),
+            _ => return Err(unexpected_character(self.text, c, self.span(start, self.next))),
         };
-        out.push(Spanned { token, span: at(start)..at(i) });
+        self.tokens.push(Spanned { token, span: self.span(start, self.next) });
+        Ok(())
     }
-    out.push(Spanned { token: Token::End, span: text.len()..text.len() });
-    Ok(out)
+
+    /// Whether `name` is a run of coordinates that is read as a product.
+    fn is_product(&self, name: &str) -> bool {
+        let coordinates = name.len() > 1 && name.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'));
+        coordinates && !self.declared.contains(&name)
+    }
+
+    /// Consumes the number that begins at character `start`.
+    fn number(&mut self, start: usize) -> Result<f64, FormulaError> {
+        let mut i = self.after_digits(start);
+        if self.get(i) == Some('.') {
+            i = self.after_digits(i + 1);
+        }
+        // `2e3` is a number; `2e` and `2e x` are twice Euler's number.
+        if matches!(self.get(i), Some('e' | 'E')) {
+            let sign = usize::from(matches!(self.get(i + 1), Some('+' | '-')));
+            let end = self.after_digits(i + 1 + sign);
+            if end > i + 1 + sign {
+                i = end;
+            }
+        }
+        self.next = i;
+        let written = self.written(start, i);
+        let second_point = self.get(i) == Some('.');
+        let value = if written == "." || second_point { None } else { decimal::read(&written) };
+        let Some(value) = value else {
+            let span = self.span(start, (i + usize::from(second_point)).max(start + 1));
+            let message = format!("`{}` is not a number", slice(self.text, &span));
+            return Err(FormulaError::new(ErrorKind::BadNumber, span, message));
+        };
+        if !value.is_finite() {
+            let message = format!("`{written}` is too large to be a number");
+            return Err(FormulaError::new(ErrorKind::NotFinite, self.span(start, i), message));
+        }
+        if self.get(i) == Some(',') && self.get(i + 1).is_some_and(|c| c.is_ascii_digit()) {
+            let end = self.after_digits(i + 1);
+            let decimals = self.written(i + 1, end);
+            let message = format!(
+                "`{written},{decimals}`: decimals take a point; to separate two arguments put a space after the comma"
+            );
+            return Err(FormulaError::new(ErrorKind::DecimalComma, self.span(start, end), message)
+                .suggest(format!("{written}.{decimals}")));
+        }
+        Ok(value)
+    }
+
+    /// Consumes the superscript integer that begins at character `start`; a larger one counts as the largest `i32`.
+    fn superscript(&mut self, start: usize) -> Result<i32, FormulaError> {
+        let negative = self.get(start) == Some('⁻');
+        let first = start + usize::from(negative);
+        let mut value: i64 = 0;
+        self.next = first;
+        while let Some(digit) = self.get(self.next).and_then(superscript) {
+            value = (value * 10 + i64::from(digit)).min(i64::from(i32::MAX));
+            self.next += 1;
+        }
+        if self.next == first {
+            let message = "A raised minus needs raised digits after it, as in `x⁻²`";
+            let span = self.span(start, first);
+            return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
+        }
+        let value = i32::try_from(value).unwrap_or(i32::MAX);
+        Ok(if negative { -value } else { value })
+    }
+
+    /// Error for a doubled symbol at character `start`.
+    fn doubled(&self, start: usize, message: &str) -> FormulaError {
+        FormulaError::new(ErrorKind::UnexpectedSymbol, self.span(start, start + 2), message)
+    }
 }
 
-/// The part of the text at `span`; nothing if that splits a character, so that no formula can end the program.
-pub(super) fn part<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
+/// Text at `span`, or nothing if `span` splits a character. It never panics, whatever the formula.
+pub(super) fn slice<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
     text.get(span.clone()).unwrap_or_default()
 }
 
@@ -219,9 +267,9 @@ fn bracket(found: char, wanted: char, span: Range<usize>) -> FormulaError {
     FormulaError::new(ErrorKind::UnexpectedSymbol, span, message).suggest(wanted)
 }
 
-/// The error for a character that the language has no use for.
-fn stranger(text: &str, c: char, span: Range<usize>) -> FormulaError {
-    let written = part(text, &span);
+/// Error for a character that is not part of the language.
+fn unexpected_character(text: &str, c: char, span: Range<usize>) -> FormulaError {
+    let written = slice(text, &span);
     let point = u32::from(c);
     let name = match c {
         '\0' => "a null character",

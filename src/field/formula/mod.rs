@@ -2,23 +2,26 @@
 //!
 //! # Language
 //!
-//! The coordinates `x y z`; numbers; the constants `pi`, `e`, `tau` and `phi` (the golden ratio); named parameters;
-//! `+ - * / ^`, brackets, and products written side by side where there is one reading only (`2x`, `x y`, `xyz`,
-//! `3(x + 1)`); the functions of [`FUNCTIONS`]; and one `=`, which stands for the difference of its sides. `^` binds
-//! to the right and stronger than a sign in front: `-x^2` is −(x²). `2e3` is two thousand, `2e` twice Euler's
-//! number. Raised digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width characters are understood.
+//! A formula consists of the coordinates `x y z`, numbers, the constants `pi`, `e`, `tau` and `phi` (the golden ratio),
+//! named parameters, the operators `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`]. At most one `=` stands for
+//! the difference of its sides. A product may be written without `*` where there is only one reading: `2x`, `x y`, `xyz`,
+//! `3(x + 1)`. `^` is right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is two
+//! thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width
+//! characters are accepted.
 //!
-//! A name that is not known becomes a parameter by itself as long as there are at most
-//! [`MAX_AUTOMATIC_PARAMETERS`] of them and it does not look like a slip of the keyboard.
+//! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling. There are at most
+//! [`MAX_AUTOMATIC_PARAMETERS`] of them.
 //!
-//! # From text to particles
+//! # Evaluation
 //!
-//! The text is parsed to a syntax tree and that to an SSA graph, in which equal operations are one node. The graph is
-//! read as a second-order jet in double precision, as intervals and, compiled to a straight-line program, over
-//! batches of points in single precision. Gradient and Hessian are graphs too, derived from the first one.
+//! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment form. The graph is
+//! evaluated as a second-order jet in double precision, in interval arithmetic over many boxes at a time and, compiled to
+//! a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
+//! from that of f.
 
 mod ast;
 mod build;
+mod compiled;
 mod derivative;
 mod display;
 mod error;
@@ -41,48 +44,49 @@ pub use error::{FormulaError, FormulaErrorKind, utf16_offset};
 use super::{Enclosure, Field, Interval, Jet};
 use crate::math::Sym3;
 use ast::{COORDINATES, Constant, Equation, Function};
+use compiled::Compiled;
 use glam::{DVec3, Vec3};
-use graph::{Graph, Id};
-use program::Program;
 
-/// Longest formula, in bytes of UTF-8; longer text is refused before it is parsed.
+/// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed.
 pub const MAX_FORMULA_BYTES: usize = 4096;
 
-/// Deepest nesting of brackets, calls, signs and exponents.
+/// Maximum nesting of brackets, calls, signs and exponents.
 pub const MAX_DEPTH: usize = 64;
 
-/// Most operations of a formula, integer powers counted by their products.
+/// Maximum number of operations of a formula. An integer power counts as its products.
 pub const MAX_OPERATIONS: usize = 4096;
 
-/// Most unknown names that become parameters by themselves.
+/// Maximum number of unknown names that become parameters.
 pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
 
-/// A named number of a formula that can be changed without parsing it again.
+/// A named number of a formula, which can be changed without parsing the formula again.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Parameter {
-    /// The name as it stands in the formula.
+    /// Name in the formula.
     pub name: String,
-    /// What it is, for a person.
+    /// Label for the user.
     pub label: String,
-    /// Present value.
+    /// Current value.
     pub value: f64,
-    /// Least value that a slider offers.
+    /// Smallest value of the slider.
     pub min: f64,
-    /// Greatest value that a slider offers.
+    /// Largest value of the slider.
     pub max: f64,
-    /// Step of a slider.
+    /// Step of the slider.
     pub step: f64,
 }
 
 impl Parameter {
-    /// What an unknown name becomes: the value 1 on a range from 0 to 3.
+    /// Automatic parameter of an unknown name, with value 1 and a slider from 0 to 3.
     #[must_use]
     pub fn automatic(name: &str) -> Self {
         Self { name: name.into(), label: name.into(), value: 1.0, min: 0.0, max: 3.0, step: 0.01 }
     }
 }
 
-/// A field f(x, y, z) given by a formula.
+/// Field f(x, y, z) given by a formula.
+///
+/// Batched evaluation does not allocate once it is warm; the Hessian and the bounds are compiled when first asked for.
 ///
 /// ```
 /// use marching_particles::field::Field;
@@ -102,36 +106,29 @@ impl Parameter {
 pub struct FormulaField {
     text: String,
     equation: Equation,
-    /// The equation that is evaluated, where it is another one.
-    simple: Option<Equation>,
+    /// Equation of the same surface that is evaluated instead, if [`FormulaField::without_powers`] has found one.
+    simplified: Option<Equation>,
     parameters: Vec<Parameter>,
+    /// Names of the parameters that were not declared.
     automatic: Vec<String>,
     /// Declared names that the formula does not use.
     unused: Vec<String>,
+    /// Values of `parameters`, as the compiled formula takes them.
     values: Vec<f64>,
-    graph: Graph,
-    root: Id,
-    constant: bool,
-    value_program: Program,
-    gradient_program: Program,
-    /// Compiled when first asked for: uniform sampling does without.
-    hessian_program: Option<Program>,
-    gradient: [Id; 3],
-    /// Meaningful once the Hessian is compiled.
-    hessian: [Id; 6],
+    compiled: Compiled,
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
-    /// Compiled when first asked for.
-    parts: Vec<interval::Part>,
 }
 
 impl FormulaField {
-    /// Reads a formula. Of the `declared` parameters, those that occur in the text become the field's, in their
-    /// order; unknown names follow as automatic parameters, in order of appearance.
+    /// Parses and compiles a formula.
+    ///
+    /// The field's parameters are those of `declared` that occur in the text, in the order of declaration, followed by
+    /// the unknown names as automatic parameters, in order of appearance.
     ///
     /// # Errors
     ///
-    /// Whatever [`FormulaErrorKind`] lists, with the span in bytes of `text`. The time and memory to reach an error
+    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an error
     /// are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
     pub fn parse(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
@@ -143,93 +140,57 @@ impl FormulaField {
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
         parameters.extend(automatic.iter().map(|name| Parameter::automatic(name)));
 
-        let mut field = Self {
+        Ok(Self {
             text: text.to_owned(),
-            equation: parsed.equation,
-            simple: None,
+            simplified: None,
             values: parameters.iter().map(|parameter| parameter.value).collect(),
-            parameters,
             automatic,
             unused,
-            graph: Graph::default(),
-            root: 0,
-            constant: false,
-            value_program: Program::default(),
-            gradient_program: Program::default(),
-            hessian_program: None,
-            gradient: [0; 3],
-            hessian: [0; 6],
+            compiled: Compiled::new(&parsed.equation, &parameters)?,
+            equation: parsed.equation,
+            parameters,
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
-            parts: Vec::new(),
-        };
-        field.compile()?;
-        Ok(field)
+        })
     }
 
-    /// The field of the same surface that has a gradient on it, where f is a power of another function or a product with
-    /// powers or repeated factors: u in the place of u², √u or |u|. Text, normal form and MathML stay those of the formula. The
-    /// field itself where it is none of these.
+    /// Field of the same surface in which powers and repeated factors stand once: u in place of u², √u or |u|.
+    ///
+    /// The gradient of u² vanishes on the surface u = 0, so that there is no normal; the gradient of u does not. Text,
+    /// normal form and MathML remain those of the formula. A field without such factors is returned unchanged.
     #[must_use]
     pub fn without_powers(mut self) -> Self {
-        if self.simple.is_none()
-            && let Some(simple) = powers::without_powers(&self.equation)
+        if self.simplified.is_none()
+            && let Some(simplified) = powers::without_powers(&self.equation)
+            // The simplified equation is shorter, so it meets no limit; if it did, the formula itself would still do.
+            && let Ok(compiled) = Compiled::new(&simplified, &self.parameters)
         {
-            let typed = self.clone();
-            self.simple = Some(simple);
-            // Shorter than the formula, so that no limit is met; but if it were, the formula itself is still good.
-            if self.compile().is_err() {
-                return typed;
-            }
+            self.simplified = Some(simplified);
+            self.compiled = compiled;
         }
         self
     }
 
-    /// The equation in the place of the formula, if [`FormulaField::without_powers`] has found one.
+    /// Text of the equation that is evaluated in place of the formula, if [`FormulaField::without_powers`] found one.
     #[must_use]
     pub fn evaluated_as(&self) -> Option<String> {
-        self.simple.as_ref().map(display::plain_equation)
+        self.simplified.as_ref().map(display::plain_equation)
     }
 
-    /// Everything that is evaluated, from the equation and the names of the parameters.
-    fn compile(&mut self) -> Result<(), FormulaError> {
-        let equation = self.simple.as_ref().unwrap_or(&self.equation);
-        let names: Vec<&str> = self.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-        let mut graph = Graph::default();
-        let root = build::build(&mut graph, equation, &names)?;
-        self.value_program = Program::compile(&graph, &[root]);
-        if self.value_program.operations() > MAX_OPERATIONS {
-            return Err(build::too_complex(&equation.left));
-        }
-        graph.let_zero_annihilate();
-        let gradient = cheaper_gradient(&mut graph, root);
-        self.gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
-        let steps = graph.nodes()[..=root as usize].iter().any(|node| {
-            matches!(node, graph::Node::Unary(operations::Unary::Floor | operations::Unary::Sign, _))
-        });
-        let flat = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
-        self.constant = graph.is_uniform(root) || (flat && !steps);
-        (self.graph, self.root, self.gradient, self.hessian) = (graph, root, gradient, [root; 6]);
-        self.hessian_program = None;
-        self.parts.clear();
-        self.update();
-        Ok(())
-    }
-
-    /// The text that was parsed.
+    /// Text that was parsed.
     #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The formula in normal form: explicit products, ASCII only where the text was, no superfluous brackets.
-    /// Parsing it gives the same field.
+    /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names, and
+    /// parsing it gives the same field.
     #[must_use]
     pub fn normal_form(&self) -> String {
         display::plain_equation(&self.equation)
     }
 
-    /// Whether both formulas have the same syntax tree, wherever their symbols stand.
+    /// Whether both formulas have the same syntax tree, regardless of spans.
     #[must_use]
     pub fn same_tree(&self, other: &Self) -> bool {
         self.equation == other.equation
@@ -241,7 +202,7 @@ impl FormulaField {
         mathml::equation(&self.equation)
     }
 
-    /// The parameters that the formula uses.
+    /// Parameters that the formula uses: the declared ones, then the automatic ones.
     #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -253,15 +214,14 @@ impl FormulaField {
         &self.automatic
     }
 
-    /// Whether f is the same everywhere, whatever the parameters: then there is no surface, or no inside and
-    /// outside.
+    /// Whether f is the same everywhere for any values of the parameters. Such a field has no surface.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.constant
+        self.compiled.is_constant()
     }
 
-    /// Changes a parameter; the range of its slider does not bind. A declared parameter that the formula does not
-    /// use is accepted and has no effect.
+    /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the formula
+    /// does not use is accepted and has no effect.
     ///
     /// # Errors
     ///
@@ -280,86 +240,18 @@ impl FormulaField {
         };
         self.parameters[index].value = value;
         self.values[index] = value;
-        self.update();
+        self.compiled.set_parameters(&self.values);
         Ok(())
     }
 
-    /// f, ∇f and ∇∇f at `p` through the transformed graphs that the batches are compiled from, but in double
-    /// precision: equal to [`Field::jet`] up to rounding, by an independent route.
+    /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
+    /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
-        self.compile_hessian();
-        let mut values: Vec<f64> = Vec::with_capacity(self.graph.len());
-        for node in self.graph.nodes() {
-            values.push(node.evaluate(&self.values, p.to_array(), |id| values[id as usize]));
-        }
-        let value = |id: Id| values[id as usize];
-        let [xx, xy, xz, yy, yz, zz] = self.hessian.map(value);
-        Jet {
-            value: value(self.root),
-            gradient: DVec3::from_array(self.gradient.map(value)),
-            hessian: Sym3 { xx, xy, xz, yy, yz, zz },
-        }
-    }
-
-    fn update(&mut self) {
-        self.value_program.set_parameters(&self.values);
-        self.gradient_program.set_parameters(&self.values);
-        if let Some(program) = &mut self.hessian_program {
-            program.set_parameters(&self.values);
-        }
-        for part in &mut self.parts {
-            part.first.set_parameters(&self.values);
-            if let Some(program) = &mut part.second {
-                program.set_parameters(&self.values);
-            }
-        }
-    }
-
-    fn compile_parts(&mut self) {
-        if self.parts.is_empty() {
-            self.parts = interval::parts(&mut self.graph, self.root, self.gradient);
-            self.update();
-        }
-    }
-
-    fn compile_hessian(&mut self) {
-        if self.hessian_program.is_none() {
-            let hessian = cheaper_hessian(&mut self.graph, self.gradient);
-            let mut outputs = vec![self.root];
-            outputs.extend(self.gradient);
-            outputs.extend(hessian);
-            self.hessian = hessian;
-            let mut program = Program::compile(&self.graph, &outputs);
-            program.set_parameters(&self.values);
-            self.hessian_program = Some(program);
-        }
+        self.compiled.transformed_jet(&self.values, p)
     }
 }
 
-/// The gradient of `root`, by the cheaper of a backward and three forward sweeps.
-fn cheaper_gradient(graph: &mut Graph, root: Id) -> [Id; 3] {
-    let backward = derivative::backward(graph, root);
-    let forward = [0, 1, 2].map(|axis| derivative::forward(graph, &[root], axis)[0]);
-    let cost = |graph: &Graph, [x, y, z]: [Id; 3]| program::cost(graph, &[root, x, y, z]);
-    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
-}
-
-/// The Hessian (xx, xy, xz, yy, yz, zz) from the gradient, by the cheaper of forward and backward sweeps.
-fn cheaper_hessian(graph: &mut Graph, gradient: [Id; 3]) -> [Id; 6] {
-    let [gx, gy, gz] = gradient;
-    let columns = [0, 1, 2].map(|axis| derivative::forward(graph, &gradient, axis));
-    let forward = [columns[0][0], columns[1][0], columns[2][0], columns[1][1], columns[2][1], columns[2][2]];
-    let [x, y, z] = [gx, gy, gz].map(|component| derivative::backward(graph, component));
-    let backward = [x[0], x[1], x[2], y[1], y[2], z[2]];
-    let cost = |graph: &Graph, hessian: [Id; 6]| {
-        let mut outputs = gradient.to_vec();
-        outputs.extend(hessian);
-        program::cost(graph, &outputs)
-    };
-    if cost(graph, forward) <= cost(graph, backward) { forward } else { backward }
-}
-
-/// Refuses declared parameters that could not be used.
+/// Checks that every declared parameter has a usable name, range and value.
 fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
     let bad = |message: String| Err(FormulaError::new(FormulaErrorKind::BadParameter, 0..0, message));
     for (index, Parameter { name, value, min, max, step, .. }) in declared.iter().enumerate() {
@@ -382,7 +274,7 @@ fn check_declared(declared: &[Parameter]) -> Result<(), FormulaError> {
     Ok(())
 }
 
-/// The unknown names, if they may all become parameters by themselves.
+/// Undeclared names, if all of them may become automatic parameters.
 fn automatic_names(
     names: &[(String, core::ops::Range<usize>)],
     declared: &[&str],
@@ -390,7 +282,7 @@ fn automatic_names(
     let unknown: Vec<&(String, core::ops::Range<usize>)> =
         names.iter().filter(|(name, _)| !declared.contains(&name.as_str())).collect();
     for (name, span) in &unknown {
-        let Some((meant, message)) = slip(name, declared) else { continue };
+        let Some((meant, message)) = likely_misspelling(name, declared) else { continue };
         return Err(FormulaError::new(FormulaErrorKind::UnknownName, span.clone(), message)
             .suggest(meant)
             .names(vec![name.clone()]));
@@ -405,9 +297,9 @@ fn automatic_names(
     Ok(list)
 }
 
-/// What `name` is probably a slip of, and the sentence that says so.
-fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
-    // `x2` is far more often a square than a parameter, and `cosx` a cosine.
+/// What was probably meant by `name`, with the message that asks so.
+fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)> {
+    // `x2` usually means a square and `cosx` a cosine; few parameters are called so.
     if let Some((axis, digit)) = name.split_at_checked(1)
         && COORDINATES.contains(&axis)
         && let Ok(exponent) = digit.parse::<u8>()
@@ -426,7 +318,7 @@ fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
             return Some((meant, message));
         }
     }
-    if let Some(meant) = parse::elsewhere(name) {
+    if let Some(meant) = parse::name_elsewhere(name) {
         let message = format!("Unknown name `{name}`: did you mean `{meant}(…)`? Or add a slider `{name}`");
         return Some((meant.to_owned(), message));
     }
@@ -438,7 +330,7 @@ fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
         .chain(Constant::ALL.map(Constant::name))
         .chain(Function::ALL.iter().map(|function| function.name()))
         .chain(declared.iter().copied());
-    // A name that only differs by a digit or an index, such as `phi0` or `r_1`, is meant to differ.
+    // A name that differs by a digit or an index, such as `phi0` or `r_1`, differs on purpose.
     let indexed = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains('_');
     let meant = parse::similar(name, words).filter(|meant| {
         let long = name.chars().count() >= 3 && meant.chars().count() >= 3;
@@ -451,13 +343,13 @@ fn slip(name: &str, declared: &[&str]) -> Option<(String, String)> {
 impl Field for FormulaField {
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         let value = &mut value[..points.len()];
-        eval::run(&self.value_program, &mut self.scratch, points, &mut eval::Values(value));
+        eval::run(&self.compiled.value_program, &mut self.scratch, points, &mut eval::Values(value));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         let mut sink =
             eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
-        eval::run(&self.gradient_program, &mut self.scratch, points, &mut sink);
+        eval::run(&self.compiled.gradient_program, &mut self.scratch, points, &mut sink);
     }
 
     fn hessians(
@@ -467,23 +359,20 @@ impl Field for FormulaField {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        self.compile_hessian();
-        let program = self.hessian_program.as_ref().expect("just compiled");
         let mut sink = eval::Hessians {
             value: &mut value[..points.len()],
             gradient: &mut gradient[..points.len()],
             hessian: &mut hessian[..points.len()],
         };
-        eval::run(program, &mut self.scratch, points, &mut sink);
+        eval::run(self.compiled.hessian_program(&self.values), &mut self.scratch, points, &mut sink);
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        scalar::jet(&self.graph, self.root, &self.values, p, &mut self.jets)
+        self.compiled.jet(&self.values, p, &mut self.jets)
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        self.compile_parts();
-        self.parts[0].first.whole([lo, hi])
+        self.compiled.parts(&self.values)[0].first.whole([lo, hi])
     }
 
     fn has_bounds(&self) -> bool {
@@ -491,18 +380,15 @@ impl Field for FormulaField {
     }
 
     fn parts(&mut self) -> usize {
-        self.compile_parts();
-        self.parts.len()
+        self.compiled.parts(&self.values).len()
     }
 
     fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        self.compile_parts();
-        self.parts[part].first.enclose(boxes, out);
+        self.compiled.parts(&self.values)[part].first.enclose(boxes, out);
     }
 
     fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        self.compile_parts();
-        match &mut self.parts[part].second {
+        match &mut self.compiled.parts(&self.values)[part].second {
             Some(program) => program.enclose_second(boxes, out),
             None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
         }

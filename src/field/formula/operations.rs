@@ -1,10 +1,10 @@
-//! The elementary operations: their values and their first two derivatives in double precision.
+//! Elementary operations, with their values and first two derivatives in double precision.
 
 /// Operations of one operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Unary {
     Neg,
-    /// Only in lowered programs; elsewhere a square is an integer power.
+    /// Only in lowered graphs; elsewhere a square is an integer power.
     Square,
     Sqrt,
     Cbrt,
@@ -38,7 +38,7 @@ pub(super) enum Binary {
     Atan2,
 }
 
-/// −1, 0 or 1; NaN for NaN.
+/// Sign −1, 0 or 1; NaN for NaN.
 pub(super) fn sign(a: f64) -> f64 {
     if a > 0.0 {
         1.0
@@ -51,7 +51,7 @@ pub(super) fn sign(a: f64) -> f64 {
     }
 }
 
-/// x^y, and NaN (not 1) if either is NaN.
+/// a^b, or NaN if either operand is NaN, where `libm::pow` may give 1.
 fn pow(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { libm::pow(a, b) }
 }
@@ -81,7 +81,7 @@ impl Unary {
         }
     }
 
-    /// Value, first and second derivative.
+    /// Value, first and second derivative at `a`.
     pub(super) fn jet(self, a: f64) -> [f64; 3] {
         let value = self.evaluate(a);
         let (first, second) = match self {
@@ -133,7 +133,7 @@ impl Binary {
             Self::Sub => a - b,
             Self::Mul => a * b,
             Self::Div => a / b,
-            // Written out, because NaN in either operand must give NaN.
+            // Unlike `f64::min` and `f64::max`, these give NaN if either operand is NaN.
             Self::Min => {
                 if a.is_nan() || a <= b {
                     a

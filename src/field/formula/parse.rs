@@ -1,4 +1,4 @@
-//! Tokens to a syntax tree, by recursive descent.
+//! Recursive-descent parser: tokens to a syntax tree.
 //!
 //! ```text
 //! equation := sum [ "=" sum ]
@@ -12,18 +12,22 @@
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::{Spanned, Token, part, tokens};
+use super::lex::{Spanned, Token, slice, tokens};
 use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
 
 /// A parsed formula and the names in it that are neither coordinates, constants nor functions.
 pub(super) struct Parsed {
     pub(super) equation: Equation,
-    /// Each name once, in order of appearance, with its first place.
+    /// Each name once, in order of appearance, with the span of its first occurrence.
     pub(super) names: Vec<(String, Range<usize>)>,
 }
 
-/// Reads `text`; `declared` are the parameters known beforehand.
+/// Parses `text`. `declared` are the names of the declared parameters.
+///
+/// # Errors
+///
+/// The first error from left to right, with the text it concerns and, where there is a good guess, a correction.
 pub(super) fn parse(text: &str, declared: &[&str]) -> Result<Parsed, FormulaError> {
     if text.len() > MAX_FORMULA_BYTES {
         let message = format!("A formula has at most {MAX_FORMULA_BYTES} bytes; this one has {}", text.len());
@@ -62,17 +66,18 @@ type Parse = Result<Expr, FormulaError>;
 
 impl Parser<'_> {
     fn peek(&self) -> &Spanned {
-        // The last token is `End`, and it is never consumed.
+        // The last token, `End`, is never consumed.
         &self.tokens[self.next.min(self.tokens.len() - 1)]
     }
 
+    /// Consumes the next token if it is `token`.
     fn take(&mut self, token: &Token) -> bool {
         let found = self.peek().token == *token && *token != Token::End;
         self.next += usize::from(found);
         found
     }
 
-    /// `parse` one level deeper, or an error at the next token.
+    /// Applies `parse` one nesting level deeper; an error at the next token beyond [`MAX_DEPTH`].
     fn deeper(&mut self, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
         if self.depth == MAX_DEPTH {
             let message = format!("Nested more than {MAX_DEPTH} levels deep");
@@ -84,6 +89,7 @@ impl Parser<'_> {
         result
     }
 
+    /// Error for the next token, which is not allowed here.
     fn unexpected(&self) -> FormulaError {
         let Spanned { token, span } = self.peek();
         if *token == Token::End {
@@ -93,7 +99,7 @@ impl Parser<'_> {
                 "Something is missing at the end",
             );
         }
-        let written = part(self.text, span);
+        let written = slice(self.text, span);
         let previous = self.next.checked_sub(1).map(|index| &self.tokens[index].token);
         let after_operand = matches!(
             previous,
@@ -137,7 +143,7 @@ impl Parser<'_> {
         self.signed(Self::signed_power, Self::power)
     }
 
-    /// A sign and `again`, or else `plain`.
+    /// Parses a sign followed by `again`, or `plain` if there is no sign.
     fn signed(&mut self, again: fn(&mut Self) -> Parse, plain: fn(&mut Self) -> Parse) -> Parse {
         let start = self.peek().span.start;
         if self.take(&Token::Minus) {
@@ -165,7 +171,7 @@ impl Parser<'_> {
                 let factor = self.power()?;
                 if after_division {
                     let span = divisor.start..factor.span.end;
-                    let (below, beside) = (part(self.text, &divisor), part(self.text, &factor.span));
+                    let (below, beside) = (slice(self.text, &divisor), slice(self.text, &factor.span));
                     let message =
                         format!("What is divided by? Write `/({below} {beside})` or `/{below}*{beside}`");
                     return Err(FormulaError::new(ErrorKind::Ambiguous, span, message)
@@ -223,7 +229,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Consumes the `)` that belongs to the `(` at `open`; its end.
+    /// Consumes the `)` that closes the `(` at `open` and returns its end.
     fn close(&mut self, open: &Range<usize>) -> Result<usize, FormulaError> {
         let end = self.peek().span.end;
         if self.take(&Token::Close) {
@@ -231,13 +237,14 @@ impl Parser<'_> {
         }
         if self.peek().token == Token::End {
             let message = format!("The bracket opened at character {} is not closed", {
-                part(self.text, &(0..open.start)).chars().count() + 1
+                slice(self.text, &(0..open.start)).chars().count() + 1
             });
             return Err(FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(")"));
         }
         Err(self.unexpected())
     }
 
+    /// Parses what begins with `name`, which has just been consumed.
     fn name(&mut self, name: String, span: Range<usize>) -> Parse {
         if let Some(axis) = COORDINATES.iter().position(|&coordinate| coordinate == name) {
             let axis = u8::try_from(axis).unwrap_or(0);
@@ -268,10 +275,10 @@ impl Parser<'_> {
         Ok(Expr { kind: Kind::Parameter(name), span })
     }
 
-    /// `function` has just been consumed, at `span`.
+    /// Parses the exponent and the arguments of `function`, whose name has just been consumed at `span`.
     fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let name = function.name();
-        // `sin^2(x)` and `sin²(x)`: the power of the value.
+        // In `sin^2(x)` and `sin²(x)` the power applies to the value.
         let mut exponent = None;
         if let Token::Superscript(value) = self.peek().token {
             exponent = Some(integer(value, self.peek().span.clone()));
@@ -331,38 +338,41 @@ impl Parser<'_> {
         })
     }
 
+    /// Error for the function `name` without brackets, with the brackets suggested around its operand.
     fn missing_brackets(&mut self, name: &str, span: Range<usize>) -> FormulaError {
         let message = format!("`{name}` needs brackets around what it is applied to");
         let error = FormulaError::new(ErrorKind::MissingBrackets, span.clone(), message);
         let starts_operand = matches!(self.peek().token, Token::Name(_) | Token::Number(_));
-        // What follows, if it is an operand, is what the brackets should hold, with what is written right behind it: `sin 2x`.
+        // The brackets should hold the operand that follows and any name written directly after it, as in `sin 2x`.
         match if starts_operand { self.deeper(Self::power) } else { Err(error.clone()) } {
             Ok(operand) => {
-                let mut held = operand.span;
-                while matches!(self.peek().token, Token::Name(_)) && self.peek().span.start == held.end {
+                let mut inside = operand.span;
+                while matches!(self.peek().token, Token::Name(_)) && self.peek().span.start == inside.end {
                     match self.deeper(Self::power) {
-                        Ok(factor) => held.end = factor.span.end,
+                        Ok(factor) => inside.end = factor.span.end,
                         Err(_) => break,
                     }
                 }
-                let inner = part(self.text, &held);
-                FormulaError { span: span.start..held.end, ..error }.suggest(format!("{name}({inner})"))
+                let inner = slice(self.text, &inside);
+                FormulaError { span: span.start..inside.end, ..error }.suggest(format!("{name}({inner})"))
             }
             Err(_) => error.suggest(format!("{name}(…)")),
         }
     }
 
+    /// Function that was probably meant by `name`.
     fn similar(&self, name: &str) -> Option<&'static str> {
-        elsewhere(name).or_else(|| similar(name, Function::ALL.iter().map(|function| function.name())))
+        name_elsewhere(name).or_else(|| similar(name, Function::ALL.iter().map(|function| function.name())))
     }
 }
 
+/// Tree of an integer; a negative one is a negated number.
 fn integer(value: i32, span: Range<usize>) -> Expr {
     let magnitude = Expr { kind: Kind::Number(f64::from(value).abs()), span: span.clone() };
     if value < 0 { Expr { kind: Kind::Negated(Box::new(magnitude)), span } } else { magnitude }
 }
 
-/// The only item, or a list node over all of them.
+/// The only item, or a `list` node of several.
 fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> Kind) -> Expr {
     if items.len() == 1
         && let Some((_, only)) = items.pop()
@@ -374,8 +384,8 @@ fn flatten<T>(mut items: Vec<(T, Expr)>, list: fn(Vec<(T, Expr)>) -> Kind) -> Ex
     Expr { kind: list(items), span: start..end }
 }
 
-/// The function that goes by `name` in other languages and books.
-pub(super) fn elsewhere(name: &str) -> Option<&'static str> {
+/// Function that is called `name` in other languages and books.
+pub(super) fn name_elsewhere(name: &str) -> Option<&'static str> {
     Some(match name {
         "log" => "ln",
         "lg" => "log10",
@@ -387,25 +397,26 @@ pub(super) fn elsewhere(name: &str) -> Option<&'static str> {
     })
 }
 
-/// The word of `known` that `name` is probably a slip of, if any: another case, or one edit away (two for a long
-/// word).
+/// Word of `known` that `name` is probably a misspelling of: one that differs in case only, or by one edit (two for a
+/// long name). Ties go to the word with the same first letter.
 pub(super) fn similar<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     let allowed = if length > 5 { 2 } else { 1 };
     known
         .filter_map(|word| {
-            let distance = if word.eq_ignore_ascii_case(name) { 0 } else { edits(name, word) };
+            let distance = if word.eq_ignore_ascii_case(name) { 0 } else { edit_distance(name, word) };
             let close = distance == 0 || (length >= 2 && word.len() >= 2 && distance <= allowed);
-            // Slips rarely hit the first letter.
-            let start = word.chars().next() != name.chars().next();
-            (close && word != name).then_some((distance, start, word))
+            // Misspellings rarely concern the first letter.
+            let other_start = word.chars().next() != name.chars().next();
+            (close && word != name).then_some((distance, other_start, word))
         })
-        .min_by_key(|&(distance, start, _)| (distance, start))
+        .min_by_key(|&(distance, other_start, _)| (distance, other_start))
         .map(|(_, _, word)| word)
 }
 
-/// Edit distance: insertions, deletions, substitutions and swaps of neighbours.
-fn edits(a: &str, b: &str) -> usize {
+/// Edit distance (optimal string alignment): insertions, deletions, substitutions and swaps of adjacent characters.
+/// Lengths that differ by more than two give `usize::MAX`.
+fn edit_distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().collect();
     let b: Vec<char> = b.chars().collect();
     if a.len().abs_diff(b.len()) > 2 {

@@ -1,17 +1,19 @@
-//! The same surface with every factor once.
+//! Reduction of an equation to one of the same surface without multiple factors.
 //!
-//! Where f is a power u^n, or a product that holds one, its gradient vanishes on the surface u = 0: there is no normal, and
-//! |f|/|∇f| is no distance. The zeros of u are the same, and it has a gradient there. So is a root or an absolute value, whose
-//! slope jumps or is infinite at 0, no worse than what it is taken of.
+//! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0. There is no normal, and
+//! |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute values are
+//! replaced by their arguments too, since their slope at 0 is infinite or jumps.
 
 use super::ast::{Equation, Expr, Factor, Function, Kind, Sign};
 use super::build::build;
 use super::graph::Graph;
 
-/// The equation of the same surface without powers of factors and without repeated factors; none if it has none of them.
+/// Equation of the same surface without powers of factors and without repeated factors, or `None` if there are none.
+///
+/// An equation with two sides other than zero is not a product and is left alone.
 pub(super) fn without_powers(equation: &Equation) -> Option<Equation> {
     let is_zero = |side: &Expr| constant(side) == Some(0.0);
-    let simple = match &equation.right {
+    let simplified = match &equation.right {
         None => Equation { left: reduced(&equation.left, true), right: None },
         Some(right) if is_zero(right) => {
             Equation { left: reduced(&equation.left, true), right: equation.right.clone() }
@@ -21,90 +23,91 @@ pub(super) fn without_powers(equation: &Equation) -> Option<Equation> {
         }
         Some(_) => return None,
     };
-    (simple != *equation).then_some(simple)
+    (simplified != *equation).then_some(simplified)
 }
 
-/// The expression without powers of factors. Roots that are not defined everywhere go only where the expression is `alone`: in
-/// a product they say where the zeros of the other factors count.
-fn reduced(expr: &Expr, alone: bool) -> Expr {
+/// Expression without powers of factors. A root that is not defined everywhere is removed only if the expression is the
+/// `sole` varying factor: in a product, its domain decides which zeros of the other factors count.
+fn reduced(expr: &Expr, sole: bool) -> Expr {
     if !varies(expr) {
         return expr.clone();
     }
     let with = |kind: Kind| Expr { kind, span: expr.span.clone() };
     match &expr.kind {
-        Kind::Negated(inner) => with(Kind::Negated(Box::new(reduced(inner, alone)))),
+        Kind::Negated(inner) => with(Kind::Negated(Box::new(reduced(inner, sole)))),
         Kind::Power(base, exponent) => {
             let Some(n) = constant(exponent).filter(|&n| n > 0.0) else { return expr.clone() };
             let is_root = n.fract() != 0.0;
-            if is_root && !alone {
+            if is_root && !sole {
                 return expr.clone();
             }
-            let base = reduced(base, alone);
+            let base = reduced(base, sole);
             let Kind::Product(factors) = base.kind else { return base };
             if is_root && factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) {
                 return expr.clone();
             }
-            // The order of a pole stays, and with it whether f has the same sign on both sides.
+            // The order of a pole is kept, because it decides whether f changes its sign there.
             let factors = factors.into_iter().map(|(relation, factor)| match relation {
                 Factor::Times => (relation, factor),
                 Factor::Over => (relation, with(Kind::Power(Box::new(factor), exponent.clone()))),
             });
             with(Kind::Product(factors.collect()))
         }
-        Kind::Call(Function::Sqrt, arguments) if alone => reduced(&arguments[0], true),
-        Kind::Call(Function::Cbrt | Function::Abs, arguments) => reduced(&arguments[0], alone),
-        // A pole could be where a factor is zero: then the order of the zero counts.
+        Kind::Call(Function::Sqrt, arguments) if sole => reduced(&arguments[0], true),
+        Kind::Call(Function::Cbrt | Function::Abs, arguments) => reduced(&arguments[0], sole),
+        // Without poles only: where a pole meets a zero, the order of the zero matters.
         Kind::Product(factors) if !factors.iter().any(|(relation, factor)| is_pole(*relation, factor)) => {
             let varying = factors.iter().filter(|(_, factor)| varies(factor)).count();
-            product(factors, alone && varying == 1, with)
+            product(factors, sole && varying == 1, with)
         }
         _ => expr.clone(),
     }
 }
 
-/// Whether a factor may be a divisor that comes to zero.
+/// Whether the factor is a divisor that may vanish.
 fn is_pole(relation: Factor, factor: &Expr) -> bool {
-    relation == Factor::Over && varies(factor) && least(factor) != Some(Least::Positive)
+    relation == Factor::Over && varies(factor) && lower_bound(factor) != Some(LowerBound::Positive)
 }
 
-/// What an expression is never below.
+/// Lower bound of an expression.
 #[derive(Clone, Copy, PartialEq)]
-enum Least {
+enum LowerBound {
     /// At least 0.
     Zero,
     /// More than 0.
     Positive,
 }
 
-/// What the expression is never below, as far as its form tells.
-fn least(expr: &Expr) -> Option<Least> {
+/// Lower bound of the expression, as far as its form shows one.
+fn lower_bound(expr: &Expr) -> Option<LowerBound> {
     if let Some(value) = constant(expr) {
         return match value {
-            value if value > 0.0 => Some(Least::Positive),
-            0.0 => Some(Least::Zero),
+            value if value > 0.0 => Some(LowerBound::Positive),
+            0.0 => Some(LowerBound::Zero),
             _ => None,
         };
     }
-    let or_zero = |least: Option<Least>| Some(least.unwrap_or(Least::Zero));
+    let or_zero = |bound: Option<LowerBound>| Some(bound.unwrap_or(LowerBound::Zero));
     match &expr.kind {
         Kind::Sum(terms) => {
-            terms.iter().try_fold(Least::Zero, |sum, (sign, term)| match (sign, least(term)?) {
+            terms.iter().try_fold(LowerBound::Zero, |sum, (sign, term)| match (sign, lower_bound(term)?) {
                 (Sign::Minus, _) => None,
-                (Sign::Plus, Least::Positive) => Some(Least::Positive),
-                (Sign::Plus, Least::Zero) => Some(sum),
+                (Sign::Plus, LowerBound::Positive) => Some(LowerBound::Positive),
+                (Sign::Plus, LowerBound::Zero) => Some(sum),
             })
         }
         Kind::Power(base, exponent) => match constant(exponent) {
-            Some(n) if n > 0.0 && n % 2.0 == 0.0 => or_zero(least(base)),
-            _ => least(base),
+            Some(n) if n > 0.0 && n % 2.0 == 0.0 => or_zero(lower_bound(base)),
+            _ => lower_bound(base),
         },
-        Kind::Call(Function::Exp, _) => Some(Least::Positive),
-        Kind::Call(Function::Abs | Function::Sqrt, arguments) => or_zero(least(&arguments[0])),
+        Kind::Call(Function::Exp, _) => Some(LowerBound::Positive),
+        Kind::Call(Function::Abs | Function::Sqrt, arguments) => or_zero(lower_bound(&arguments[0])),
         _ => None,
     }
 }
 
-fn product(factors: &[(Factor, Expr)], alone: bool, with: impl Fn(Kind) -> Expr) -> Expr {
+/// Product of the reduced `factors`, in which a repeated varying factor stands once.
+fn product(factors: &[(Factor, Expr)], sole: bool, with: impl Fn(Kind) -> Expr) -> Expr {
     let mut kept: Vec<(Factor, Expr)> = Vec::new();
     let mut add = |relation: Factor, factor: Expr| {
         let is_repeated =
@@ -115,7 +118,7 @@ fn product(factors: &[(Factor, Expr)], alone: bool, with: impl Fn(Kind) -> Expr)
     };
     for (relation, factor) in factors {
         match relation {
-            Factor::Times => match reduced(factor, alone).kind {
+            Factor::Times => match reduced(factor, sole).kind {
                 Kind::Product(inner) => {
                     inner.into_iter().for_each(|(relation, factor)| add(relation, factor));
                 }
@@ -135,7 +138,7 @@ fn varies(expr: &Expr) -> bool {
     any(expr, &|kind| matches!(kind, Kind::Coordinate(_)))
 }
 
-/// The value of an expression without coordinates and parameters.
+/// Value of an expression without coordinates and parameters.
 fn constant(expr: &Expr) -> Option<f64> {
     if any(expr, &|kind| matches!(kind, Kind::Coordinate(_) | Kind::Parameter(_))) {
         return None;
@@ -145,7 +148,7 @@ fn constant(expr: &Expr) -> Option<f64> {
     graph.as_constant(root)
 }
 
-/// Whether any part of the expression `is` so.
+/// Whether `is` holds for any node of the expression.
 fn any(expr: &Expr, is: &impl Fn(&Kind) -> bool) -> bool {
     is(&expr.kind)
         || match &expr.kind {

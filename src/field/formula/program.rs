@@ -1,17 +1,17 @@
-//! A graph compiled for batches: a straight line of instructions over a small file of registers.
+//! Compiler from a graph to a straight-line program over a small register file, for batches of points.
 //!
-//! What depends on no coordinate is a *uniform*: it is computed once, in double precision, whenever a parameter
-//! changes, and enters the instructions as a broadcast operand. What is left is lowered (integer powers to products,
-//! smooth minima to their polynomial), a product that is used once is fused with the sum it goes to (two roundings,
-//! one pass over memory), and registers are reused as soon as their value is dead, so that a block of points stays in
-//! the first-level cache.
+//! A node that depends on no coordinate is a *uniform*. It is computed once, in double precision, whenever a parameter
+//! changes, and enters the instructions as a broadcast operand. The varying nodes are lowered: integer powers become
+//! products, smooth minima their polynomial. A product with a single use is fused with the sum that uses it (still two
+//! roundings, but one pass over memory). A register is reused as soon as its value is dead, so that a block of points
+//! stays in the first-level cache.
 
 use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
 use super::operations::{Binary, Unary};
 use crate::math::sort_few;
 use core::cmp::Reverse;
 
-/// What an instruction does. `R` operands are registers, `U` operands are uniforms.
+/// Operation of an instruction. R\[·\] is the value of a register, U\[·\] that of a uniform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Op {
     /// U[a]
@@ -20,9 +20,9 @@ pub(super) enum Op {
     Unary(Unary),
     /// 1 / R[a]
     Reciprocal,
-    /// sin R[a]; the register b receives cos R[a].
+    /// sin R[a]; register b receives cos R[a]
     SineCosine,
-    /// The second result of the instruction before; gone once registers are allocated.
+    /// Second result of the previous instruction; removed when registers are allocated
     Second,
     /// R[a] ∘ R[b]
     Binary(Binary),
@@ -50,7 +50,7 @@ pub(super) enum Op {
     SquareAdd,
 }
 
-/// One instruction; unused operands are 0. The result may overwrite an operand.
+/// An instruction. Unused operands are 0, and the result may overwrite an operand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instruction {
     pub(super) op: Op,
@@ -60,9 +60,9 @@ pub(super) struct Instruction {
     pub(super) c: u32,
 }
 
-/// Where a result is found after a run.
+/// Location of a result after a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place {
+pub(super) enum Location {
     Register(u32),
     Uniform(u32),
 }
@@ -70,21 +70,22 @@ pub(super) enum Place {
 /// A compiled graph with any number of results.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Program {
-    /// The uniform operations, operands by their index in this list.
+    /// Uniform nodes; their operands are indices into this list.
     uniform_nodes: Vec<Node>,
     pub(super) instructions: Vec<Instruction>,
-    /// Register of each coordinate, if it is used.
+    /// Register of each coordinate that is used.
     pub(super) coordinates: [Option<u32>; 3],
-    pub(super) outputs: Vec<Place>,
+    pub(super) outputs: Vec<Location>,
+    /// Number of registers.
     pub(super) registers: usize,
-    /// The uniforms' present values.
+    /// Current values of the uniforms.
     pub(super) uniforms: Vec<f32>,
-    /// Scratch of `set_parameters`.
+    /// Scratch space of [`Program::set_parameters`].
     doubles: Vec<f64>,
 }
 
 impl Program {
-    /// The program that computes `outputs` of `graph`.
+    /// Compiles the nodes `outputs` of `graph`. The uniforms have no values until [`Program::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let mut low = graph.clone();
         let outputs = expand_smooth_minima(&mut low, outputs);
@@ -92,8 +93,8 @@ impl Program {
         Compiler::new(&low, &outputs).compile()
     }
 
-    /// Recomputes the uniforms.
-    #[expect(clippy::cast_possible_truncation, reason = "the rounding to single precision is the point")]
+    /// Recomputes the uniforms from the values of the parameters.
+    #[expect(clippy::cast_possible_truncation, reason = "instructions take single precision")]
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.doubles.clear();
         self.uniforms.clear();
@@ -104,14 +105,14 @@ impl Program {
         }
     }
 
-    /// Operations of the program: the figure that [`MAX_OPERATIONS`](super::MAX_OPERATIONS) bounds.
+    /// Number of operations, which [`MAX_OPERATIONS`](super::MAX_OPERATIONS) bounds.
     pub(super) fn operations(&self) -> usize {
         self.instructions.len() + self.uniform_nodes.len()
     }
 }
 
-/// An estimate of what a block of points costs for the given outputs, in units of one addition: for choosing
-/// between two ways of differentiating.
+/// Estimated cost of computing `outputs` for a point, in units of one addition. It serves to choose between forward and
+/// backward differentiation.
 pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
     let live = graph.live(outputs);
     let mut total: u32 = 0;
@@ -135,7 +136,8 @@ pub(super) fn cost(graph: &Graph, outputs: &[Id]) -> u32 {
     total
 }
 
-/// Replaces every smooth minimum by min(a, b) − k (1 − |u|)³/6, u = (a − b)/k cut to −1 … 1; the new outputs.
+/// Replaces every smooth minimum by min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. Returns the new
+/// outputs.
 fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
     let live = graph.live(outputs);
     let mut map: Vec<Id> = (0..u32::try_from(live.len()).unwrap_or(u32::MAX)).collect();
@@ -167,7 +169,7 @@ fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
     outputs.iter().map(|&output| map[output as usize]).collect()
 }
 
-/// A copy of what `outputs` need in which varying powers are products, squares and reciprocals (`Power(_, -1)`).
+/// Graph of `outputs` in which varying integer powers are products, squares and reciprocals (`Power(_, -1)`).
 fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
     /// x^n for n ≥ 1 by squaring: x^(2m) = (x^m)², x^(2m+1) = x · x^(2m).
     fn product(low: &mut Graph, x: Id, n: u32) -> Id {
@@ -197,21 +199,22 @@ fn expand_powers(graph: &Graph, outputs: &[Id]) -> (Graph, Vec<Id>) {
     (low, outputs.iter().map(|&output| map[output as usize]).collect())
 }
 
-/// Works on a lowered graph.
+/// Compiler of a lowered graph.
 struct Compiler<'a> {
     graph: &'a Graph,
     outputs: &'a [Id],
     program: Program,
     /// Index in `uniform_nodes` of each uniform node that is needed.
     uniform: Vec<Option<u32>>,
-    /// Instructions over virtual registers, in order; the virtual register of an instruction is its place here.
+    /// Instructions over virtual registers. The virtual register of an instruction is its index.
     code: Vec<Instruction>,
     /// Virtual register of each varying node.
     register: Vec<Option<u32>>,
+    /// Number of uses of each node.
     uses: Vec<u32>,
-    /// How many registers each node takes to compute if nothing is shared (Sethi & Ullman, "The Generation of
-    /// Optimal Code for Arithmetic Expressions", 1970).
-    need: Vec<u32>,
+    /// Number of registers that it takes to compute each node if nothing is shared (R. Sethi & J. D. Ullman, "The
+    /// Generation of Optimal Code for Arithmetic Expressions", 1970).
+    registers_needed: Vec<u32>,
 }
 
 impl<'a> Compiler<'a> {
@@ -226,17 +229,18 @@ impl<'a> Compiler<'a> {
         for &output in outputs {
             uses[output as usize] += 1;
         }
-        let mut need: Vec<u32> = Vec::with_capacity(graph.len());
+        let mut registers_needed: Vec<u32> = Vec::with_capacity(graph.len());
         for node in graph.nodes() {
             let mut operands = Vec::new();
             node.operands(|operand| {
                 if !graph.is_uniform(operand) {
-                    operands.push(need[operand as usize]);
+                    operands.push(registers_needed[operand as usize]);
                 }
             });
             sort_few(&mut operands, |a, b| a > b);
-            let held = (0..).zip(&operands).map(|(before, own)| before + own).max();
-            need.push(held.unwrap_or(0).max(1));
+            // The results of the operands computed before occupy a register each.
+            let needed = (0..).zip(&operands).map(|(before, own)| before + own).max();
+            registers_needed.push(needed.unwrap_or(0).max(1));
         }
         Self {
             graph,
@@ -246,31 +250,31 @@ impl<'a> Compiler<'a> {
             code: Vec::new(),
             register: vec![None; graph.len()],
             uses,
-            need,
+            registers_needed,
         }
     }
 
     fn compile(mut self) -> Program {
         for axis in 0..3 {
-            // Coordinates take the first virtual registers, used or not.
+            // The coordinates have the first three virtual registers, used or not.
             self.push(Op::Splat, [axis, 0, 0]);
         }
         for index in 0..self.outputs.len() {
             self.schedule(self.outputs[index]);
         }
         for &output in self.outputs {
-            let place = if self.graph.is_uniform(output) {
-                Place::Uniform(self.uniform(output))
+            let location = if self.graph.is_uniform(output) {
+                Location::Uniform(self.uniform(output))
             } else {
-                Place::Register(self.register[output as usize].expect("outputs are scheduled"))
+                Location::Register(self.register[output as usize].expect("outputs are scheduled"))
             };
-            self.program.outputs.push(place);
+            self.program.outputs.push(location);
         }
         self.allocate();
         self.program
     }
 
-    /// Index of a uniform node in the uniform list, appended with its operands if it is new.
+    /// Index of a uniform node in `uniform_nodes`, to which it is appended with its operands if it is new.
     fn uniform(&mut self, id: Id) -> u32 {
         let mut stack = vec![id];
         while let Some(&top) = stack.last() {
@@ -294,7 +298,7 @@ impl<'a> Compiler<'a> {
         self.uniform[id as usize].unwrap_or(0)
     }
 
-    /// Emits `root` and what it needs, operands first.
+    /// Emits the instructions of `root` and of its operands, operands first.
     fn schedule(&mut self, root: Id) {
         if self.graph.is_uniform(root) {
             return;
@@ -312,10 +316,11 @@ impl<'a> Compiler<'a> {
                 }
             };
             self.inputs(top, push);
-            // The one that needs most registers comes first, that is, to the top of the stack: what is computed
-            // before it would have to be kept meanwhile.
+            // The operand that needs most registers is computed first, from the top of the stack: the result of any
+            // other would occupy a register meanwhile.
             sort_few(&mut stack[before..], |&a, &b| {
-                (self.need[a as usize], Reverse(a)) < (self.need[b as usize], Reverse(b))
+                (self.registers_needed[a as usize], Reverse(a))
+                    < (self.registers_needed[b as usize], Reverse(b))
             });
             if stack.len() == before {
                 self.register[top as usize] = Some(self.emit(top));
@@ -326,7 +331,7 @@ impl<'a> Compiler<'a> {
 
     /// Calls `visit` with the nodes that the instruction of `id` reads.
     fn inputs(&self, id: Id, mut visit: impl FnMut(Id)) {
-        // A product that will be fused is not computed by itself: its factors are needed instead.
+        // A fused product is not computed by itself, so its factors take its place.
         match self.fusion(id) {
             Some((product, other)) => {
                 visit(other);
@@ -336,7 +341,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The product to fuse into the sum or difference `id`, and the other operand.
+    /// Product that is fused into the sum or difference `id`, with the other operand.
     fn fusion(&self, id: Id) -> Option<(Id, Id)> {
         let Node::Binary(Binary::Add | Binary::Sub, a, b) = self.graph.node(id) else { return None };
         let subtraction = matches!(self.graph.node(id), Node::Binary(Binary::Sub, _, _));
@@ -370,7 +375,7 @@ impl<'a> Compiler<'a> {
         out
     }
 
-    /// The virtual register of an operand; a uniform one is broadcast into a register.
+    /// Virtual register of an operand. A uniform operand is broadcast into a register.
     fn operand(&mut self, id: Id) -> u32 {
         if self.graph.is_uniform(id) {
             let uniform = self.uniform(id);
@@ -380,7 +385,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// The instruction of a varying node; its virtual register.
+    /// Emits the instruction of a varying node and returns its virtual register.
     fn emit(&mut self, id: Id) -> u32 {
         if let Some((product, other)) = self.fusion(id) {
             return self.emit_fused(id, product, other);
@@ -408,7 +413,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Sine and cosine of one angle share the reduction of the angle.
+    /// Emits a sine or cosine. If the graph has both of one angle, one instruction computes them: they share the argument
+    /// reduction.
     fn emit_sine_or_cosine(&mut self, operation: Unary, a: Id) -> u32 {
         let angle = self.operand(a);
         let other = if operation == Unary::Sin { Unary::Cos } else { Unary::Sin };
@@ -484,7 +490,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Virtual to real registers: a register is free again after the last use of its value.
+    /// Assigns real registers to virtual ones. A register is free after the last use of its value.
     fn allocate(&mut self) {
         const NEVER: usize = usize::MAX;
         let mut last_use = vec![0; self.code.len()];
@@ -494,7 +500,7 @@ impl<'a> Compiler<'a> {
             }
         }
         for output in &self.program.outputs {
-            if let Place::Register(register) = *output {
+            if let Location::Register(register) = *output {
                 last_use[register as usize] = NEVER;
             }
         }
@@ -502,7 +508,6 @@ impl<'a> Compiler<'a> {
         let mut free: Vec<u32> = Vec::new();
         let mut count = 0;
         let mut fresh = |free: &mut Vec<u32>| {
-            // The lowest that is free.
             let lowest = (0..free.len()).min_by_key(|&at| free[at]);
             lowest.map(|at| free.swap_remove(at)).unwrap_or_else(|| {
                 count += 1;
@@ -533,7 +538,7 @@ impl<'a> Compiler<'a> {
             }
         }
         for output in &mut self.program.outputs {
-            if let Place::Register(register) = output {
+            if let Location::Register(register) = output {
                 *register = real[*register as usize];
             }
         }
@@ -545,7 +550,7 @@ fn index(length: usize) -> u32 {
     u32::try_from(length).expect("programs are far shorter than 2^32")
 }
 
-/// Which of the operands a, b and c are registers.
+/// Whether each of the operands a, b and c is a register.
 fn register_operands(op: Op) -> [bool; 3] {
     match op {
         Op::Splat | Op::Second => [false; 3],
@@ -561,13 +566,14 @@ fn register_operands(op: Op) -> [bool; 3] {
     }
 }
 
+/// Register operands of the instruction.
 fn registers(instruction: &Instruction) -> impl Iterator<Item = u32> {
     let operands = [instruction.a, instruction.b, instruction.c];
     let used = register_operands(instruction.op);
     (0..3).filter(move |&k| used[k]).map(move |k| operands[k])
 }
 
-/// The instruction with its register operands replaced through `real`.
+/// Instruction with its register operands replaced through `real`.
 fn substituted(instruction: &Instruction, real: &[u32]) -> Instruction {
     let [a, b, c] = register_operands(instruction.op);
     let replaced = |used: bool, operand: u32| if used { real[operand as usize] } else { operand };

@@ -1,5 +1,6 @@
-//! Second-order jets in double precision, carried forward through the graph: a derivation of the derivatives that
-//! shares nothing with the transformed graphs, and so can check them.
+//! Second-order jets in double precision, carried forward through the graph of f.
+//!
+//! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check one by the other.
 
 use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH, power, smin};
 use super::operations::{Binary, Unary};
@@ -7,7 +8,7 @@ use crate::field::Jet;
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Value, gradient, and Hessian in the order xx, xy, xz, yy, yz, zz.
+/// Second-order jet: value, gradient, and Hessian in the order xx, xy, xz, yy, yz, zz.
 #[derive(Clone, Copy, Debug, Default)]
 struct Order2 {
     value: f64,
@@ -15,7 +16,7 @@ struct Order2 {
     second: [f64; 6],
 }
 
-/// Axes of the entries of a Hessian.
+/// Axes of the entries of the Hessian.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 impl Order2 {
@@ -23,7 +24,8 @@ impl Order2 {
         Self { value, ..Self::default() }
     }
 
-    /// f(self) by its value and derivatives. Axes outside `axes` stay 0 even where a derivative is infinite.
+    /// Jet of f(self) by the chain rule, where f has the given value and first two derivatives. Derivatives along axes
+    /// outside `axes` stay 0 even where f has an infinite derivative.
     fn apply(&self, [value, d1, d2]: [f64; 3], axes: u8) -> Self {
         let has = |k: usize| axes >> k & 1 == 1;
         let mut out = Self::uniform(value);
@@ -73,10 +75,10 @@ impl Order2 {
     }
 }
 
-/// Scratch for [`jet`].
+/// Scratch space of [`jet`]: the jet of every node.
 pub(super) type JetScratch = Vec<JetCell>;
 
-/// One node's jet.
+/// Jet of a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct JetCell(Order2);
 
@@ -104,7 +106,7 @@ pub(super) fn jet(
     Jet { value, gradient: DVec3::from_array(first), hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
 }
 
-/// The jet of a node that depends on `axes`; `operand` gives an operand's jet and axes.
+/// Jet of a node that depends on `axes`. `operand` gives the jet of an operand and the axes that it depends on.
 fn order2(node: Node, point: [f64; 3], axes: u8, operand: impl Fn(Id) -> (Order2, u8)) -> Order2 {
     match node {
         Node::Constant(_) | Node::Parameter(_) => Order2::default(),
@@ -120,7 +122,7 @@ fn order2(node: Node, point: [f64; 3], axes: u8, operand: impl Fn(Id) -> (Order2
         Node::Power(a, n) => {
             let (a, _) = operand(a);
             let degree = f64::from(n);
-            // n − 2 cannot wrap: exponents come from whole numbers of that size, far from the end of the range.
+            // Saturation concerns exponents at the lower end of the range of i32 only.
             let d1 = degree * power(a.value, n.saturating_sub(1));
             let d2 = degree * (degree - 1.0) * power(a.value, n.saturating_sub(2));
             a.apply([power(a.value, n), d1, d2], axes)
@@ -168,8 +170,7 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
             b.mul(&logarithm).apply([value; 3], axes)
         }
         Binary::Atan2 => {
-            // The angle of (b, a) has the derivatives of atan(a/b), or of −atan(b/a) where that is the better
-            // conditioned one.
+            // The derivatives are those of atan(a/b), or of −atan(b/a) where that is better conditioned.
             let angle = operation.evaluate(a.value, b.value);
             let jet = if a.value.abs() <= b.value.abs() {
                 let ratio = a.mul(&b.reciprocal(of_b));
@@ -183,7 +184,8 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
     }
 }
 
-/// Where |a − b| < k: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k; else the lesser one.
+/// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the smaller
+/// of a and b.
 fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
     let value = smin(a.value, b.value, k.value);
     let k = if k.value > SMIN_LEAST_WIDTH { *k } else { Order2::uniform(SMIN_LEAST_WIDTH) };
@@ -196,7 +198,7 @@ fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
         return Order2 { value, ..*a };
     }
     let size = u.value.abs();
-    let bend = u.apply(
+    let blend = u.apply(
         [
             1.0 / 6.0 + 0.5 * u.value * u.value - size * size * size / 6.0,
             u.value - 0.5 * u.value * size,
@@ -204,5 +206,5 @@ fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
         ],
         axes,
     );
-    Order2 { value, ..a.add(b).scale(0.5).add(&k.mul(&bend).scale(-1.0)) }
+    Order2 { value, ..a.add(b).scale(0.5).add(&k.mul(&blend).scale(-1.0)) }
 }

@@ -1,4 +1,4 @@
-//! Claims about the compiled form.
+//! Tests of the compiled form.
 
 use super::graph::Graph;
 use super::operations::{Binary, Unary};
@@ -18,23 +18,23 @@ fn operations(program: &Program) -> Vec<Op> {
 fn equal_operations_are_computed_once() {
     let field = compiled("exp(x y + 1) + exp(1 + y x)^2 + z exp(y x + 1)");
     let exponentials =
-        operations(&field.value_program).iter().filter(|op| **op == Op::Unary(Unary::Exp)).count();
+        operations(&field.compiled.value_program).iter().filter(|op| **op == Op::Unary(Unary::Exp)).count();
     assert_eq!(exponentials, 1);
 }
 
 #[test]
 fn constants_and_parameters_cost_nothing_per_point() {
     let field = compiled("x + 2*3^2 - sin(1) + a^2 exp(b)");
-    assert_eq!(operations(&field.value_program), [Op::Uniform(Binary::Add)]);
+    assert_eq!(operations(&field.compiled.value_program), [Op::Uniform(Binary::Add)]);
     let field = compiled("3(2(a x)) + 1 + 2");
-    assert_eq!(operations(&field.value_program), [Op::ScaleAddUniform]);
+    assert_eq!(operations(&field.compiled.value_program), [Op::ScaleAddUniform]);
 }
 
 #[test]
 fn integer_powers_are_products() {
     for (text, most) in [("x^15", 6), ("x^-15", 7), ("x^64", 6), ("x^6 + x^5", 6)] {
         let field = compiled(text);
-        let operations = operations(&field.value_program);
+        let operations = operations(&field.compiled.value_program);
         assert!(operations.len() <= most, "{text}: {operations:?}");
         assert!(!operations.contains(&Op::Binary(Binary::Pow)), "{text}: {operations:?}");
         assert!(!operations.contains(&Op::Uniform(Binary::Pow)), "{text}: {operations:?}");
@@ -45,16 +45,16 @@ fn integer_powers_are_products() {
 fn derivatives_hold_no_dead_operations() {
     // One sum for the value; the gradient is constant.
     let field = compiled("x + y + z");
-    assert_eq!(operations(&field.gradient_program).len(), 2);
+    assert_eq!(operations(&field.compiled.gradient_program).len(), 2);
     // The gradient of a sphere is three products by 2, and no product by a known zero or one.
     let field = compiled("x^2 + y^2 + z^2 - 1");
-    assert_eq!(operations(&field.gradient_program).len(), 7);
+    assert_eq!(operations(&field.compiled.gradient_program).len(), 7);
 }
 
 #[test]
 fn sine_and_cosine_of_one_angle_are_one_operation() {
     let field = gallery::find("gyroid").map(gallery::Surface::field).expect("the gallery has a gyroid");
-    let operations = operations(&field.gradient_program);
+    let operations = operations(&field.compiled.gradient_program);
     assert_eq!(operations.iter().filter(|op| **op == Op::SineCosine).count(), 3);
     assert!(!operations.contains(&Op::Unary(Unary::Sin)) && !operations.contains(&Op::Unary(Unary::Cos)));
 }
@@ -63,7 +63,7 @@ fn sine_and_cosine_of_one_angle_are_one_operation() {
 fn a_long_sum_needs_few_registers() {
     let terms: Vec<String> = (1..200).map(|k| format!("exp({k}x y)")).collect();
     let field = compiled(&terms.join("+"));
-    assert!(field.value_program.registers <= 6, "{}", field.value_program.registers);
+    assert!(field.compiled.value_program.registers <= 6, "{}", field.compiled.value_program.registers);
 }
 
 #[test]

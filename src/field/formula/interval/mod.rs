@@ -1,15 +1,16 @@
-//! Interval arithmetic over the graph: bounds of f and of its gradient that hold at every point of a box, many boxes at a
-//! time.
+//! Interval arithmetic over the graph: bounds of f and ∇f over boxes, many boxes at a time.
 //!
-//! Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by a unit in the last place or more where IEEE
-//! arithmetic rounds correctly, by a few where the value comes from a mathematical library whose error is below one or two.
-//! The bounds of the gradient are those of the derivative expressions. At a kink (abs, min, max) they hold every slope
-//! between the one-sided ones, Clarke's generalised gradient, so that the mean value theorem holds there too.
+//! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by at
+//! least one unit in the last place where IEEE arithmetic rounds correctly, by several where the value comes from a
+//! mathematical library with an error of up to two. The bounds of the gradient are those of the derivative expressions.
+//! At a kink (abs, min, max) they contain every slope between the one-sided ones (F. H. Clarke's generalised gradient,
+//! 1975), so that the mean value theorem holds there too.
 
 mod flags;
 mod range;
 mod rows;
 
+use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use crate::field::{Enclosure, Interval};
@@ -17,10 +18,10 @@ use glam::DVec3;
 use range::Range;
 use rows::{BOXES, Row};
 
-/// What a step does with its operands a, b and c, which are rows unless said otherwise.
+/// Operation of a step. Its operands a, b and c are rows unless stated otherwise.
 #[derive(Clone, Copy, Debug)]
 enum Op {
-    /// Uniform a, over every box.
+    /// Uniform a over every box.
     Fill,
     Unary(Unary),
     Power(i32),
@@ -39,12 +40,12 @@ struct Step {
     operands: [u32; 3],
 }
 
-/// A graph compiled for boxes: f and its gradient.
+/// A graph compiled for boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BoxProgram {
-    /// What depends on no coordinate; operands by their place in this list.
+    /// Nodes that depend on no coordinate; their operands are indices into this list.
     uniform_nodes: Vec<Node>,
-    /// Its present bounds: a little wider than one number where the arithmetic rounds.
+    /// Current bounds of the uniform nodes. They contain the rounding errors, so they are seldom single numbers.
     uniforms: Vec<Range>,
     steps: Vec<Step>,
     /// Rows of the results.
@@ -54,11 +55,12 @@ pub(super) struct BoxProgram {
 }
 
 impl BoxProgram {
+    /// Compiles the nodes `outputs` of `graph`. Bounds may be asked for once [`BoxProgram::set_parameters`] is called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let live = graph.live(outputs);
         let mut program = Self::default();
         let mut uniform = vec![0_u32; graph.len()];
-        // Virtual rows, one per value, to begin with.
+        // Virtual row of each node, later replaced by a real one.
         let mut row = vec![u32::MAX; graph.len()];
         let mut next = 3_u32;
         for (id, &node) in graph.nodes().iter().enumerate().filter(|(id, _)| live[*id]) {
@@ -107,7 +109,7 @@ impl BoxProgram {
         program
     }
 
-    /// The row of a node; a uniform one is broadcast into a row of its own.
+    /// Virtual row of a node. A uniform node is broadcast into a row.
     fn row_of(&mut self, graph: &Graph, id: Id, uniform: &[u32], row: &mut [u32], next: &mut u32) -> u32 {
         if graph.is_uniform(id) && row[id as usize] == u32::MAX {
             self.steps.push(Step { op: Op::Fill, out: *next, operands: [uniform[id as usize], 0, 0] });
@@ -117,7 +119,7 @@ impl BoxProgram {
         row[id as usize]
     }
 
-    /// Virtual rows to real ones: a row is free again after its last use.
+    /// Assigns real rows to virtual ones. A row is free after its last use.
     fn allocate(&mut self, count: u32) {
         let mut last = vec![0_usize; count as usize];
         for (at, step) in self.steps.iter().enumerate() {
@@ -130,7 +132,7 @@ impl BoxProgram {
         let mut free: Vec<u32> = Vec::new();
         let mut rows = 3;
         for at in 0..self.steps.len() {
-            // The result never takes the place of an operand.
+            // The result is assigned before the operands are freed, so it never overwrites one of them.
             let out = self.steps[at].out as usize;
             real[out] = free.pop().unwrap_or_else(|| {
                 rows += 1;
@@ -159,7 +161,7 @@ impl BoxProgram {
         self.rows = vec![Row::ZERO; rows as usize];
     }
 
-    /// Recomputes the bounds of what depends on no coordinate.
+    /// Recomputes the bounds of the uniform nodes from the values of the parameters.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.uniforms.clear();
         for &node in &self.uniform_nodes {
@@ -182,19 +184,19 @@ impl BoxProgram {
         }
     }
 
-    /// Operations of the program.
+    /// Number of operations.
     pub(super) fn operations(&self) -> usize {
         self.steps.len()
     }
 
-    /// Hands the bounds over box `i` to `take` as (i, bounds of result `n` as a function of n).
+    /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
     fn run(&mut self, boxes: &[[DVec3; 2]], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
         for (first, boxes) in (0..).step_by(BOXES).zip(boxes.chunks(BOXES)) {
             let n = boxes.len();
             for axis in 0..3 {
                 let row = &mut self.rows[axis];
                 for k in 0..BOXES {
-                    // Beyond the last box: the last one again, so that no lane is slow.
+                    // The last box pads the row: arbitrary numbers could be slow in some lanes.
                     let [lo, hi] = boxes[k.min(n - 1)];
                     (row.lo[k], row.hi[k]) = (lo[axis].min(hi[axis]), lo[axis].max(hi[axis]));
                 }
@@ -209,13 +211,12 @@ impl BoxProgram {
         }
     }
 
-    /// Bounds of the first four results, a function and its gradient; the fifth tells where the whole field is defined and
-    /// continuous.
+    /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and continuous.
     pub(super) fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
     }
 
-    /// Bounds of the fifth result, the whole field, over one box.
+    /// Bounds of result 4, the whole field, over one box.
     pub(super) fn whole(&mut self, corners: [DVec3; 2]) -> Interval {
         let mut out = Range::exactly(f64::NAN);
         self.run(&[corners], |_, result| out = result(4));
@@ -223,7 +224,7 @@ impl BoxProgram {
         Interval { lo, hi, defined: out.flags & flags::DEFINED != 0 }
     }
 
-    /// Bounds of six results, the second derivatives.
+    /// Bounds of results 0 … 5, the second derivatives.
     pub(super) fn enclose_second(&mut self, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
         self.run(boxes, |i, result| out[i] = [0, 1, 2, 3, 4, 5].map(|output| slope(result(output))));
     }
@@ -269,7 +270,7 @@ impl BoxProgram {
 }
 
 impl Op {
-    /// Which of the operands are rows.
+    /// Whether each of the operands is a row.
     fn row_operands(self) -> [bool; 3] {
         match self {
             Self::Fill => [false; 3],
@@ -281,17 +282,19 @@ impl Op {
 }
 
 impl Step {
+    /// Operands that are rows.
     fn rows(&self) -> impl Iterator<Item = u32> {
         let (used, operands) = (self.op.row_operands(), self.operands);
         (0..3).filter(move |&k| used[k]).map(move |k| operands[k])
     }
 }
 
-/// The bounds of a derivative; where it is defined nowhere, nothing is known of it.
+/// Bounds of a derivative. Nothing is known of one that is defined nowhere in the box.
 fn slope(range: Range) -> [f64; 2] {
     if range.is_empty() { [f64::NEG_INFINITY, f64::INFINITY] } else { [range.lo, range.hi] }
 }
 
+/// Enclosure from the bounds of a function, of its gradient and of the whole field.
 fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
     if f.is_empty() || whole.is_empty() {
         return Enclosure::NOWHERE;
@@ -307,22 +310,35 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
     }
 }
 
-/// A function among whose zeros are those of the field, with what bounds it.
+/// A factor of the field, whose zeros are among those of the field, compiled for boxes.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
+    /// The factor and its gradient, with the whole field as result 4.
     pub(super) first: BoxProgram,
-    /// Without it where the second derivatives are too long.
+    /// The second derivatives of the factor; `None` if they take more than [`MAX_SECOND_OPERATIONS`].
     pub(super) second: Option<BoxProgram>,
 }
 
-/// Most operations of a program for the second derivatives.
-const MOST_SECOND: usize = 8_192;
+impl Part {
+    /// Recomputes the bounds of what depends on the parameters alone.
+    pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.first.set_parameters(parameters);
+        if let Some(program) = &mut self.second {
+            program.set_parameters(parameters);
+        }
+    }
+}
 
-/// Most factors that are looked at one by one.
-const MOST_PARTS: usize = 16;
+/// Maximum number of operations of a program for second derivatives.
+const MAX_SECOND_OPERATIONS: usize = 8_192;
 
-/// The functions whose zeros are those of `root`: of a product the factors, of a power its base, of a function that vanishes
-/// at 0 only its argument. Each is simpler than the product, and has a gradient where two of them vanish together.
+/// Maximum number of factors. A product of more is taken as one function.
+const MAX_PARTS: usize = 16;
+
+/// The functions whose zeros together are those of `root`.
+///
+/// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its
+/// argument. A factor is simpler than the product, and it has a gradient where two factors vanish together.
 pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part> {
     let mut factors = Vec::new();
     let mut open = vec![root];
@@ -348,18 +364,18 @@ pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part>
             _ => factors.push(id),
         }
     }
-    if factors.is_empty() || factors.len() > MOST_PARTS {
+    if factors.is_empty() || factors.len() > MAX_PARTS {
         factors = vec![root];
     }
     factors
         .into_iter()
         .map(|f| {
-            let [x, y, z] = if f == root { gradient } else { super::cheaper_gradient(graph, f) };
+            let [x, y, z] = if f == root { gradient } else { derivative::gradient(graph, f) };
             let first = BoxProgram::compile(graph, &[f, x, y, z, root]);
-            let second = (first.operations() <= MOST_SECOND)
-                .then(|| super::cheaper_hessian(graph, [x, y, z]))
+            let second = (first.operations() <= MAX_SECOND_OPERATIONS)
+                .then(|| derivative::hessian(graph, [x, y, z]))
                 .map(|second| BoxProgram::compile(graph, &second))
-                .filter(|second| second.operations() <= MOST_SECOND);
+                .filter(|second| second.operations() <= MAX_SECOND_OPERATIONS);
             Part { first, second }
         })
         .collect()

@@ -1,10 +1,10 @@
-//! One interval, and the operations on it that are too rare or too long for [lanes](super::rows).
+//! A single interval, with the operations that are too rare or too long for [rows](super::rows).
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use crate::field::formula::graph::{SMIN_LEAST_WIDTH, smin};
 use crate::field::formula::operations::{Binary, Unary, sign};
 
-/// Bounds of an operation's values over a box, and [what else is known of them](super::flags).
+/// Bounds of the values of an operation over a box, with its [other properties](super::flags).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
     pub(super) lo: f64,
@@ -12,56 +12,58 @@ pub(super) struct Range {
     pub(super) flags: u8,
 }
 
-/// Relative widening of a bound that comes from `libm`, whose functions err by less than two units in the last
-/// place.
+/// Relative widening of a bound that `libm` computed. Its functions err by less than two units in the last place.
 const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 
-/// Largest argument whose place in the period of tangent is trusted; beyond it nothing is known.
+/// Largest argument of tangent whose position relative to the poles is trusted. Nothing is known of larger ones.
 const TRUSTED_ANGLE: f64 = 1e9;
 
+/// The empty range.
 const NOTHING: Range = Range { lo: f64::INFINITY, hi: f64::NEG_INFINITY, flags: EMPTY };
 
-/// A lower bound of a result that IEEE arithmetic rounds to `value`: at least one unit in the last place below. Results
-/// below 2⁻¹⁰²², where products lose digits, are taken for exact. NaN (∞ − ∞) becomes −∞.
+/// Lower bound of a result that IEEE arithmetic rounded to `value`, at least one unit in the last place below it.
+///
+/// Subnormal results, which are below 2⁻¹⁰²² and have fewer digits, are taken for exact. NaN, from ∞ − ∞, becomes −∞.
 pub(super) fn down(value: f64) -> f64 {
     widened(value, -f64::EPSILON, f64::NEG_INFINITY)
 }
 
-/// An upper bound; see [`down`].
+/// Upper bound of a result; see [`down`].
 pub(super) fn up(value: f64) -> f64 {
     widened(value, f64::EPSILON, f64::INFINITY)
 }
 
-/// `value` moved by `share` of its size; `otherwise` for NaN.
+/// `value` moved by `share` of its magnitude, or `otherwise` for NaN.
 pub(super) fn widened(value: f64, share: f64, otherwise: f64) -> f64 {
     let moved = value + value.abs() * share;
     if moved.is_nan() { otherwise } else { moved }
 }
 
-/// A lower bound for what a library function returned.
+/// Lower bound of a result that a library function rounded to `value`.
 fn well_below(value: f64) -> f64 {
     widened(value, -LIBRARY_ERROR, f64::NEG_INFINITY)
 }
 
+/// Upper bound of a result that a library function rounded to `value`.
 fn well_above(value: f64) -> f64 {
     widened(value, LIBRARY_ERROR, f64::INFINITY)
 }
 
-/// A product of bounds: 0 · ∞ is 0, since the infinity stands for arbitrarily large values only.
+/// Product of bounds. 0 · ∞ is 0, because an infinite bound stands for arbitrarily large finite values.
 pub(super) fn product(a: f64, b: f64) -> f64 {
     let product = a * b;
     if product.is_nan() { 0.0 } else { product }
 }
 
 impl Range {
-    /// The bounds `lo` and `hi`; a NaN among them bounds nothing.
+    /// The range from `lo` to `hi`. A NaN is replaced by an infinite bound.
     fn new(lo: f64, hi: f64, flags: u8) -> Self {
         let lo = if lo.is_nan() { f64::NEG_INFINITY } else { lo };
         let hi = if hi.is_nan() { f64::INFINITY } else { hi };
         Self { lo, hi, flags }
     }
 
-    /// No bounds at all, for an operation with a pole or worse.
+    /// The unbounded range, of an operation that may have a pole.
     fn everything(flags: u8) -> Self {
         Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, flags: flags & EMPTY }
     }
@@ -83,7 +85,7 @@ impl Range {
         self.lo <= value && value <= self.hi
     }
 
-    /// The part inside `lo … hi`; not defined everywhere if something was cut off.
+    /// Intersection with `lo … hi`. If that is smaller, the operation is not defined everywhere in the box.
     fn cut(self, lo: f64, hi: f64) -> Self {
         let cut = Self { lo: self.lo.max(lo), hi: self.hi.min(hi), flags: self.flags };
         if cut.lo > cut.hi {
@@ -95,7 +97,7 @@ impl Range {
         }
     }
 
-    /// An increasing library function.
+    /// Range of an increasing library function.
     fn increasing(self, f: fn(f64) -> f64) -> Self {
         Self::new(well_below(f(self.lo)), well_above(f(self.hi)), joined(self.flags, self.flags))
     }
@@ -126,7 +128,7 @@ impl Range {
         if self.lo > 0.0 || self.hi < 0.0 {
             return Self::new(down(1.0 / self.hi), up(1.0 / self.lo), flags);
         }
-        // A pole: on one side of it the values still have a sign, on both sides they are still not 0.
+        // There is a pole. On one side of it the values keep their sign; on both sides they are still not 0.
         let flags = flags & EMPTY | NONZERO;
         if self.lo == 0.0 && self.hi > 0.0 {
             Self { lo: down(1.0 / self.hi), hi: f64::INFINITY, flags }
@@ -156,7 +158,7 @@ impl Range {
         if !pole {
             return self.increasing(libm::tan);
         }
-        // Zeros are at whole multiples of π.
+        // Zeros are at integer multiples of π.
         let zero = !trusted || libm::floor(hi + slack) > libm::floor(lo - slack);
         let everything = Self::everything(self.flags);
         Self { flags: everything.flags | if zero { 0 } else { NONZERO }, ..everything }
@@ -199,7 +201,7 @@ impl Range {
                 let bounds = cut.increasing(if operation == Unary::Ln { libm::log } else { libm::log10 });
                 Self { flags: if cut.lo > 0.0 { bounds.flags } else { bounds.flags & !DEFINED }, ..bounds }
             }
-            Unary::Sin | Unary::Cos => unreachable!("computed in lanes"),
+            Unary::Sin | Unary::Cos => unreachable!("computed in rows"),
             Unary::Tan => self.tangent(),
             Unary::Asin | Unary::Acos => {
                 let cut = self.cut(-1.0, 1.0);
@@ -242,24 +244,26 @@ impl Range {
         }
     }
 
+    /// Range of self^exponent for any exponent.
     fn real_power(self, exponent: Self) -> Self {
         let whole = exponent.lo == exponent.hi && exponent.lo == libm::trunc(exponent.lo);
         if self.lo < 0.0 && whole {
-            // A whole exponent, known only when the parameters are: monotone in |x|, the sign by parity.
+            // An integer exponent whose value comes from the parameters. The power is monotone in |x|, and the parity of the
+            // exponent gives its sign.
             let size = self.abs().real_power(exponent);
             let symmetric = Self { lo: -size.hi, ..size };
             return if libm::fmod(exponent.lo, 2.0) == 0.0 { size } else { symmetric };
         }
-        // Negative numbers have powers for whole exponents only, of either sign.
-        let strays = self.lo < 0.0;
+        // Negative numbers have powers for integer exponents only, which may be positive or negative.
+        let has_negative = self.lo < 0.0;
         let base = self.cut(0.0, f64::INFINITY);
-        if strays && exponent.lo < exponent.hi {
+        if has_negative && exponent.lo < exponent.hi {
             return Self::everything(0);
         }
         if base.is_empty() {
             return NOTHING;
         }
-        // x^p is monotone in x and in p on x ≥ 0, so that the extremes are at the corners.
+        // On x ≥ 0 x^p is monotone in x and in p, so the extremes are at the corners.
         let corners = [
             libm::pow(base.lo, exponent.lo),
             libm::pow(base.lo, exponent.hi),
@@ -276,15 +280,15 @@ impl Range {
         Self::new(well_below(lo).max(0.0), well_above(hi), flags)
     }
 
-    /// The angle of the point (`across`, self).
+    /// Range of the angle atan2(self, across) of the point (across, self).
     fn angle(self, across: Self) -> Self {
         let flags = joined(self.flags, across.flags);
         let pi = well_above(core::f64::consts::PI);
-        // The cut along the negative axis, and the origin.
+        // The box meets the branch cut along the negative axis, or the origin.
         if across.lo <= 0.0 && self.holds(0.0) {
             return Self { lo: -pi, hi: pi, flags: flags & !CONTINUOUS };
         }
-        // Elsewhere the extremes are at the corners of the box.
+        // Away from the branch cut the extremes are at the corners.
         let corners = [
             libm::atan2(self.lo, across.lo),
             libm::atan2(self.lo, across.hi),
@@ -296,7 +300,7 @@ impl Range {
         Self::new(well_below(lo), well_above(hi), flags)
     }
 
-    /// Rising in a and b, falling in k.
+    /// Range of the smooth minimum, which increases with a and b and decreases with k.
     pub(super) fn smooth_minimum(a: Self, b: Self, k: Self) -> Self {
         if a.is_empty() || b.is_empty() || k.is_empty() {
             return NOTHING;
@@ -316,31 +320,31 @@ impl Range {
         Self::new(well_below(lo), well_above(hi), flags)
     }
 
-    /// x^n for any whole n.
+    /// Range of self^n for an integer n other than 0.
     pub(super) fn power(self, n: i32) -> Self {
         let natural = n.unsigned_abs();
         let even = natural.is_multiple_of(2);
         let base = if even { self.abs() } else { self };
-        // Each of at most 2 log₂ n products errs by half a unit; relative errors of a square double.
+        // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
         let error = 2.0 * f64::from(natural) * f64::EPSILON;
-        let lo = widened(whole_power(base.lo, natural), -error, f64::NEG_INFINITY);
-        let hi = widened(whole_power(base.hi, natural), error, f64::INFINITY);
+        let lo = widened(integer_power(base.lo, natural), -error, f64::NEG_INFINITY);
+        let hi = widened(integer_power(base.hi, natural), error, f64::INFINITY);
         let flags = joined(self.flags, self.flags) | self.flags & NONZERO;
         let bounds = Self { lo: if even { lo.max(0.0) } else { lo }, hi, flags };
         if n < 0 { bounds.reciprocal() } else { bounds }
     }
 
-    /// Both ends' worth of a choice: `value` where a ≤ b and 0 elsewhere, or the other way round.
+    /// Range of a choice: `value` where a ≤ b and 0 elsewhere, or the reverse if not `where_at_most`.
     pub(super) fn choice(a: Self, b: Self, value: Self, where_at_most: bool) -> Self {
         if a.is_empty() || b.is_empty() || value.is_empty() {
             return NOTHING;
         }
         let flags = joined(joined(a.flags, b.flags), value.flags);
         let (always, never) = (a.hi <= b.lo, a.lo > b.hi);
-        let (taken, left) = if where_at_most { (always, never) } else { (never, always) };
-        if taken {
+        let (always_value, always_zero) = if where_at_most { (always, never) } else { (never, always) };
+        if always_value {
             Self { flags, ..value }
-        } else if left {
+        } else if always_zero {
             Self { lo: 0.0, hi: 0.0, flags }
         } else {
             Self { lo: value.lo.min(0.0), hi: value.hi.max(0.0), flags: flags & !CONTINUOUS }
@@ -349,7 +353,7 @@ impl Range {
 }
 
 /// x^n for n ≥ 1 by repeated products.
-pub(super) fn whole_power(x: f64, n: u32) -> f64 {
+pub(super) fn integer_power(x: f64, n: u32) -> f64 {
     let (mut result, mut square, mut rest) = (1.0, x, n);
     while rest > 0 {
         if rest & 1 == 1 {

@@ -1,14 +1,14 @@
-//! Intervals over many boxes at once: the bounds of one operation as columns, which the compiler turns into SIMD code.
+//! Interval arithmetic over many boxes at once, in arrays that the compiler vectorises.
 //!
-//! Only what formulas consist of mostly is written out here; the rest goes through [`Range`], box by box.
+//! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use super::range::{Range, down, product, up};
 
-/// Boxes in a row.
+/// Number of boxes in a row.
 pub(super) const BOXES: usize = 32;
 
-/// Bounds of one operation over up to [`BOXES`] boxes.
+/// Bounds of an operation over up to [`BOXES`] boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) lo: [f64; BOXES],
@@ -19,6 +19,7 @@ pub(super) struct Row {
 impl Row {
     pub(super) const ZERO: Self = Self { lo: [0.0; BOXES], hi: [0.0; BOXES], flags: [REGULAR; BOXES] };
 
+    /// Bounds over box `k`.
     pub(super) fn at(&self, k: usize) -> Range {
         Range { lo: self.lo[k], hi: self.hi[k], flags: self.flags[k] }
     }
@@ -38,6 +39,7 @@ impl Row {
         out
     }
 
+    /// Row with the bounds that `f` gives for each box.
     fn bounds(f: impl Fn(usize) -> (f64, f64), flags: [u8; BOXES]) -> Self {
         let mut out = Self { flags, ..Self::ZERO };
         for k in 0..BOXES {
@@ -79,7 +81,7 @@ impl Row {
         out
     }
 
-    /// Times an exact number.
+    /// Product with an exact number.
     pub(super) fn scale(&self, factor: f64) -> Self {
         let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
         Self::bounds(
@@ -91,7 +93,7 @@ impl Row {
         )
     }
 
-    /// [`NONZERO`] where 0 is certainly not among the values.
+    /// [`NONZERO`] if box `k` certainly has no value 0, else no flag.
     fn nonzero(&self, k: usize) -> u8 {
         self.flags[k] & NONZERO | if self.lo[k] > 0.0 || self.hi[k] < 0.0 { NONZERO } else { 0 }
     }
@@ -136,7 +138,7 @@ impl Row {
         out
     }
 
-    /// The slope of an absolute value: between −1 and 1 where the sign changes.
+    /// Sign, as the derivative of the absolute value: between −1 and 1 where the argument changes its sign.
     pub(super) fn sign(&self) -> Self {
         let sign = |x: f64| {
             if x > 0.0 {
@@ -155,8 +157,9 @@ impl Row {
         out
     }
 
-    /// Sine, or cosine: from the middle m of the argument and its half-width h, by sin(m + t) = sin m cos t + cos m sin t,
-    /// with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. The excess is of second order in h.
+    /// Sine or cosine of arguments with midpoint m and half-width h. The bounds follow from
+    /// sin(m + t) = sin m cos t + cos m sin t with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. They are wider than the range by a
+    /// term of second order in h.
     pub(super) fn sine(&self, cosine: bool) -> Self {
         let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
         Self::bounds(
@@ -164,14 +167,14 @@ impl Row {
                 let middle = 0.5 * (self.lo[k] + self.hi[k]);
                 let half = greatest(middle - self.lo[k], self.hi[k] - middle);
                 let (s, c) = sine_cosine(middle);
-                // cos m = sin(m + π/2), whose own cosine is −sin m; only its size matters below.
+                // The derivative of the cosine is −sin m, but only its magnitude matters below.
                 let (value, slope) = if cosine { (c, s) } else { (s, c) };
                 let least_cosine = 1.0 - 0.5 * half * half;
                 let other = value * least_cosine;
                 let swing = slope.abs() * half + SINE_SLACK;
                 let lo = greatest(least(value, other) - swing, -1.0);
                 let hi = least(greatest(value, other) + swing, 1.0);
-                // Also false for what is not finite.
+                // Both comparisons are false for NaN.
                 let trusted = half <= 1.0 && middle.abs() <= TRUSTED_ANGLE;
                 if trusted { (lo, hi) } else { (-1.0, 1.0) }
             },
@@ -180,18 +183,20 @@ impl Row {
     }
 }
 
-/// Most that the rounding of [`Row::sine`] can come to: a few units in the last place of 1.
+/// Bound of the rounding error of [`Row::sine`]: a few units in the last place of 1.
 const SINE_SLACK: f64 = 1e-14;
 
-/// Largest angle whose reduction by π/2 below is exact to that slack.
+/// Largest angle for which [`sine_cosine`] is accurate to [`SINE_SLACK`].
 const TRUSTED_ANGLE: f64 = 1e5;
 
-/// Sine and cosine for |x| ≤ 10⁵, to a few 10⁻¹⁶: the nearest multiple of π/2 is taken off in two parts (Cody and
-/// Waite), then the Taylor series, whose next terms are below 10⁻¹⁷ for |r| ≤ π/4.
+/// Sine and cosine for |x| ≤ 10⁵ with an error of a few 10⁻¹⁶.
+///
+/// The nearest multiple of π/2 is subtracted in two parts (W. J. Cody & W. Waite, "Software Manual for the Elementary
+/// Functions", 1980). The Taylor series follows; its first omitted terms are below 10⁻¹⁷ for |r| ≤ π/4.
 fn sine_cosine(x: f64) -> (f64, f64) {
-    // Added to 1.5 · 2⁵², a number is rounded to a whole one that stands in the low bits of the sum.
+    // Adding 1.5 · 2⁵² rounds a number to an integer, which is then in the low bits of the sum.
     const INTEGER: f64 = 6_755_399_441_055_744.0;
-    // π/2 in two parts, the first of 33 bits so that its product with a quadrant below 2²⁰ is exact.
+    // π/2 in two parts. The first has 33 bits, so that its product with a quadrant below 2²⁰ is exact.
     const HALF_PI_HEAD: f64 = 1.570_796_326_734_125_6;
     const HALF_PI_TAIL: f64 = 6.077_100_506_506_192e-11;
     let shifted = x * core::f64::consts::FRAC_2_PI + INTEGER;

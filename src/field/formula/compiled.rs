@@ -1,0 +1,131 @@
+//! A formula compiled for each way of evaluating it.
+
+use super::ast::Equation;
+use super::error::FormulaError;
+use super::graph::{Graph, Id, Node};
+use super::operations::Unary;
+use super::program::Program;
+use super::{MAX_OPERATIONS, Parameter, build, derivative, interval, scalar};
+use crate::field::Jet;
+use crate::math::Sym3;
+use glam::DVec3;
+
+/// The graph of f and its derivatives, and the programs that were compiled from it.
+///
+/// The Hessian and the bounds are compiled when first asked for: uniform sampling needs no Hessian, and a check of the
+/// text needs neither.
+#[derive(Clone, Debug)]
+pub(super) struct Compiled {
+    graph: Graph,
+    root: Id,
+    gradient: [Id; 3],
+    /// Nodes of the Hessian (xx, xy, xz, yy, yz, zz), once it is compiled.
+    hessian: [Id; 6],
+    is_constant: bool,
+    pub(super) value_program: Program,
+    pub(super) gradient_program: Program,
+    hessian_program: Option<Program>,
+    /// Empty until it is compiled.
+    parts: Vec<interval::Part>,
+}
+
+impl Compiled {
+    /// Compiles f and ∇f of `equation`, with the values of `parameters`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`build::build`], and [`TooComplex`](super::FormulaErrorKind::TooComplex) beyond [`MAX_OPERATIONS`].
+    pub(super) fn new(equation: &Equation, parameters: &[Parameter]) -> Result<Self, FormulaError> {
+        let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+        let mut graph = Graph::default();
+        let root = build::build(&mut graph, equation, &names)?;
+        let value_program = Program::compile(&graph, &[root]);
+        if value_program.operations() > MAX_OPERATIONS {
+            return Err(build::too_complex(&equation.left));
+        }
+        graph.let_zero_annihilate();
+        let gradient = derivative::gradient(&mut graph, root);
+        let gradient_program = Program::compile(&graph, &[root, gradient[0], gradient[1], gradient[2]]);
+        // A step function has gradient 0 almost everywhere and is not constant.
+        let has_steps = graph.nodes()[..=root as usize]
+            .iter()
+            .any(|node| matches!(node, Node::Unary(Unary::Floor | Unary::Sign, _)));
+        let has_zero_gradient = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
+        let mut compiled = Self {
+            is_constant: graph.is_uniform(root) || (has_zero_gradient && !has_steps),
+            graph,
+            root,
+            gradient,
+            hessian: [root; 6],
+            value_program,
+            gradient_program,
+            hessian_program: None,
+            parts: Vec::new(),
+        };
+        let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
+        compiled.set_parameters(&values);
+        Ok(compiled)
+    }
+
+    /// Whether f is the same everywhere for any values of the parameters.
+    pub(super) fn is_constant(&self) -> bool {
+        self.is_constant
+    }
+
+    /// Recomputes everything that depends on the parameters alone.
+    pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        self.value_program.set_parameters(values);
+        self.gradient_program.set_parameters(values);
+        if let Some(program) = &mut self.hessian_program {
+            program.set_parameters(values);
+        }
+        for part in &mut self.parts {
+            part.set_parameters(values);
+        }
+    }
+
+    /// Program of f, ∇f and ∇∇f.
+    pub(super) fn hessian_program(&mut self, values: &[f64]) -> &Program {
+        self.hessian_program.get_or_insert_with(|| {
+            self.hessian = derivative::hessian(&mut self.graph, self.gradient);
+            let mut outputs = vec![self.root];
+            outputs.extend(self.gradient);
+            outputs.extend(self.hessian);
+            let mut program = Program::compile(&self.graph, &outputs);
+            program.set_parameters(values);
+            program
+        })
+    }
+
+    /// Programs for the bounds of the factors of f; there is at least one.
+    pub(super) fn parts(&mut self, values: &[f64]) -> &mut [interval::Part] {
+        if self.parts.is_empty() {
+            self.parts = interval::parts(&mut self.graph, self.root, self.gradient);
+            for part in &mut self.parts {
+                part.set_parameters(values);
+            }
+        }
+        &mut self.parts
+    }
+
+    /// f, ∇f and ∇∇f at `p`, as jets carried forward through the graph of f.
+    pub(super) fn jet(&self, values: &[f64], p: DVec3, scratch: &mut scalar::JetScratch) -> Jet {
+        scalar::jet(&self.graph, self.root, values, p, scratch)
+    }
+
+    /// f, ∇f and ∇∇f at `p`, from the graphs of the derivatives.
+    pub(super) fn transformed_jet(&mut self, values: &[f64], p: DVec3) -> Jet {
+        self.hessian_program(values);
+        let mut results: Vec<f64> = Vec::with_capacity(self.graph.len());
+        for node in self.graph.nodes() {
+            results.push(node.evaluate(values, p.to_array(), |id| results[id as usize]));
+        }
+        let result = |id: Id| results[id as usize];
+        let [xx, xy, xz, yy, yz, zz] = self.hessian.map(result);
+        Jet {
+            value: result(self.root),
+            gradient: DVec3::from_array(self.gradient.map(result)),
+            hessian: Sym3 { xx, xy, xz, yy, yz, zz },
+        }
+    }
+}
