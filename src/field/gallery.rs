@@ -1,4 +1,4 @@
-//! The named surfaces, as data.
+//! Named surfaces, each with a formula, parameters, a box and known properties.
 
 use super::formula::{FormulaField, Parameter};
 use crate::math::Bounds;
@@ -6,15 +6,15 @@ use crate::math::Bounds;
 /// A parameter of a gallery surface.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceParameter {
-    /// The name in the formula.
+    /// Name in the formula.
     pub name: &'static str,
-    /// What it is.
+    /// Label for the user.
     pub label: &'static str,
     /// Default value.
     pub value: f64,
-    /// Least value of the slider.
+    /// Smallest value of the slider.
     pub min: f64,
-    /// Greatest value of the slider.
+    /// Largest value of the slider.
     pub max: f64,
     /// Step of the slider.
     pub step: f64,
@@ -25,26 +25,26 @@ pub struct SurfaceParameter {
 pub struct Surface {
     /// Identifier: lower case, words joined by hyphens.
     pub id: &'static str,
-    /// Name for a person.
+    /// Name for the user.
     pub name: &'static str,
-    /// Formula; negative inside.
+    /// Formula of f, or an equation; f < 0 inside.
     pub formula: &'static str,
     /// Parameters of the formula, in the order of their sliders.
     pub parameters: &'static [SurfaceParameter],
-    /// The box that is sampled.
+    /// Box that is sampled.
     pub bounds: Bounds,
-    /// Degree of the surface, if it is algebraic.
+    /// Algebraic degree; `None` for a transcendental surface.
     pub degree: Option<u32>,
-    /// Genus with the default parameters, if the surface is closed and connected and crosses itself nowhere.
+    /// Genus with the default parameters; `None` unless the surface is closed, connected and free of self-intersections.
     pub genus: Option<u32>,
-    /// Whether, with the default parameters, the gradient vanishes nowhere on the surface.
+    /// Whether the surface with the default parameters has no singular point.
     pub smooth: bool,
     /// Two sentences about the surface.
     pub story: &'static str,
 }
 
 impl Surface {
-    /// The parameters as a formula takes them.
+    /// The parameters in the form that [`FormulaField::parse`] takes.
     #[must_use]
     pub fn declared(&self) -> Vec<Parameter> {
         self.parameters
@@ -60,7 +60,7 @@ impl Surface {
             .collect()
     }
 
-    /// The field with the default parameters.
+    /// Parses the formula, with the default values of the parameters.
     ///
     /// # Panics
     ///
@@ -72,7 +72,7 @@ impl Surface {
     }
 }
 
-/// The surface with this identifier.
+/// Surface with the identifier `id`.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Surface> {
     SURFACES.iter().find(|surface| surface.id == id)
@@ -87,7 +87,7 @@ const fn parameter(
     SurfaceParameter { name, label, value, min, max, step }
 }
 
-/// Every surface of the gallery; the first one is the default.
+/// All surfaces of the gallery. The first one is the default.
 pub static SURFACES: &[Surface] = &[
     Surface {
         id: "ellipsoid",
@@ -272,7 +272,7 @@ pub static SURFACES: &[Surface] = &[
         name: "Gyroid",
         formula: "sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x) = t",
         parameters: &[parameter("t", "Level", 0.0, [-1.3, 1.3, 0.01])],
-        // Two periods, 4π, less what makes slivers at the corners.
+        // A little less than two periods, 4π, so that no slivers appear at the corners.
         bounds: Bounds::cube(6.2),
         degree: None,
         genus: None,
@@ -300,7 +300,7 @@ pub static SURFACES: &[Surface] = &[
         name: "Schwarz D",
         formula: "sin(x) sin(y) sin(z) + sin(x) cos(y) cos(z) + cos(x) sin(y) cos(z) + cos(x) cos(y) sin(z) = t",
         parameters: &[parameter("t", "Level", 0.0, [-0.9, 0.9, 0.01])],
-        // A period, 2π, less what makes slivers at the corners.
+        // A little less than one period, 2π, so that no slivers appear at the corners.
         bounds: Bounds::cube(3.1),
         degree: None,
         genus: None,

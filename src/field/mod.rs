@@ -1,4 +1,7 @@
-//! Fields f(x, y, z) whose zero set is the surface: values, gradients and Hessians, one point or a batch at a time.
+//! Fields f(x, y, z) whose zero set is the surface.
+//!
+//! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and bounds over
+//! boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
 
 pub mod formula;
 pub mod gallery;
@@ -9,50 +12,51 @@ pub(crate) mod scaled;
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
 
-/// Value, gradient and Hessian of a field at one point, in double precision.
+/// Second-order jet of a field at a point, in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
-    /// f.
+    /// The value f.
     pub value: f64,
-    /// ∇f.
+    /// The gradient ∇f.
     pub gradient: DVec3,
-    /// ∇∇f.
+    /// The Hessian ∇∇f.
     pub hessian: Sym3<f64>,
 }
 
-/// A closed interval that holds every value of an expression over a box; NaN bounds never occur. The empty
-/// interval, `lo > hi`, says that the expression is defined nowhere in the box.
+/// Bounds of f over a box: a closed interval that contains every value.
+///
+/// The bounds are never NaN. The empty interval, `lo > hi`, means that f is defined nowhere in the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Lower bound, may be −∞.
+    /// Lower bound, which may be −∞.
     pub lo: f64,
-    /// Upper bound, may be +∞.
+    /// Upper bound, which may be +∞.
     pub hi: f64,
-    /// Whether the expression is certainly defined everywhere in the box: no NaN and no pole. At a pole itself the
-    /// value may be an infinity outside the bounds.
+    /// Whether f is certainly defined everywhere in the box, without NaN or pole. At a pole the value may be an infinity
+    /// outside the bounds.
     pub defined: bool,
 }
 
-/// What is known of a field and its gradient over a box.
+/// Bounds of f and ∇f over a box, with properties that interval arithmetic has proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// Lower and upper bound of f, never NaN; the lower one is above the upper one where f is defined nowhere.
+    /// Lower and upper bound of f, never NaN. The lower one is the larger one if f is defined nowhere in the box.
     pub value: [f64; 2],
-    /// Lower and upper bounds of ∂f/∂x, ∂f/∂y and ∂f/∂z where they exist, and of every slope between the one-sided ones
-    /// where they do not; never NaN.
+    /// Lower and upper bounds of ∂f/∂x, ∂f/∂y and ∂f/∂z, never NaN. At a kink they contain every slope between the
+    /// one-sided ones (Clarke's generalised gradient).
     pub gradient: [[f64; 2]; 3],
-    /// Whether f is certainly defined everywhere in the box: no NaN and no pole.
+    /// Whether f is certainly defined everywhere in the box, without NaN or pole.
     pub defined: bool,
     /// Whether f is certainly continuous where it is defined.
     pub continuous: bool,
-    /// Whether the gradient is certainly continuous too: where it jumps, bounds of second derivatives say nothing of it.
+    /// Whether the gradient is certainly continuous. Where it jumps, bounds of the second derivatives are meaningless.
     pub smooth: bool,
-    /// Whether f may be 0 somewhere in the box. It can be excluded even where the bounds have both signs, as for 1/x.
+    /// Whether f may vanish in the box. Zeros can be excluded even if the bounds have both signs, as those of 1/x.
     pub may_vanish: bool,
 }
 
 impl Enclosure {
-    /// Nothing is known.
+    /// The enclosure that says nothing.
     pub const UNKNOWN: Self = Self {
         value: [f64::NEG_INFINITY, f64::INFINITY],
         gradient: [[f64::NEG_INFINITY, f64::INFINITY]; 3],
@@ -62,17 +66,17 @@ impl Enclosure {
         may_vanish: true,
     };
 
-    /// f is defined nowhere in the box.
+    /// The enclosure of a field that is defined nowhere in the box.
     pub const NOWHERE: Self =
         Self { value: [f64::INFINITY, f64::NEG_INFINITY], may_vanish: false, ..Self::UNKNOWN };
 }
 
-/// A scalar field with its derivatives.
+/// A scalar field f with its derivatives; f < 0 inside the surface.
 ///
-/// Batched methods read `points` and write the first `points.len()` entries of each output; they take `&mut self`
-/// because an implementation keeps its scratch memory, and they do not allocate once warm. A point's result does
-/// not depend on its place in the batch, has the same bits natively and in WebAssembly, and is NaN where the field
-/// is undefined.
+/// A batched method reads `points` and writes the first `points.len()` entries of each output. It takes `&mut self`
+/// because an implementation keeps scratch memory, so that evaluation does not allocate once it is warm. The result at
+/// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. It is
+/// NaN where the field is undefined.
 ///
 /// # Panics
 ///
@@ -93,10 +97,10 @@ pub trait Field: Send {
         hessian: &mut [Sym3<f32>],
     );
 
-    /// f, ∇f and ∇∇f at `p` in double precision: the oracle that the batched methods are held to.
+    /// f, ∇f and ∇∇f at `p` in double precision. Tests compare the batched methods with it.
     fn jet(&mut self, p: DVec3) -> Jet;
 
-    /// f and ∇f at each point in double precision: those of [`Field::jet`] up to rounding.
+    /// f and ∇f at each point in double precision, equal to those of [`Field::jet`] up to rounding.
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         for (k, p) in points.iter().enumerate() {
             let jet = self.jet(p.as_dvec3());
@@ -104,24 +108,25 @@ pub trait Field: Send {
         }
     }
 
-    /// Bounds of f over the box from `lo` to `hi`, rounded outward: 0 outside the bounds proves that the box holds
-    /// no point of the surface.
+    /// Bounds of f over the box from `lo` to `hi`, rounded outward. If they exclude 0, the box holds no point of the
+    /// surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
 
-    /// Whether there are bounds of f: without them [`Field::enclose`] is not asked, the survey is dense, and no proof is
-    /// attempted. They may still be too wide to say anything.
+    /// Whether the field can bound its values over a box, however wide the bounds are. Without bounds [`Field::enclose`] is
+    /// not called: the survey samples densely, and completeness is not proven.
     fn has_bounds(&self) -> bool {
         false
     }
 
-    /// Number of functions whose zeros together are those of f, for [`Field::enclose`]: the factors of a product, else 1.
+    /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
     fn parts(&mut self) -> usize {
         1
     }
 
-    /// Bounds of one of the functions that f falls into, and of its gradient, over each box, given by its smallest and
-    /// largest corner; `out[i]` belongs to `boxes[i]`. What it says about being defined and continuous holds for f too. By
-    /// default nothing is known.
+    /// Bounds of factor `part` of f and of its gradient over each box.
+    ///
+    /// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`. What an enclosure says about
+    /// being defined and continuous holds for f as a whole. The default implementation gives [`Enclosure::UNKNOWN`].
     ///
     /// # Panics
     ///
@@ -131,12 +136,13 @@ pub trait Field: Send {
         out[..boxes.len()].fill(Enclosure::UNKNOWN);
     }
 
-    /// Bounds of the second derivatives of the same function over each box, in the order xx, xy, xz, yy, yz, zz; they hold
-    /// where f is defined and its gradient continuous and have no meaning elsewhere. By default nothing is known.
+    /// Bounds of the second derivatives of factor `part` over each box, in the order xx, xy, xz, yy, yz, zz.
+    ///
+    /// They are meaningless where f is undefined or its gradient jumps. The default implementation gives infinite bounds.
     ///
     /// # Panics
     ///
-    /// As [`Field::enclose`].
+    /// Under the same conditions as [`Field::enclose`].
     fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
         let _ = part;
         out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]);

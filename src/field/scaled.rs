@@ -1,31 +1,34 @@
-//! A field times a constant, so that formulas in any units can be squared in single precision.
+//! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in single
+//! precision, whatever units a formula is in.
 
 use super::{Enclosure, Field, Interval, Jet};
 use crate::math::{Bounds, Sym3, sort_numbers};
 use glam::{DVec3, Vec3};
 
-/// Points at which the size of a gradient is looked at: one batch.
+/// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
 const SAMPLES: usize = 128;
 
-/// A gradient within 2^±[`COMFORTABLE`] needs no factor: its square, and that of a value a million times smaller or
-/// larger, are numbers in single precision.
+/// Largest |exponent| of a gradient that needs no factor. The square of such a gradient, and of a value a million times
+/// smaller or larger, is a normal number in single precision.
 const COMFORTABLE: i32 = 40;
 
-/// Another field times a positive power of two, which has the same surface and the same digits.
+/// Another field times a positive power of two. The surface is the same, and no digit is lost.
 pub(crate) struct Scaled<'a> {
     field: &'a mut dyn Field,
     factor: f32,
 }
 
 impl<'a> Scaled<'a> {
-    /// `field` times `factor`, which [`comfortable_factor`] has chosen.
+    /// `field` times `factor`, which [`comfortable_factor`] gives.
     pub(crate) fn new(field: &'a mut dyn Field, factor: f32) -> Self {
         Self { field, factor }
     }
 }
 
-/// The power of two that brings the median gradient at `points` (at most 128 of them are looked at) near 1, or 1 where
-/// that is not needed. It depends on the points in no other way, so that nearly all choices of points give the same.
+/// Power of two that brings the median magnitude of the gradient near 1, or 1 if that is not needed.
+///
+/// The gradient is sampled at no more than 128 of `points`. Because only the exponent of the median counts, nearly all
+/// choices of points give the same factor.
 pub(crate) fn comfortable_factor(field: &mut dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> f32 {
     let stride = points.len().div_ceil(SAMPLES).max(1);
     let points: Vec<Vec3> = points.step_by(stride).collect();
@@ -39,7 +42,7 @@ pub(crate) fn comfortable_factor(field: &mut dyn Field, points: impl ExactSizeIt
     if exponent.abs() <= COMFORTABLE { 1.0 } else { power_of_two(-exponent) }
 }
 
-/// Points spread over a box: a coarse grid, off its faces and its planes of symmetry.
+/// Points of a coarse grid in a box, off its faces and its planes of symmetry.
 pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
     const SIDE: usize = 5;
     let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
@@ -49,7 +52,7 @@ pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
     })
 }
 
-/// The exponent of a positive normal number; subnormal ones count as the smallest normal.
+/// Exponent of a positive number. A subnormal one counts as the smallest normal number.
 fn exponent(x: f32) -> i32 {
     ((x.to_bits() >> 23 & 0xff) as i32).max(1) - 127
 }
