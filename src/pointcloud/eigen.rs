@@ -3,12 +3,14 @@
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Sweeps of Jacobi's method: it converges quadratically, and for three rows five are enough for every digit.
+/// Maximum number of sweeps of Jacobi's method. It converges quadratically; for a 3×3 matrix five sweeps give every digit.
 const SWEEPS: usize = 12;
 
-/// Eigenvalues in ascending order and their unit eigenvectors, by Jacobi's rotations (Golub and Van Loan, "Matrix
-/// Computations", §8.5): to the last digits for eigenvalues of any ratio, by additions, products, quotients and roots alone.
-/// A matrix with an entry that is not finite gives eigenvalues that are not.
+/// Eigenvalues in ascending order and their unit eigenvectors, by Jacobi rotations (Golub & Van Loan, "Matrix
+/// Computations", §8.5).
+///
+/// The method is accurate for eigenvalues of any ratio and uses only +, −, ×, ÷ and √, so its results have the same bits
+/// everywhere. A matrix with an entry that is not finite gives eigenvalues that are not finite.
 pub(super) fn symmetric(m: &Sym3<f64>) -> ([f64; 3], [DVec3; 3]) {
     let mut a = [[m.xx, m.xy, m.xz], [m.xy, m.yy, m.yz], [m.xz, m.yz, m.zz]];
     let mut v = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -25,13 +27,13 @@ pub(super) fn symmetric(m: &Sym3<f64>) -> ([f64; 3], [DVec3; 3]) {
     (order.map(|i| a[i][i]), order.map(|i| v[i]))
 }
 
-/// Makes entry (p, q) zero.
+/// Applies the rotation in the plane of axes p and q that makes entry (p, q) zero.
 fn rotate(a: &mut [[f64; 3]; 3], v: &mut [DVec3; 3], p: usize, q: usize) {
     let off = a[p][q];
     if off == 0.0 {
         return;
     }
-    // The smaller root of t² + 2τt − 1; for a large τ it underflows to 0 as it should.
+    // t is the smaller root of t² + 2τt − 1. For a large τ it underflows to 0, which is correct.
     let tau = (a[q][q] - a[p][p]) / (2.0 * off);
     let t = 1.0_f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
     let c = 1.0 / (1.0 + t * t).sqrt();
@@ -62,7 +64,7 @@ mod tests {
         for k in 0..1000 {
             let scale = 10.0_f64.powi(k % 9 - 4);
             let [xx, xy, xz, yy, yz, zz] = std::array::from_fn(|_| scale * next());
-            // Some are of lower rank.
+            // Some matrices have rank 1.
             let m =
                 if k % 10 == 0 { Sym3 { xx, ..Sym3::default() } } else { Sym3 { xx, xy, xz, yy, yz, zz } };
             let (values, vectors) = symmetric(&m);

@@ -1,8 +1,9 @@
-//! The function through points with normals: Hermite radial basis functions.
+//! Interpolation of points with normals by Hermite radial basis functions.
 //!
-//! f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³; f = 0 and ∇f = n at every centre are 4 n equations for the
-//! 4 n coefficients. With −β for β the matrix is symmetric. The system is set up in local coordinates, in which the
-//! centres fill a box of about one unit, and solved in double precision.
+//! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The conditions f = 0 and ∇f = n at each of N
+//! centres are 4 N linear equations for the 4 N coefficients (I. Macêdo, J. P. Gois & L. Velho, "Hermite Radial Basis
+//! Functions Implicits", 2011). With −β as unknown the matrix is symmetric. The system is set up in local coordinates, in
+//! which the centres fill a box of about one unit, and solved in double precision.
 
 use super::solve::{Elimination, Singular};
 use super::thin::check_spread;
@@ -13,53 +14,53 @@ use crate::math::Bounds;
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
-/// Fewer centres bound no volume.
-const FEWEST: usize = 4;
-/// The matrix of more takes more than 128 MB, and its solution minutes in a browser.
-const MOST: usize = 1000;
-/// Centres nearer to each other than this share of the diagonal are the same point: in single precision, in which the
-/// surface is sampled, they are.
+/// Minimum number of centres: fewer bound no volume.
+const MIN_CENTRES: usize = 4;
+/// Maximum number of centres: the matrix of so many takes 128 MB, and solving it takes minutes in a browser.
+const MAX_CENTRES: usize = 1000;
+/// Distance below which two centres count as one, as a share of the diagonal of their box. In single precision, in which
+/// the surface is sampled, they coincide.
 const DUPLICATE_SHARE: f64 = 1e-6;
-/// A larger condition number leaves fewer than three digits in double precision.
-const HOPELESS: f64 = 1e13;
-/// From here on the user is told.
-const DOUBTFUL: f64 = 1e10;
-/// Room around the points, as a share of the diagonal of their box: the surface bulges between them.
+/// Condition number from which a solution is refused: fewer than three digits are left in double precision.
+const MAX_CONDITION: f64 = 1e13;
+/// Condition number above which the user is warned.
+const WARN_CONDITION: f64 = 1e10;
+/// Margin around the points for the surface, which bulges between them, as a share of the diagonal of their box.
 const MARGIN: f64 = 0.06;
-/// Points at which the residual is taken per unit of work.
+/// Number of points at which a unit of work takes the residual.
 const BATCH: usize = 1024;
-/// Centres whose equations are written per unit of work.
-const ASSEMBLED: usize = 8;
-/// Shares of the work before and with the elimination, for the display of progress.
-const STAGES: [f64; 2] = [0.1, 0.9];
+/// Number of centres whose equations a unit of work writes.
+const ASSEMBLY_BATCH: usize = 8;
+/// Fraction of the whole work at which the elimination begins and ends, for the display of progress.
+const ELIMINATION_SPAN: [f64; 2] = [0.1, 0.9];
 
-/// A field from points and what is known of it.
+/// A field that interpolates points, with the box to sample in and a report.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Centres and coefficients.
     pub data: RbfData,
-    /// The box to sample in: that of all points, with room around it.
+    /// Box to sample in: that of all points, with a margin.
     pub bounds: Bounds,
-    /// What to tell of it.
+    /// Report for the user.
     pub info: ModelInfo,
 }
 
-/// Why no field could be made.
+/// Why points cannot be interpolated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// Too few centres to bound a volume.
-    #[error("{count} points are too few: at least {FEWEST} are needed, and a few hundred are better")]
+    /// There are too few centres to bound a volume.
+    #[error("{count} points are too few: at least {MIN_CENTRES} are needed, and a few hundred are better")]
     TooFew {
         /// Number of centres.
         count: usize,
     },
-    /// More centres than can be solved for.
-    #[error("{count} centres are more than {MOST}")]
+    /// There are more centres than can be solved for.
+    #[error("{count} centres are more than {MAX_CENTRES}")]
     TooMany {
         /// Number of centres.
         count: usize,
     },
-    /// A point without a normal.
+    /// The numbers of points and of normals differ.
     #[error("there are {points} points and {normals} normals")]
     Normals {
         /// Number of points.
@@ -67,29 +68,29 @@ pub enum FitError {
         /// Number of normals.
         normals: usize,
     },
-    /// A coordinate is infinite or not a number, or a normal has no direction.
+    /// A coordinate is not finite, or a normal has no direction.
     #[error("point {index} is not finite or its normal has no direction")]
     NotFinite {
         /// Index of the centre.
         index: usize,
     },
-    /// Two centres at the same place.
+    /// Two centres coincide.
     #[error("points {first} and {second} are the same: each place may be given once")]
     Duplicate {
-        /// Index of one.
+        /// Index of the first one.
         first: usize,
-        /// Index of the other.
+        /// Index of the second one.
         second: usize,
     },
-    /// All centres lie in a plane or on a line, or the memory does not hold their equations.
+    /// All centres lie in a plane or on a line, or there is not enough memory for their equations.
     #[error(transparent)]
     Cloud(#[from] CloudError),
-    /// The system has no solution that could be trusted.
+    /// The system is singular or too ill-conditioned.
     #[error(
         "the points contradict each other: the system for the surface cannot be solved (condition {condition:.0e})"
     )]
     Singular {
-        /// Estimated condition number, infinite where a pivot vanished.
+        /// Estimated condition number, which is infinite if a pivot vanished.
         condition: f64,
     },
 }
@@ -100,28 +101,28 @@ impl From<Singular> for FitError {
     }
 }
 
-/// Makes a [`Fit`], a bounded piece of work at a time.
+/// Computes a [`Fit`] in slices of bounded work.
 #[derive(Debug)]
 pub struct Fitter {
     frame: Frame,
     /// In local coordinates.
     centres: Vec<DVec3>,
     normals: Vec<DVec3>,
-    /// Points at which the residual is taken.
+    /// All points, at which the residual is taken.
     given: Vec<DVec3>,
     info: ModelInfo,
-    stage: Stage,
+    stage: FitStage,
 }
 
 #[derive(Debug)]
-enum Stage {
-    /// Writes the equations of centre `next` and on.
+enum FitStage {
+    /// Writes the equations; those of centre `next` come next.
     Assembling {
         matrix: DMatrix<f64>,
         next: usize,
     },
     Eliminating(Elimination),
-    /// Measures the distance of the points from `next` on.
+    /// Measures the distances of the points from the surface; point `next` comes next.
     Measuring {
         field: Box<RbfField>,
         condition: f64,
@@ -134,17 +135,17 @@ enum Stage {
 }
 
 impl Fitter {
-    /// Begins a field through `centres`, to be compared with all points `given`. Of `info` the name, credit and warnings are
-    /// kept.
+    /// Begins the interpolation of `centres`. The residual will be taken at all points `given`. The fit's report has the
+    /// name, credit and warnings of `info`.
     ///
     /// # Errors
     ///
-    /// If the centres are too few or too many, not finite, twice the same, or in one plane; if memory runs out.
+    /// If there are too few or too many centres, if they are not finite, coincide or lie in one plane, or if memory runs out.
     pub fn new(centres: &Cloud, given: Vec<DVec3>, info: ModelInfo) -> Result<Self, FitError> {
         let count = centres.len();
         match count {
-            ..FEWEST => return Err(FitError::TooFew { count }),
-            _ if count > MOST => return Err(FitError::TooMany { count }),
+            ..MIN_CENTRES => return Err(FitError::TooFew { count }),
+            _ if count > MAX_CENTRES => return Err(FitError::TooMany { count }),
             _ if count != centres.normal.len() => {
                 return Err(FitError::Normals { points: count, normals: centres.normal.len() });
             }
@@ -158,34 +159,34 @@ impl Fitter {
             }
         }
         let frame = Frame::of(centres.position.iter().copied());
-        // Single precision knows the centres as they are used here, to the last bit.
+        // The centres are rounded to single precision, so that sampling finds exactly the same ones.
         let local: Vec<DVec3> =
             centres.position.iter().map(|&p| frame.local(p).as_vec3().as_dvec3()).collect();
-        check_places(&local)?;
+        check_centres(&local)?;
         let info = ModelInfo {
             points: given.len().max(count) as u32,
             centres: count as u32,
             normals: centres.source,
             ..info
         };
-        let stage = Stage::Assembling { matrix: equations(count)?, next: 0 };
+        let stage = FitStage::Assembling { matrix: equations(count)?, next: 0 };
         Ok(Self { frame, centres: local, normals, given, info, stage })
     }
 
-    /// Share of the work done.
+    /// Fraction of the work done, from 0 to 1.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         let share = |done: usize, of: usize| done as f64 / of.max(1) as f64;
-        let [before, until] = STAGES;
+        let [begin, end] = ELIMINATION_SPAN;
         match &self.stage {
-            Stage::Assembling { next, .. } => before * share(*next, self.centres.len()),
-            Stage::Eliminating(elimination) => before + (until - before) * elimination.fraction(),
-            Stage::Measuring { next, .. } => until + (1.0 - until) * share(*next, self.given.len()),
-            Stage::Over => 1.0,
+            FitStage::Assembling { next, .. } => begin * share(*next, self.centres.len()),
+            FitStage::Eliminating(elimination) => begin + (end - begin) * elimination.fraction(),
+            FitStage::Measuring { next, .. } => end + (1.0 - end) * share(*next, self.given.len()),
+            FitStage::Over => 1.0,
         }
     }
 
-    /// Does up to `budget` units of work, each a millisecond or so; the field once it is done.
+    /// Does up to `budget` units of work, of about a millisecond each. Returns the fit once it is complete.
     ///
     /// # Errors
     ///
@@ -193,48 +194,48 @@ impl Fitter {
     ///
     /// # Panics
     ///
-    /// If called again after the field or an error has been returned.
+    /// If called after it has returned a fit or an error.
     pub fn step(&mut self, budget: u32) -> Result<Option<Fit>, FitError> {
         for _ in 0..budget {
-            let stage = core::mem::replace(&mut self.stage, Stage::Over);
+            let stage = core::mem::replace(&mut self.stage, FitStage::Over);
             self.stage = match stage {
-                Stage::Assembling { mut matrix, next } => {
-                    let end = (next + ASSEMBLED).min(self.centres.len());
+                FitStage::Assembling { mut matrix, next } => {
+                    let end = (next + ASSEMBLY_BATCH).min(self.centres.len());
                     for j in next..end {
                         assemble(&mut matrix, &self.centres, j);
                     }
                     if end < self.centres.len() {
-                        Stage::Assembling { matrix, next: end }
+                        FitStage::Assembling { matrix, next: end }
                     } else {
-                        Stage::Eliminating(Elimination::new(matrix))
+                        FitStage::Eliminating(Elimination::new(matrix))
                     }
                 }
-                Stage::Eliminating(mut elimination) => {
+                FitStage::Eliminating(mut elimination) => {
                     if elimination.step()? {
                         self.solved(&elimination)?
                     } else {
-                        Stage::Eliminating(elimination)
+                        FitStage::Eliminating(elimination)
                     }
                 }
-                Stage::Measuring { mut field, condition, next, mut sum, mut largest } => {
+                FitStage::Measuring { mut field, condition, next, mut sum, mut largest } => {
                     let end = (next + BATCH).min(self.given.len());
                     measure(&mut field, &self.given[next..end], &mut sum, &mut largest);
                     if end == self.given.len() {
                         return Ok(Some(self.measured(&field, condition, sum, largest)));
                     }
-                    Stage::Measuring { field, condition, next: end, sum, largest }
+                    FitStage::Measuring { field, condition, next: end, sum, largest }
                 }
-                Stage::Over => panic!("this fit is over"),
+                FitStage::Over => panic!("this fit is over"),
             };
         }
         Ok(None)
     }
 
-    /// Does all that is left.
+    /// Does all remaining work.
     ///
     /// # Errors
     ///
-    /// As [`Fitter::step`].
+    /// Those of [`Fitter::step`].
     pub fn finish(mut self) -> Result<Fit, FitError> {
         loop {
             if let Some(fit) = self.step(u32::MAX)? {
@@ -243,8 +244,8 @@ impl Fitter {
         }
     }
 
-    /// The field, from the eliminated system.
-    fn solved(&mut self, elimination: &Elimination) -> Result<Stage, FitError> {
+    /// Solves the eliminated system for the coefficients and begins to measure.
+    fn solved(&mut self, elimination: &Elimination) -> Result<FitStage, FitError> {
         let mut x = DVector::zeros(4 * self.centres.len());
         for (i, normal) in self.normals.iter().enumerate() {
             for axis in 0..3 {
@@ -253,25 +254,27 @@ impl Fitter {
         }
         elimination.solve(&mut x)?;
         let condition = elimination.condition()?;
-        if condition.is_nan() || condition >= HOPELESS {
+        if condition.is_nan() || condition >= MAX_CONDITION {
             return Err(FitError::Singular { condition });
         }
         let mut data = RbfData::default();
         let scale = self.frame.scale();
         for (i, &centre) in self.centres.iter().enumerate() {
-            // f(x) = g(s (x − o))/s keeps the gradients: α s², β s.
+            // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients are
+            // α s² and β s.
             data.centres.push(self.frame.world(centre).to_array());
             data.alpha.push(x[4 * i] * scale * scale);
             data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
         }
         match RbfField::new(data) {
             Ok(field) => {
-                Ok(Stage::Measuring { field: Box::new(field), condition, next: 0, sum: 0.0, largest: 0.0 })
+                Ok(FitStage::Measuring { field: Box::new(field), condition, next: 0, sum: 0.0, largest: 0.0 })
             }
             Err(_) => Err(FitError::Singular { condition }),
         }
     }
 
+    /// Fit with its report, after all distances are measured.
     fn measured(&mut self, field: &RbfField, condition: f64, sum: f64, largest: f64) -> Fit {
         let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
         let (lo, hi) = corners(self.given.iter().copied().chain(centres));
@@ -281,7 +284,7 @@ impl Fitter {
         info.condition = condition;
         info.residual_mean = sum / self.given.len().max(1) as f64 / diagonal;
         info.residual_max = largest / diagonal;
-        if condition > DOUBTFUL {
+        if condition > WARN_CONDITION {
             info.warnings.push(format!(
                 "The points nearly contradict each other (condition {condition:.0e}); expect a rough surface."
             ));
@@ -291,25 +294,26 @@ impl Fitter {
     }
 }
 
+/// Smallest and largest corner of the box of the points.
 fn corners(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points.fold(none, |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 
-/// Whether the places are distinct and do not lie in one plane.
-fn check_places(places: &[DVec3]) -> Result<(), FitError> {
-    check_spread(places)?;
-    let (lo, hi) = corners(places.iter().copied());
-    let near = DUPLICATE_SHARE * (hi - lo).length();
-    for (second, p) in places.iter().enumerate() {
-        if let Some(first) = places[..second].iter().position(|q| p.distance(*q) <= near) {
+/// Checks that the centres are distinct and not in one plane.
+fn check_centres(centres: &[DVec3]) -> Result<(), FitError> {
+    check_spread(centres)?;
+    let (lo, hi) = corners(centres.iter().copied());
+    let tolerance = DUPLICATE_SHARE * (hi - lo).length();
+    for (second, p) in centres.iter().enumerate() {
+        if let Some(first) = centres[..second].iter().position(|q| p.distance(*q) <= tolerance) {
             return Err(FitError::Duplicate { first, second });
         }
     }
     Ok(())
 }
 
-/// Room for the equations of `count` centres, all zero.
+/// Zero matrix for the equations of `count` centres.
 fn equations(count: usize) -> Result<DMatrix<f64>, CloudError> {
     let side = 4 * count;
     let mut entries = Vec::new();
@@ -318,7 +322,7 @@ fn equations(count: usize) -> Result<DMatrix<f64>, CloudError> {
     Ok(DMatrix::from_vec(side, side, entries))
 }
 
-/// Writes the columns of centre `j`: of its α and −β, in the rows of f and ∇f at every centre.
+/// Writes the columns of the unknowns α and −β of centre `j`, in the rows of f and ∇f at every centre.
 fn assemble(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
     for (i, &centre) in centres.iter().enumerate() {
         let d = centre - centres[j];
@@ -340,7 +344,7 @@ fn assemble(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
     }
 }
 
-/// Adds the distances of the points from the surface to `sum`, and the largest to `largest`.
+/// Adds the distances of the points from the surface to `sum` and includes them in the maximum `largest`.
 fn measure(field: &mut RbfField, points: &[DVec3], sum: &mut f64, largest: &mut f64) {
     let points: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
     let mut value = vec![0.0; points.len()];

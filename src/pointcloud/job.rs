@@ -1,4 +1,4 @@
-//! The whole way from a file or a built-in model to a field, a bounded piece of work at a time.
+//! A job that takes a file or a built-in model to a field, in slices of bounded work.
 
 use super::fit::{Fit, FitError, Fitter};
 use super::models;
@@ -11,78 +11,82 @@ use core::ops::RangeInclusive;
 use glam::DVec3;
 use serde::Serialize;
 
-/// How many centres can be asked for.
+/// Numbers of centres that can be asked for.
 pub const CENTRES: RangeInclusive<u32> = 100..=800;
-/// Centres where nothing is asked for: the number that the paper's models have (§6).
+/// Default number of centres, which is that of the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
 
-/// Pieces of the quick stages that are done at once, so that each takes up to about a tenth of a millisecond natively.
+/// Rows of a file read per unit of work. This and the following numbers make a unit of work take up to about a tenth of a
+/// millisecond natively.
 const ROWS: u32 = 500;
+/// Faces summed per unit of work.
 const FACES: u32 = 2000;
+/// Points merged or thinned out per unit of work.
 const POINTS: u32 = 1000;
+/// Normals estimated per unit of work.
 const PLANES: u32 = 20;
 
-/// Points whose distance from the origin is more than this many diagonals of their box are moved to it. Single precision, in
-/// which the surface is sampled, then tells places apart that are a millionth of the diagonal from each other.
+/// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to the origin. Within it,
+/// single precision, in which the surface is sampled, resolves a millionth of the diagonal.
 const FAR: f64 = 10.0;
 
-/// What a job is at, as the page tells it.
+/// JobStage of a job, as the page shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stage {
+pub enum JobStage {
     /// The file is read.
     Reading,
     /// Normals are taken from the faces, or estimated.
     Normals,
-    /// Equal points are joined, and few of many chosen.
+    /// Equal points are merged, and few of many are chosen.
     Thinning,
-    /// The system is set up and solved, and the field compared with the points.
+    /// The system is set up and solved, and the distances of the points from the surface are measured.
     Solving,
-    /// The field is there.
+    /// The field is complete.
     Done,
 }
 
-/// How far a job has come.
+/// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Progress {
-    /// What it is at.
-    pub stage: Stage,
-    /// The same in words.
+    /// Current stage.
+    pub stage: JobStage,
+    /// Current stage in words.
     pub label: &'static str,
-    /// Share of the whole, from 0 to 1; it never falls.
+    /// Fraction of the whole work, from 0 to 1. It never decreases.
     pub fraction: f64,
-    /// Whether the field is there.
+    /// Whether the field is complete.
     pub done: bool,
 }
 
-/// Why a job came to nothing.
+/// Why a job failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JobError {
-    /// The file is not read.
+    /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Nothing can be made of its points.
+    /// No surface can be fitted to the points.
     #[error(transparent)]
     Cloud(#[from] CloudError),
-    /// No field goes through them.
+    /// The points cannot be interpolated.
     #[error(transparent)]
     Fit(#[from] FitError),
-    /// There is no such model.
+    /// There is no built-in model with this identifier.
     #[error("there is no model `{id}`; known are {}", names())]
     UnknownModel {
-        /// What was asked for.
+        /// The identifier.
         id: String,
     },
-    /// More or fewer centres than are allowed.
+    /// The number of centres is not in [`CENTRES`].
     #[error("{count} centres: choose {} to {}", CENTRES.start(), CENTRES.end())]
     Centres {
-        /// What was asked for.
+        /// The number.
         count: u32,
     },
 }
 
 impl JobError {
-    /// A word for the kind of mistake, for programs.
+    /// Kind of error as a word in snake case, for programs.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -93,7 +97,7 @@ impl JobError {
         }
     }
 
-    /// Number of the line of a text file that is wrong.
+    /// Number, from 1, of the line of a text file that is in error.
     #[must_use]
     pub fn line(&self) -> Option<u64> {
         match self {
@@ -103,21 +107,23 @@ impl JobError {
     }
 }
 
-/// The built-in models by their identifiers.
+/// Identifiers of the built-in models.
 fn names() -> String {
     let names: Vec<&str> = model::MODELS.iter().map(|model| model.id).collect();
     names.join(", ")
 }
 
-/// A file or a model on its way to a field.
+/// A file or a built-in model on its way to a field.
 pub struct Job {
     work: Work,
     info: ModelInfo,
+    /// Number of centres to choose.
     wanted: u32,
+    /// The centres, once they are chosen.
     centres: Vec<DVec3>,
 }
 
-/// What there is of the present stage.
+/// State of the current stage.
 enum Work {
     Reading(Box<Reader>),
     Facing(Mesh),
@@ -131,11 +137,11 @@ enum Work {
 }
 
 impl Job {
-    /// Begins with a file, of whose points `centres` (see [`CENTRES`]) will be interpolated. `name` is for reports.
+    /// Job for a file. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated; `name` is for reports.
     ///
     /// # Errors
     ///
-    /// If the number of centres is out of its range, or the file's size, kind or header is wrong.
+    /// If the number of centres is out of range, or if the size, format or header of the file is wrong.
     pub fn file(name: &str, bytes: Vec<u8>, centres: u32) -> Result<Self, JobError> {
         if !CENTRES.contains(&centres) {
             return Err(JobError::Centres { count: centres });
@@ -145,11 +151,11 @@ impl Job {
         Ok(Self { work: Work::Reading(reader), info, wanted: centres, centres: Vec::new() })
     }
 
-    /// Begins with a built-in model, all of whose points are interpolated.
+    /// Job for a built-in model, all of whose points are interpolated.
     ///
     /// # Errors
     ///
-    /// If there is none of this name.
+    /// If there is no model with this identifier.
     pub fn model(id: &str) -> Result<Self, JobError> {
         let unknown = || JobError::UnknownModel { id: id.to_owned() };
         let model = model::find(id).ok_or_else(unknown)?;
@@ -162,38 +168,44 @@ impl Job {
         })
     }
 
-    /// How far it has come.
+    /// Current progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        // Where the part begins and how long it is, as shares of the whole time: of a file of some megabytes, since a small
-        // one is over before anyone looks.
+        // Begin and length of the stage as shares of the whole time, for a file of some megabytes. A smaller one is done at
+        // once.
         let (stage, label, begins, length, share) = match &self.work {
-            Work::Reading(reader) => (Stage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
+            Work::Reading(reader) => (JobStage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
             Work::Facing(mesh) => {
-                (Stage::Normals, "Finding normals from the faces", 0.4, 0.05, mesh.summed())
+                (JobStage::Normals, "Finding normals from the faces", 0.4, 0.05, mesh.fraction_summed())
             }
-            Work::Merging(merger) => (Stage::Thinning, "Joining equal points", 0.45, 0.15, merger.fraction()),
-            // How many grids it will take is not known.
-            Work::Thinning(_) => (Stage::Thinning, "Thinning out", 0.6, 0.05, 0.0),
+            Work::Merging(merger) => {
+                (JobStage::Thinning, "Joining equal points", 0.45, 0.15, merger.fraction())
+            }
+            // The number of grids that thinning will take is not known.
+            Work::Thinning(_) => (JobStage::Thinning, "Thinning out", 0.6, 0.05, 0.0),
             Work::Estimating(_, estimator) => {
-                (Stage::Normals, "Estimating normals", 0.65, 0.1, estimator.fraction())
+                (JobStage::Normals, "Estimating normals", 0.65, 0.1, estimator.fraction())
             }
             Work::Spreading(_, spreader) => {
-                (Stage::Thinning, "Choosing centres", 0.75, 0.05, spreader.fraction())
+                (JobStage::Thinning, "Choosing centres", 0.75, 0.05, spreader.fraction())
             }
-            Work::Solving(fitter) => (Stage::Solving, "Solving for the surface", 0.8, 0.2, fitter.fraction()),
-            Work::Done(_) | Work::Failed(_) => (Stage::Done, "Done", 1.0, 0.0, 0.0),
+            Work::Solving(fitter) => {
+                (JobStage::Solving, "Solving for the surface", 0.8, 0.2, fitter.fraction())
+            }
+            Work::Done(_) | Work::Failed(_) => (JobStage::Done, "Done", 1.0, 0.0, 0.0),
         };
         let done = matches!(self.work, Work::Done(_));
         Progress { stage, label, fraction: begins + share * length, done }
     }
 
-    /// Does up to `budget` pieces of work, each of a millisecond at most; but between two stages of a file with millions of
-    /// points there may be some tens of them.
+    /// Does up to `budget` units of work and returns the progress.
+    ///
+    /// A unit takes a millisecond at most, except between two stages of a file with millions of points, where it may take
+    /// some tens of milliseconds.
     ///
     /// # Errors
     ///
-    /// What is wrong with the file, the points or the system; the same again in every later call.
+    /// What is wrong with the file, the points or the system. Every later call returns the same error.
     pub fn step(&mut self, budget: u32) -> Result<Progress, JobError> {
         for _ in 0..budget {
             let work = match &self.work {
@@ -209,7 +221,7 @@ impl Job {
         }
     }
 
-    /// The field, once it is there.
+    /// The field, once it is complete.
     #[must_use]
     pub fn fit(&self) -> Option<&Fit> {
         match &self.work {
@@ -218,12 +230,13 @@ impl Job {
         }
     }
 
-    /// The points that are interpolated, once they are chosen.
+    /// Points that are interpolated, once they are chosen.
     #[must_use]
     pub fn centres(&self) -> &[DVec3] {
         &self.centres
     }
 
+    /// Does one unit of work and returns the next state.
     fn advance(&mut self, work: Work) -> Result<Work, JobError> {
         Ok(match work {
             Work::Reading(mut reader) => {
@@ -287,7 +300,7 @@ impl Job {
             }
             Work::Solving(mut fitter) => match fitter.step(1)? {
                 Some(mut fit) => {
-                    // The fit knows the points that were left after thinning.
+                    // The fit counts only the points that thinning has left.
                     fit.info.points = self.info.points.max(fit.info.points);
                     Work::Done(Box::new(fit))
                 }
@@ -302,7 +315,7 @@ impl Job {
         Work::Spreading(cloud, spreader)
     }
 
-    /// Moves points that lie far away for their size to the origin, by round numbers, and says so.
+    /// Moves points far from the origin, relative to their size, by round numbers to the origin, and warns of it.
     fn bring_near(&mut self, points: &mut [DVec3]) {
         let (lo, hi) = corners(points);
         let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
@@ -321,7 +334,7 @@ impl Job {
     }
 }
 
-/// The multiple of a power of ten, the largest one up to `unit`, that is nearest to `x`.
+/// Multiple nearest to `x` of the largest power of ten not above `unit`.
 fn round_to(x: f64, unit: f64) -> f64 {
     let (mut power, mut inverse) = (1.0, 1.0);
     while power * 10.0 <= unit {
@@ -330,6 +343,6 @@ fn round_to(x: f64, unit: f64) -> f64 {
     while power / inverse > unit {
         inverse *= 10.0;
     }
-    // Divided by whole numbers, so that the result is the double nearest to its decimals; and no negative zero.
+    // Division by integers gives the double nearest to the decimal. Adding 0 avoids a negative zero.
     (x / power * inverse).round() / inverse * power + 0.0
 }

@@ -1,8 +1,9 @@
-//! Models from points: from a file, or from the points that are built in, to an interpolating function.
+//! Models from points: an interpolating function for a file of points or for a built-in model.
 //!
-//! The way is [`Cloud`] (read, with normals) → a few hundred centres that are far from each other → a solved system,
-//! `RbfData`. All of it is outside of the core that samples, which takes the solved system alone:
-//! the page solves in a module and a worker of its own.
+//! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each other, become the centres
+//! of a radial basis function, whose coefficients solve a linear system. The result is an
+//! [`RbfData`](crate::field::rbf::RbfData), which is all that the sampler's core takes: the page solves in a module and a
+//! worker of their own.
 
 mod eigen;
 pub mod fit;
@@ -18,12 +19,12 @@ pub use crate::field::model::{ModelInfo, NormalSource};
 
 use glam::DVec3;
 
-/// Points with unit normals that point outward.
+/// Points, with unit normals that point outward.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloud {
     /// Positions.
     pub position: Vec<DVec3>,
-    /// Unit normals, as many as positions; none at all if they are still to be estimated.
+    /// Unit normals, one for each position, or none at all if they are still to be estimated.
     pub normal: Vec<DVec3>,
     /// Where the normals come from.
     pub source: NormalSource,
@@ -50,19 +51,19 @@ impl Cloud {
     }
 }
 
-/// Why nothing can be made of points.
+/// Why no surface can be fitted to points.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CloudError {
-    /// All of them are one point.
+    /// All points coincide.
     #[error("all points are at the same place; a surface takes points all round it")]
     OnePlace,
-    /// All of them lie on a line.
+    /// All points lie on a line.
     #[error("all points lie on a straight line; a surface takes points all round it")]
     Line,
-    /// All of them lie in a plane.
+    /// All points lie in a plane.
     #[error("all points lie in a plane; a surface takes points all round it")]
     Plane,
-    /// The memory does not hold them.
+    /// There is not enough memory for the points.
     #[error("there is not enough memory for these points; give fewer, for example every tenth")]
     Memory,
 }

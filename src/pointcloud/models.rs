@@ -1,22 +1,22 @@
-//! The built-in models: 200 points each, as many as the paper's have (§6), in a few kilobytes.
+//! Built-in models of 200 points each, like those of the paper (§6).
 //!
-//! A file of `data` holds the smallest corner and the side of a cube as four little-endian floats, then five whole numbers
-//! of 16 bits per point: the position in the cube and the normal, folded onto an octahedron (Meyer et al. 2010).
-//! `tests/it/models.rs` makes the files and says where the points come from.
+//! A file in `data` holds the smallest corner and the side of a cube as four little-endian floats. Five 16-bit integers
+//! follow for each point: its position in the cube, and its normal in the octahedral encoding (Q. Meyer et al., "On
+//! Floating-Point Normal Vectors", 2010). `tests/it/models.rs` makes the files and states where the points come from.
 
 use super::fit::Fitter;
 use super::{Cloud, ModelInfo, NormalSource};
 use crate::field::model::Model;
 use glam::{DVec2, DVec3};
 
-/// Largest of the whole numbers.
+/// Largest 16-bit integer.
 const STEPS: f64 = 65_535.0;
-/// Floats before the points.
+/// Number of floats before the points.
 const HEAD: usize = 4;
-/// Whole numbers per point.
+/// Number of integers per point.
 const NUMBERS: usize = 5;
 
-/// The points of the built-in model with this identifier.
+/// Points of the built-in model with the identifier `id`.
 #[must_use]
 pub fn cloud(id: &str) -> Option<Cloud> {
     let (bytes, source): (&[u8], _) = match id {
@@ -29,11 +29,11 @@ pub fn cloud(id: &str) -> Option<Cloud> {
     Some(Cloud { source, ..decode(bytes) })
 }
 
-/// Begins the field of a built-in model.
+/// Fitter of a built-in model, all of whose points are centres.
 ///
 /// # Panics
 ///
-/// Never: a test begins every model.
+/// Never: a test calls it for every model.
 #[must_use]
 pub fn begin(model: &Model) -> Fitter {
     let points = cloud(model.id).unwrap_or_default();
@@ -42,7 +42,7 @@ pub fn begin(model: &Model) -> Fitter {
     Fitter::new(&points, given, info).unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
 }
 
-/// Reads a data file.
+/// Decodes a data file.
 fn decode(bytes: &[u8]) -> Cloud {
     let (head, points) = bytes.split_at(HEAD * size_of::<f32>());
     let head = head.as_chunks().0;
@@ -51,16 +51,16 @@ fn decode(bytes: &[u8]) -> Cloud {
     for numbers in points.as_chunks().0.as_chunks::<NUMBERS>().0 {
         let [i, j, k, u, v] = numbers.map(|bytes| f64::from(u16::from_le_bytes(bytes)) / STEPS);
         cloud.position.push(DVec3::new(x, y, z) + DVec3::new(i, j, k) * side);
-        cloud.normal.push(unfold(2.0 * DVec2::new(u, v) - 1.0));
+        cloud.normal.push(octahedral_decode(2.0 * DVec2::new(u, v) - 1.0));
     }
     cloud
 }
 
-/// Writes a data file: what [`cloud`] reads, up to rounding.
+/// Encodes a data file. [`cloud`] reads it back up to rounding.
 ///
 /// # Panics
 ///
-/// If there is no point.
+/// If the cloud is empty.
 #[must_use]
 pub fn encode(cloud: &Cloud) -> Vec<u8> {
     assert!(!cloud.is_empty(), "a model has points");
@@ -71,26 +71,29 @@ pub fn encode(cloud: &Cloud) -> Vec<u8> {
         [lo.x, lo.y, lo.z, side].iter().flat_map(|&x| (x as f32).to_le_bytes()).collect();
     let lo = lo.as_vec3().as_dvec3();
     for (&p, &n) in cloud.position.iter().zip(&cloud.normal) {
-        let (p, n) = ((p - lo) / side, 0.5 * fold(n) + 0.5);
+        let (p, n) = ((p - lo) / side, 0.5 * octahedral_encode(n) + 0.5);
         let numbers = [p.x, p.y, p.z, n.x, n.y].map(|x| (x * STEPS).round() as u16);
         bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     }
     bytes
 }
 
-/// A direction on the square −1 … 1: the upper half of the octahedron |x| + |y| + |z| = 1 seen from above, the lower half
-/// folded out over its edges.
-fn fold(n: DVec3) -> DVec2 {
+/// Octahedral encoding of a direction, on the square from −1 to 1.
+///
+/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z; the lower half is unfolded over its edges.
+fn octahedral_encode(n: DVec3) -> DVec2 {
     let flat = n.truncate() / (n.x.abs() + n.y.abs() + n.z.abs());
-    if n.z < 0.0 { over_the_edge(flat) } else { flat }
+    if n.z < 0.0 { unfold_lower_half(flat) } else { flat }
 }
 
-fn unfold(flat: DVec2) -> DVec3 {
+/// Direction with an octahedral encoding.
+fn octahedral_decode(flat: DVec2) -> DVec3 {
     let z = 1.0 - flat.x.abs() - flat.y.abs();
-    let flat = if z < 0.0 { over_the_edge(flat) } else { flat };
+    let flat = if z < 0.0 { unfold_lower_half(flat) } else { flat };
     flat.extend(z).normalize_or(DVec3::Z)
 }
 
-fn over_the_edge(flat: DVec2) -> DVec2 {
+/// Exchanges the inner diamond of the square with its four corners.
+fn unfold_lower_half(flat: DVec2) -> DVec2 {
     (1.0 - DVec2::new(flat.y, flat.x).abs()) * DVec2::new(1.0_f64.copysign(flat.x), 1.0_f64.copysign(flat.y))
 }

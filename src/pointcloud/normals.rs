@@ -1,13 +1,17 @@
-//! Normals of points that have none: the plane through each point's neighbours, and one side for all of them (Hoppe, DeRose,
-//! Duchamp, McDonald and Stuetzle, "Surface Reconstruction from Unorganized Points", SIGGRAPH 1992, §3.2 and 3.3).
+//! Estimation of consistently oriented normals.
 //!
-//! # Differs from the paper
+//! The normal of a point is that of the plane through its neighbours, and its sign is propagated from point to point
+//! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points", SIGGRAPH
+//! 1992, §3.2 and 3.3).
 //!
-//! The normal that is carried along an edge is mirrored in the plane between its ends, and the cost of the edge is what the two
-//! normals then differ by: 1,839 vertices of the bunny have 7 normals turned wrongly, and 51 without it. The graph has an edge
-//! from every point to its nearest ones, and no Euclidean spanning tree beside them: where it falls
-//! into pieces, each is turned outward by itself. Outward is not decided by the highest point alone but by the outermost ones
-//! in six directions together.
+//! # Differences from the paper
+//!
+//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and the weight of the edge
+//!   is the difference of the two normals after that. Of 1,839 vertices of the bunny 7 get a normal of the wrong sign; without
+//!   the reflection 51 do.
+//! * The graph has an edge from every point to its nearest neighbours, without the edges of a Euclidean minimum spanning
+//!   tree. Each connected component of the graph is oriented by itself.
+//! * Outward is decided by the outermost points in six directions together, not by the highest point alone.
 
 use super::thin::{corners, covariance};
 use super::{Cloud, CloudError, NormalSource, eigen};
@@ -16,32 +20,35 @@ use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
-/// Neighbours of a point. Fewer follow the noise: on spheres and tori of 200 to 20,000 points with noise of a tenth of the
-/// spacing, the mean error of 8, 12 and 16 is as 3 to 2 to 1.5. More see the other side of what is thin: of the bunny's 1,839
-/// vertices 3, 7 and 23 normals then point inward.
+/// Number of neighbours that a plane is fitted to. Fewer follow the noise, more reach the far side of thin parts.
+///
+/// With 8, 12 and 16 neighbours, the mean errors on spheres and tori of 200 to 20,000 points with noise of a tenth of the
+/// spacing are as 3 : 2 : 1.5, and of the bunny's 1,839 normals 3, 7 and 23 point inward.
 const NEIGHBOURS: usize = 12;
 
-/// Neighbours with an angle between their normals of more than 120° are on sheets near each other, or one is turned wrongly.
+/// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has the wrong sign.
 const OPPOSITE_COS: f64 = -0.5;
 
-/// Share of such pairs from which on the user is told.
-const DOUBTFUL_SHARE: f64 = 0.01;
+/// Share of such pairs above which the user is warned.
+const WARN_SHARE: f64 = 0.01;
 
-/// Estimates normals, a bounded piece of work at a time.
+/// Estimates normals in slices of bounded work.
 #[derive(Debug)]
 pub struct Estimator {
-    /// Relative to the middle of their box, with its diagonal as the unit.
+    /// Points relative to the centre of their box, in units of its diagonal.
     local: Vec<DVec3>,
     tree: Tree,
+    /// Number of neighbours of each point.
     per_point: usize,
-    /// Nearest points of each point, the point itself left out.
+    /// Nearest neighbours of each point in turn, without the point itself.
     neighbours: Vec<u32>,
     normal: Vec<DVec3>,
-    found: Vec<u64>,
+    /// Scratch space of a search.
+    nearest: Vec<u64>,
 }
 
 impl Estimator {
-    /// Begins with points that are all different and spread in space.
+    /// Begins the estimation for `points`, which must be distinct and not in one plane.
     #[must_use]
     pub fn new(points: &[DVec3]) -> Self {
         let (lo, hi) = corners(points);
@@ -54,19 +61,19 @@ impl Estimator {
             local,
             neighbours: Vec::new(),
             normal: Vec::new(),
-            found: Vec::new(),
+            nearest: Vec::new(),
         }
     }
 
-    /// Lays planes through the neighbours of up to `budget` more points; true when all are done.
+    /// Fits planes to the neighbours of up to `budget` more points. Returns whether all points are done.
     pub fn step(&mut self, budget: u32) -> bool {
         let end = self.local.len().min(self.normal.len() + budget as usize);
         for i in self.normal.len()..end {
             let p = self.local[i];
-            self.tree.nearest_many(p.as_vec3(), self.per_point + 1, |_| true, &mut self.found);
-            let near = self.found.iter().map(|&key| self.tree.origin[unkey(key).1 as usize]);
+            self.tree.nearest_many(p.as_vec3(), self.per_point + 1, |_| true, &mut self.nearest);
+            let near = self.nearest.iter().map(|&key| self.tree.origin[unkey(key).1 as usize]);
             let from = self.neighbours.len();
-            // Of points that are the same in single precision, the point itself may be missing.
+            // If points coincide in single precision, the point itself may be missing among its nearest ones.
             self.neighbours.extend(near.filter(|&j| j as usize != i).take(self.per_point));
             let near =
                 || core::iter::once(p).chain(self.neighbours[from..].iter().map(|&j| self.local[j as usize]));
@@ -77,34 +84,35 @@ impl Estimator {
         end == self.local.len()
     }
 
-    /// Share of the points that are done.
+    /// Fraction of the points that are done.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         self.normal.len() as f64 / self.local.len().max(1) as f64
     }
 
-    /// Turns all normals outward; they belong to the points of [`Estimator::new`], and there may be things to say.
+    /// Orients the normals outward and stores them in `cloud`, whose points must be those of [`Estimator::new`]. Returns
+    /// warnings for the user.
     ///
     /// # Errors
     ///
     /// If there is not enough memory.
     pub fn finish(mut self, cloud: &mut Cloud) -> Result<Vec<String>, CloudError> {
         let edges = self.edges()?;
-        let pieces = self.orient(&edges);
+        let components = self.orient(&edges);
         let mut warnings = vec![
             "The file has no normals: they were estimated from each point's neighbours, and where the surface is thin or \
              sparsely sampled they can be wrong."
                 .to_owned(),
         ];
-        if pieces > 1 {
+        if components > 1 {
             warnings.push(format!(
-                "The points fall into {pieces} pieces without a connection; the normals of each were turned outward by itself."
+                "The points fall into {components} pieces without a connection; the normals of each were turned outward by itself."
             ));
         }
         let opposite =
             self.pairs().filter(|&(i, j)| self.normal[i].dot(self.normal[j]) < OPPOSITE_COS).count();
         let share = opposite as f64 / self.neighbours.len().max(1) as f64;
-        if share > DOUBTFUL_SHARE {
+        if share > WARN_SHARE {
             warnings.push(format!(
                 "{:.0} % of neighbouring points have opposite estimated normals: give a file with normals, or more points.",
                 100.0 * share
@@ -115,14 +123,17 @@ impl Estimator {
         Ok(warnings)
     }
 
-    /// Every point with each of its neighbours.
+    /// Pairs of each point and each of its neighbours.
     fn pairs(&self) -> impl Iterator<Item = (usize, usize)> {
         let per_point = self.per_point.max(1);
         self.neighbours.iter().enumerate().map(move |(k, &j)| (k / per_point, j as usize))
     }
 
-    /// The graph in both directions: the points that each point has an edge to, one after another, and where those of each
-    /// point begin.
+    /// Adjacency lists of the undirected graph: for each point the index of its first entry, and the entries of all points.
+    ///
+    /// # Errors
+    ///
+    /// If there is not enough memory.
     fn edges(&self) -> Result<(Vec<u32>, Vec<u32>), CloudError> {
         let mut first = vec![0_u32; self.local.len() + 1];
         let mut ends = Vec::new();
@@ -146,20 +157,22 @@ impl Estimator {
         Ok((first, ends))
     }
 
-    /// Carries the side from point to point along the minimum spanning tree over 1 − |agreement| (Prim's algorithm), so that it
-    /// goes where the normals say most about each other; then turns each piece outward. The number of pieces.
+    /// Orients the normals and returns the number of connected components of the graph.
+    ///
+    /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's algorithm), so that it
+    /// follows the edges on which it is most certain. Each component is then turned outward.
     fn orient(&mut self, (first, ends): &(Vec<u32>, Vec<u32>)) -> usize {
         let mut reached = vec![false; self.local.len()];
         let mut queue = BinaryHeap::new();
-        let mut piece = Vec::new();
-        let mut pieces = 0;
+        let mut component = Vec::new();
+        let mut components = 0;
         for start in 0..self.local.len() {
             if reached[start] {
                 continue;
             }
-            pieces += 1;
-            piece.clear();
-            // Weights are not negative, so their bits are in their order; ties go by the points' numbers.
+            components += 1;
+            component.clear();
+            // The bits of weights, which are not negative, have the order of the weights. Ties go to the smaller index.
             queue.push(Reverse((0_u64, start as u32, start as u32)));
             while let Some(Reverse((_, point, from))) = queue.pop() {
                 let i = point as usize;
@@ -167,7 +180,7 @@ impl Estimator {
                     continue;
                 }
                 reached[i] = true;
-                piece.push(point);
+                component.push(point);
                 if self.agreement(from as usize, i) < 0.0 {
                     self.normal[i] = -self.normal[i];
                 }
@@ -178,36 +191,38 @@ impl Estimator {
                     }
                 }
             }
-            if self.inward(&piece) {
-                for &i in &piece {
+            if self.points_inward(&component) {
+                for &i in &component {
                     self.normal[i as usize] = -self.normal[i as usize];
                 }
             }
         }
-        pieces
+        components
     }
 
-    /// Cosine between the normal of point `j` and that of point `i` carried over to it: mirrored in the plane between the two
-    /// points. On a circle that gives the other's normal exactly, round whatever bend, and on the far side of a thin sheet the
-    /// opposite one, which is right there.
+    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the plane that bisects the
+    /// two points.
+    ///
+    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin part it gives the opposite
+    /// one, which is right there.
     fn agreement(&self, i: usize, j: usize) -> f64 {
         let along = (self.local[j] - self.local[i]).normalize_or_zero();
         let carried = self.normal[i] - 2.0 * self.normal[i].dot(along) * along;
         carried.dot(self.normal[j])
     }
 
-    /// Whether the normals of the outermost points of a piece, in the six directions of the axes, point inward on the whole.
-    fn inward(&self, piece: &[u32]) -> bool {
+    /// Whether the normals of the outermost points of a component, in the six axis directions, point inward on the whole.
+    fn points_inward(&self, component: &[u32]) -> bool {
         let mut sum = 0.0;
         for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
-            let mut outermost = piece[0] as usize;
-            for &i in piece {
+            let mut outermost = component[0] as usize;
+            for &i in component {
                 if self.local[i as usize].dot(axis) > self.local[outermost].dot(axis) {
                     outermost = i as usize;
                 }
             }
             let along = self.normal[outermost].dot(axis);
-            // A normal across the direction says nothing about it.
+            // Squares weigh the directions: a normal perpendicular to the axis does not count.
             sum += along * along.abs();
         }
         sum < 0.0

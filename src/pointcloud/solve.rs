@@ -1,46 +1,45 @@
-//! Solves a large symmetric system in pieces: LU with partial pivoting, a panel of columns at a time, so that whoever waits
-//! can be told how far it has come.
+//! Solver of a large symmetric system: blocked LU decomposition with partial pivoting, in steps.
 //!
-//! The panels and the triangular systems are nalgebra's work; only the update of the columns to the right of a panel,
-//! where nearly all of the time goes, is written out here. Neither uses a fused multiply-add, so the solution has the same
-//! bits natively and in WebAssembly.
+//! nalgebra factorises the panels and solves the triangular systems. The update of the columns to the right of a panel,
+//! which takes nearly all of the time, is written out here. Neither uses a fused multiply-add, so the solution has the
+//! same bits natively and in WebAssembly.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Columns per panel: enough that a panel is read seldom, few enough that its rows stay in the cache.
+/// Columns per panel: enough to read a panel seldom, few enough to keep its rows in the cache.
 const PANEL: usize = 32;
-/// Rows updated at a time: 64 kB of a panel, which a second-level cache keeps for all the columns it updates.
+/// Rows updated together: 64 kB of a panel, which stay in a second-level cache for all the columns they update.
 const ROWS: usize = 256;
-/// Steps of Hager's estimator at most; it nearly always ends after two or three.
+/// Maximum number of steps of Hager's estimator, which nearly always ends after two or three.
 const ESTIMATOR_STEPS: usize = 5;
 
-/// A system being eliminated.
+/// LU decomposition in progress.
 #[derive(Clone, Debug)]
 pub(super) struct Elimination {
-    /// What is left of the matrix, with the factors in the place of what has been eliminated.
+    /// Remaining matrix, in which the factors L and U replace the eliminated part.
     matrix: DMatrix<f64>,
-    /// The rows exchanged in each step.
+    /// Rows exchanged in each step.
     exchanges: Vec<(usize, usize)>,
     /// ‖A‖₁.
     norm: f64,
-    /// First column of the panel under way.
+    /// First column of the current panel.
     panel: usize,
-    /// First column that the panel has not updated yet; `panel` itself before it is factorised.
+    /// First column that the panel has not yet updated, or `panel` until the panel is factorised.
     next: usize,
 }
 
-/// A pivot is zero or not a number.
+/// Error: a pivot is zero or not finite, so the matrix is singular.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Singular;
 
 impl Elimination {
-    /// The elimination of a symmetric matrix.
+    /// Begins the decomposition of a symmetric matrix.
     pub(super) fn new(matrix: DMatrix<f64>) -> Self {
         let norm = matrix.column_iter().map(|column| column.lp_norm(1)).fold(0.0, f64::max);
         Self { matrix, exchanges: Vec::new(), norm, panel: 0, next: 0 }
     }
 
-    /// Share of the work done.
+    /// Fraction of the work done, from 0 to 1.
     pub(super) fn fraction(&self) -> f64 {
         let n = self.matrix.nrows().max(1) as f64;
         let left = |done: usize| (n - done as f64).max(0.0) / n;
@@ -49,8 +48,8 @@ impl Elimination {
         1.0 - open(self.panel) + share * (open(self.panel) - open(self.panel + PANEL))
     }
 
-    /// Factorises the next panel, or updates the next columns by the last one: at most 32² multiplications a row. True
-    /// when all is eliminated.
+    /// Factorises the next panel, or updates the next [`PANEL`] columns by the current one; either takes at most 32²
+    /// multiplications per row. Returns whether the decomposition is complete.
     pub(super) fn step(&mut self) -> Result<bool, Singular> {
         let n = self.matrix.nrows();
         if self.panel < n {
@@ -68,7 +67,7 @@ impl Elimination {
         Ok(self.panel == n)
     }
 
-    /// Factorises the panel, and exchanges whole rows as its pivots ask.
+    /// Factorises the panel and exchanges whole rows to bring the pivots to the diagonal.
     fn factorise(&mut self) -> Result<(), Singular> {
         let (n, first) = (self.matrix.nrows(), self.panel);
         let end = (first + PANEL).min(n);
@@ -91,7 +90,7 @@ impl Elimination {
         Ok(())
     }
 
-    /// Updates the next columns by the panel: U = L⁻¹ A above, A − L U below.
+    /// Updates the next columns by the panel: to L⁻¹ A in its rows, to A − L U below.
     fn update(&mut self) {
         let (n, first, next) = (self.matrix.nrows(), self.panel, self.next);
         let (below, width) = (first + PANEL, PANEL.min(n - next));
@@ -112,7 +111,7 @@ impl Elimination {
         }
     }
 
-    /// Solves A x = `right` in place, once all is eliminated.
+    /// Solves A x = `right` in place, once the decomposition is complete.
     pub(super) fn solve(&self, right: &mut DVector<f64>) -> Result<(), Singular> {
         for &(k, pivot) in &self.exchanges {
             right.swap_rows(k, pivot);
@@ -122,9 +121,10 @@ impl Elimination {
         if lower && upper && right.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Singular) }
     }
 
-    /// Estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, from below and seldom by more than a factor of three (Hager 1984;
-    /// Higham, "Accuracy and Stability of Numerical Algorithms", algorithm 15.1). The matrix is symmetric, so its
-    /// transpose needs no solver of its own.
+    /// Lower estimate of the condition number ‖A‖₁ ‖A⁻¹‖₁, seldom too small by more than a factor of three (Hager 1984;
+    /// Higham, "Accuracy and Stability of Numerical Algorithms", algorithm 15.1).
+    ///
+    /// The matrix is symmetric, so systems with its transpose need no solver of their own.
     pub(super) fn condition(&self) -> Result<f64, Singular> {
         let n = self.matrix.nrows();
         let mut x = DVector::from_element(n, 1.0 / n as f64);
@@ -145,7 +145,7 @@ impl Elimination {
     }
 }
 
-/// Subtracts four columns, each times its factor.
+/// Subtracts four columns from `target`, each times its factor.
 fn subtract(target: &mut [f64], [a, b, c, d]: [&[f64]; 4], [p, q, r, s]: &[f64; 4]) {
     let columns = a.iter().zip(b).zip(c.iter().zip(d));
     for (x, ((a, b), (c, d))) in target.iter_mut().zip(columns) {

@@ -1,46 +1,47 @@
-//! From millions of points to a few hundred that are far from each other.
+//! Reduction of millions of points to a few hundred that are far from each other: merging, thinning on a grid, and
+//! farthest-point sampling.
 
-use super::table::Table;
+use super::table::PointTable;
 use super::{Cloud, CloudError};
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Points kept by the grid, from which the centres are then chosen and in which normals are estimated. Twenty thousand are
-/// spaced at about a hundredth of the model's size, a tenth of the distance between 200 centres.
+/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen among
+/// them. The spacing of twenty thousand is about a hundredth of the model's size, a tenth of that of 200 centres.
 pub const KEPT: usize = 20_000;
 
-/// Points nearer to each other than this share of the diagonal of their box are not both taken as centres: the system for a
-/// few hundred centres loses a digit each time that the distance between two of them is halved.
-const SAME_SHARE: f64 = 1e-4;
+/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a few hundred centres loses
+/// a digit each time that the distance between two of them is halved.
+const MIN_DISTANCE_SHARE: f64 = 1e-4;
 
-/// Standard deviation across a line or a plane, as a share of that along it, up to which points lie in it. The digits of
-/// coordinates in single precision end below this.
+/// Largest standard deviation across a line or plane, as a share of that along it, at which points count as lying in it. It
+/// is above the rounding of coordinates in single precision.
 const FLAT_SHARE: f64 = 1e-5;
 
-/// Corners of the smallest box round the points; they must not be none.
+/// Smallest and largest corner of the bounding box of `points`, which must not be empty.
 pub(super) fn corners(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
 }
 
-/// Joins points at the same place, whose normals are added: files have a point several times where faces meet that are drawn
-/// differently.
+/// Merges coincident points and adds their normals. A file has a point several times where faces with different attributes
+/// meet.
 #[derive(Debug)]
 pub struct Merger {
-    /// Each place once up to `kept`, and the points that are not looked at from `next` on.
+    /// The distinct points in `0..kept`, and those still to be looked at from `next` on.
     cloud: Cloud,
     kept: usize,
     next: usize,
-    table: Table,
+    table: PointTable,
 }
 
 impl Merger {
-    /// Begins with `cloud`.
+    /// Begins to merge the points of `cloud`.
     #[must_use]
     pub fn new(cloud: Cloud) -> Self {
-        Self { cloud, kept: 0, next: 0, table: Table::default() }
+        Self { cloud, kept: 0, next: 0, table: PointTable::default() }
     }
 
-    /// Looks at up to `budget` more points; true when all are looked at.
+    /// Looks at up to `budget` more points. Returns whether all points are done.
     ///
     /// # Errors
     ///
@@ -66,13 +67,13 @@ impl Merger {
         Ok(end == position.len())
     }
 
-    /// Share of the points that are looked at.
+    /// Fraction of the points that are done.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         self.next as f64 / self.cloud.len().max(1) as f64
     }
 
-    /// Each place once, and how many points that joined. Points whose normals cancel are left out.
+    /// Distinct points, and the number of points that merging removed. Points whose normals cancel are left out.
     #[must_use]
     pub fn finish(mut self) -> (Cloud, usize) {
         let joined = self.cloud.len() - self.kept;
@@ -91,36 +92,44 @@ impl Merger {
     }
 }
 
-/// Keeps at most [`KEPT`] points of many: the first one in each cell of a grid whose cells are as small as that allows.
+/// Keeps at most [`KEPT`] points: the first one in each cell of a grid. The grid is the finest one, up to a factor, that
+/// keeps no more.
 #[derive(Debug)]
 pub struct Thinner {
     cloud: Cloud,
     lo: DVec3,
     side: f64,
     next: usize,
-    table: Table,
+    table: PointTable,
+    /// Cells of the current grid that hold a point.
     cells: Vec<DVec3>,
+    /// First point in each of these cells.
     kept: Vec<u32>,
-    /// What the finest grid so far that was coarse enough kept.
+    /// Points kept by the finest grid so far that was coarse enough.
     best: Vec<u32>,
-    /// Whether a grid was too fine already.
+    /// Whether a grid was too fine.
     met_limit: bool,
+    /// Number of grids tried.
     passes: u32,
 }
 
-/// Factors between the sides of the cells of one grid and the next.
+/// Ratio of the cell sizes of a grid and the previous one, if that was too coarse.
 const FINER: f64 = 0.5;
+/// Ratio of the cell sizes of a grid and the previous one, if that was too fine.
 const COARSER: f64 = 1.2;
-/// A grid with fewer cells than this share of [`KEPT`] is tried finer.
+/// Share of [`KEPT`] below which a finer grid is tried.
 const ENOUGH: f64 = 0.3;
-/// Grids that are tried. Halved as often, the cells are smaller than the digits of single precision can tell apart.
-const MOST_PASSES: u32 = 24;
-/// Cells that a surface meets, per area of a cell's face and area of the surface, times its area over that of the diagonal
-/// squared: 1.5 for a plane in any direction, and 0.9 for a sphere in its box. The first guess rests on it, nothing else.
+/// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single precision.
+const MAX_PASSES: u32 = 24;
+/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared diagonal of the box. It
+/// serves for the first guess of the cell size only.
+///
+/// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a typical ratio of the area
+/// of a surface to the squared diagonal of its box (1.05 for a sphere).
 const CELLS_PER_SQUARE: f64 = 1.35;
 
 impl Thinner {
-    /// Begins with `cloud`.
+    /// Begins to thin out `cloud`.
     #[must_use]
     pub fn new(cloud: Cloud) -> Self {
         let (lo, hi) = corners(&cloud.position);
@@ -132,22 +141,22 @@ impl Thinner {
             lo,
             side,
             next: 0,
-            table: Table::default(),
+            table: PointTable::default(),
             cells: Vec::new(),
             kept: Vec::new(),
             met_limit: false,
-            passes: if few { MOST_PASSES } else { 0 },
+            passes: if few { MAX_PASSES } else { 0 },
         }
     }
 
-    /// Looks at up to `budget` more points; true when the grid is found.
+    /// Looks at up to `budget` more points. Returns whether the grid is found.
     ///
     /// # Errors
     ///
     /// If there is not enough memory.
     pub fn step(&mut self, budget: u32) -> Result<bool, CloudError> {
         for _ in 0..budget {
-            if self.passes >= MOST_PASSES {
+            if self.passes >= MAX_PASSES {
                 return Ok(true);
             }
             match self.cloud.position.get(self.next) {
@@ -163,9 +172,10 @@ impl Thinner {
                 _ => self.end_pass(),
             }
         }
-        Ok(self.passes >= MOST_PASSES)
+        Ok(self.passes >= MAX_PASSES)
     }
 
+    /// Evaluates the current grid and begins the next one.
     fn end_pass(&mut self) {
         self.passes += 1;
         let fits = self.cells.len() <= KEPT;
@@ -175,32 +185,34 @@ impl Thinner {
         let enough = self.best.len() as f64 >= ENOUGH * KEPT as f64;
         self.met_limit |= !fits;
         if fits && (enough || self.met_limit) || !fits && !self.best.is_empty() {
-            self.passes = MOST_PASSES;
+            self.passes = MAX_PASSES;
         }
         self.side *= if fits { FINER } else { COARSER };
         self.next = 0;
         self.cells.clear();
         self.kept.clear();
-        self.table = Table::default();
+        self.table = PointTable::default();
     }
 
-    /// What is kept, in the order of the file.
+    /// The kept points, in the order of the file.
     #[must_use]
     pub fn finish(self) -> Cloud {
         self.cloud.only(&self.best)
     }
 }
 
-/// Checks that points are spread in space.
+/// Checks that points are not degenerate.
 ///
 /// # Errors
 ///
-/// If they lie in one place, on a line or in a plane.
+/// If the points coincide, lie on a line or lie in a plane.
 pub fn check_spread(points: &[DVec3]) -> Result<(), CloudError> {
     let (lo, hi) = corners(points);
     let (middle, diagonal) = ((lo + hi) / 2.0, (hi - lo).length());
-    // Of a single point both the diagonal and the coordinates can be 0.
-    if points.len() < 2 || diagonal <= SAME_SHARE * SAME_SHARE * lo.abs().max(hi.abs()).max_element() {
+    // For a single point at the origin, both sides of the comparison are 0.
+    if points.len() < 2
+        || diagonal <= MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * lo.abs().max(hi.abs()).max_element()
+    {
         return Err(CloudError::OnePlace);
     }
     let local = || points.iter().map(|p| (*p - middle) / diagonal);
@@ -214,7 +226,7 @@ pub fn check_spread(points: &[DVec3]) -> Result<(), CloudError> {
     }
 }
 
-/// Mean of (p − mean)(p − mean)ᵀ.
+/// Covariance matrix of the points: the mean of (p − mean)(p − mean)ᵀ.
 pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sym3<f64> {
     let mut sum = Sym3::<f64>::default();
     let mut count = 0.0_f64;
@@ -239,35 +251,38 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
     }
 }
 
-/// Chooses points by farthest-point sampling: each next one is farthest from all chosen so far (Gonzalez, "Clustering to
-/// Minimize the Maximum Intercluster Distance", 1985), at most half as densely spread as any other choice of as many. The
-/// first one is farthest from the mean; of several that are as far, the one that comes first in the file.
+/// Farthest-point sampling: each chosen point is the one farthest from all those chosen before (T. F. Gonzalez, "Clustering
+/// to Minimize the Maximum Intercluster Distance", 1985).
+///
+/// The largest distance of a point from the chosen ones is at most twice that of any other choice of as many. The first
+/// choice is the point farthest from the mean. Ties go to the smaller index.
 #[derive(Debug)]
 pub struct Spreader {
-    /// Squared distance of each point from the nearest one chosen.
+    /// Squared distance of each point from the nearest chosen one.
     distance_sq: Vec<f64>,
     chosen: Vec<u32>,
     wanted: usize,
-    /// Squared distance from which on points are different.
-    different_sq: f64,
+    /// Squared minimum distance of two chosen points.
+    min_distance_sq: f64,
 }
 
 impl Spreader {
-    /// Begins to choose `wanted` of `points`, which must not be none.
+    /// Begins to choose `wanted` of `points`, which must not be empty.
     #[must_use]
     pub fn new(points: &[DVec3], wanted: usize) -> Self {
         let (lo, hi) = corners(points);
-        // Relative to a corner, so that the sum keeps its digits far from the origin.
+        // The sum is relative to a corner, so that it keeps its digits far from the origin.
         let mean = lo + points.iter().map(|p| *p - lo).sum::<DVec3>() / points.len() as f64;
         Self {
             distance_sq: points.iter().map(|p| p.distance_squared(mean)).collect(),
             chosen: Vec::new(),
             wanted,
-            different_sq: SAME_SHARE * SAME_SHARE * hi.distance_squared(lo),
+            min_distance_sq: MIN_DISTANCE_SHARE * MIN_DISTANCE_SHARE * hi.distance_squared(lo),
         }
     }
 
-    /// Chooses one more of the same `points`; true when as many are chosen as are wanted or there are.
+    /// Chooses one more of `points`, the same in every call. Returns whether the choice is complete: enough points are
+    /// chosen, or no other point is at a sufficient distance.
     pub fn step(&mut self, points: &[DVec3]) -> bool {
         if self.chosen.len() >= self.wanted.min(points.len()) {
             return true;
@@ -278,7 +293,7 @@ impl Spreader {
                 farthest = i;
             }
         }
-        if !self.chosen.is_empty() && self.distance_sq[farthest] <= self.different_sq {
+        if !self.chosen.is_empty() && self.distance_sq[farthest] <= self.min_distance_sq {
             return true;
         }
         let centre = points[farthest];
@@ -292,13 +307,13 @@ impl Spreader {
         self.chosen.len() >= self.wanted.min(points.len())
     }
 
-    /// Share of the points that are chosen.
+    /// Fraction of the points that are chosen.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         self.chosen.len() as f64 / self.wanted.min(self.distance_sq.len()).max(1) as f64
     }
 
-    /// Indices of the points chosen, in the order in which they were.
+    /// Indices of the chosen points, in order of choice.
     #[must_use]
     pub fn chosen(&self) -> &[u32] {
         &self.chosen

@@ -7,7 +7,7 @@ use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
 use marching_particles::pointcloud::fit::Fit;
-use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, Stage};
+use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, JobStage};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -22,7 +22,7 @@ fn run(mut job: Job, budget: u32) -> Result<Fit, JobError> {
             progress.fraction >= before.fraction && progress.fraction <= 1.0,
             "{progress:?} after {before:?}"
         );
-        assert_eq!(progress.done, progress.stage == Stage::Done);
+        assert_eq!(progress.done, progress.stage == JobStage::Done);
         before = progress;
         if let Some(fit) = job.fit() {
             assert!(progress.done && progress.fraction == 1.0, "{progress:?}");

@@ -1,13 +1,13 @@
-//! Which format a file has, by its content.
+//! Detection of a file's format by its content.
 
 use super::input::{number, words};
 use super::{ReadError, xyz};
 use core::fmt;
 
-/// A format that is read.
+/// File format that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Polygon file, text or binary.
+    /// Polygon file format, text or binary.
     Ply,
     /// Wavefront object.
     Obj,
@@ -15,7 +15,7 @@ pub enum Format {
     StlText,
     /// Stereolithography, binary.
     StlBinary,
-    /// Lines of numbers.
+    /// Text with one point per line.
     Xyz,
 }
 
@@ -31,30 +31,31 @@ impl fmt::Display for Format {
 }
 
 impl Format {
-    /// The ending of `name` if it is that of another format.
-    pub(super) fn other_ending(self, name: &str) -> Option<&'static str> {
-        let ending = ending(name);
-        let known = ["ply", "obj", "stl", "xyz"].into_iter().find(|known| *known == ending)?;
+    /// Extension of `name`, if it is that of another format.
+    pub(super) fn contradicting_extension(self, name: &str) -> Option<&'static str> {
+        let extension = extension(name);
+        let known = ["ply", "obj", "stl", "xyz"].into_iter().find(|known| *known == extension)?;
         (!self.to_string().eq_ignore_ascii_case(known)).then_some(known)
     }
 }
 
-/// The ending of a file's name, in lower case.
-fn ending(name: &str) -> String {
-    name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase()).unwrap_or_default()
+/// Extension of a file name, in lower case.
+fn extension(name: &str) -> String {
+    name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// Bytes that are looked at to tell text from binary data.
+/// Number of bytes that decide between text and binary data.
 const LOOKED_AT: usize = 4096;
 
-/// Length of a binary STL file's header with the number of triangles, and of a triangle.
+/// Bytes of the header of a binary STL file, including the number of triangles.
 pub(super) const STL_HEADER: usize = 84;
+/// Bytes of a triangle in a binary STL file.
 pub(super) const STL_TRIANGLE: usize = 50;
 
 const CONVERT: &str = "open it in a mesh program such as MeshLab or Blender and export it as PLY";
 const CHOOSE: &str = "choose a file of points or of a mesh";
 
-/// Beginnings of files that people have in the same folder.
+/// First bytes of other formats, with their name and an advice for the user.
 const KNOWN: [(&[u8], &str, &str); 17] = [
     (b"glTF", "a binary glTF file", CONVERT),
     (b"LASF", "a LAS point cloud", CONVERT),
@@ -75,11 +76,15 @@ const KNOWN: [(&[u8], &str, &str); 17] = [
     (b"\xfe\xff", "text in UTF-16", "save it as UTF-8"),
 ];
 
-/// Words that a statement of an OBJ file begins with.
+/// First words of OBJ statements.
 const OBJ_WORDS: [&[u8]; 14] =
     [b"v", b"vn", b"vt", b"vp", b"f", b"o", b"g", b"s", b"l", b"p", b"mtllib", b"usemtl", b"usemap", b"mg"];
 
-/// The format of a file that is not empty.
+/// Format of a file that is not empty. The file name counts only where the content is ambiguous.
+///
+/// # Errors
+///
+/// [`ReadError::Unknown`] with the name of the format, as far as it is known, and an advice.
 pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     if bytes.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace)) {
         return Ok(Format::Ply);
@@ -87,13 +92,13 @@ pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     if let Some(&(_, found, advice)) = KNOWN.iter().find(|(magic, ..)| bytes.starts_with(magic)) {
         return Err(ReadError::Unknown { found, advice });
     }
-    // Many programs begin a binary STL file with the word that begins a text one, so its size is asked first.
+    // Many programs begin a binary STL file with `solid`, like a text one, so the size decides.
     if stl_size(bytes).is_some_and(|size| size == bytes.len() as u64) {
         return Ok(Format::StlBinary);
     }
     let looked_at = &bytes[..bytes.len().min(LOOKED_AT)];
     if looked_at.iter().any(|&byte| byte < b' ' && !matches!(byte, b'\t' | b'\n' | b'\r' | 0x0c)) {
-        if ending(name) == "stl" || bytes.starts_with(b"solid") {
+        if extension(name) == "stl" || bytes.starts_with(b"solid") {
             return Ok(Format::StlBinary);
         }
         return Err(ReadError::Unknown { found: "a binary file of no known kind", advice: CHOOSE });
@@ -101,13 +106,14 @@ pub(super) fn sniff(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     of_text(name, bytes)
 }
 
-/// The size that a binary STL file's header promises.
+/// Size of the file that the header of a binary STL file implies.
 pub(super) fn stl_size(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(STL_HEADER - 4..STL_HEADER)?;
     let count = u32::from_le_bytes(count.try_into().ok()?);
     Some(STL_HEADER as u64 + u64::from(count) * STL_TRIANGLE as u64)
 }
 
+/// Format of a text file.
 fn of_text(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
@@ -138,8 +144,8 @@ fn of_text(name: &str, bytes: &[u8]) -> Result<Format, ReadError> {
     if line.starts_with(b"{") {
         return unknown("JSON (glTF is such)", CONVERT);
     }
-    // A mistake in the first line is better named by its place than by "no known kind".
-    match ending(name).as_str() {
+    // If the first line may be faulty, the error of its reader helps more than "no known kind".
+    match extension(name).as_str() {
         "obj" => Ok(Format::Obj),
         "stl" => Ok(Format::StlText),
         "xyz" | "txt" | "csv" | "asc" | "pts" => Ok(Format::Xyz),

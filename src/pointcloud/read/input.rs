@@ -1,14 +1,15 @@
-//! The bytes of a file, taken by lines or by pieces, and the numbers in them.
+//! The bytes of a file, consumed by lines or by records, and the numbers in them.
 
 use super::ReadError;
 use core::ops::Range;
 
-/// The largest coordinate: the areas and volumes that are made of such stay far below the largest double.
+/// Largest magnitude of a coordinate. Areas and volumes computed from such coordinates do not overflow.
 const LARGEST: f64 = 1e30;
 
-/// Characters of a word that a message repeats.
+/// Maximum number of characters of a word that a message quotes.
 const SHOWN: usize = 24;
 
+/// A file with a read position.
 pub(super) struct Input {
     bytes: Vec<u8>,
     at: usize,
@@ -17,34 +18,37 @@ pub(super) struct Input {
 
 impl Input {
     pub(super) fn new(bytes: Vec<u8>) -> Self {
-        // The mark that some editors put at the start of a text.
+        // Skip the byte-order mark, with which some editors begin a text.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { bytes, at, line: 0 }
     }
 
+    /// Fraction of the bytes consumed.
     pub(super) fn fraction(&self) -> f64 {
         self.at as f64 / self.bytes.len().max(1) as f64
     }
 
-    pub(super) fn at(&self) -> usize {
+    /// Offset of the next byte.
+    pub(super) fn offset(&self) -> usize {
         self.at
     }
 
-    pub(super) fn left(&self) -> usize {
+    /// Number of remaining bytes.
+    pub(super) fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// Number of the line taken last, from 1.
+    /// Number, from 1, of the line consumed last.
     pub(super) fn line_number(&self) -> u64 {
         self.line
     }
 
-    /// Ends of lines that are left, and one more.
+    /// Upper bound of the number of remaining lines.
     pub(super) fn count_lines(&self) -> usize {
         self.bytes[self.at..].iter().filter(|byte| matches!(byte, b'\n' | b'\r')).count() + 1
     }
 
-    /// The next line without its end, which is a line feed, a carriage return or both.
+    /// Consumes a line, which ends with a line feed, a carriage return or both, and returns its range without the end.
     pub(super) fn line(&mut self) -> Option<Range<usize>> {
         if self.at == self.bytes.len() {
             return None;
@@ -62,7 +66,7 @@ impl Input {
         Some(start..start + length)
     }
 
-    /// The next line that holds more than white space.
+    /// Consumes lines up to and including one that is not blank, and returns its range.
     pub(super) fn line_with_text(&mut self) -> Option<Range<usize>> {
         loop {
             let line = self.line()?;
@@ -72,40 +76,41 @@ impl Input {
         }
     }
 
-    /// The next `N` bytes.
+    /// Consumes `N` bytes.
     pub(super) fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let piece = self.bytes.get(self.at..self.at + N)?.try_into().ok()?;
+        let bytes = self.bytes.get(self.at..self.at + N)?.try_into().ok()?;
         self.at += N;
-        Some(piece)
+        Some(bytes)
     }
 
-    /// Leaves out `count` bytes; false if there are fewer.
+    /// Consumes `count` bytes. Returns false, and consumes nothing, if fewer remain.
     pub(super) fn skip(&mut self, count: u64) -> bool {
-        let within = count <= self.left() as u64;
+        let within = count <= self.remaining() as u64;
         if within {
             self.at += count as usize;
         }
         within
     }
 
+    /// Bytes of a range that [`Input::line`] has returned.
     pub(super) fn slice(&self, range: Range<usize>) -> &[u8] {
         &self.bytes[range]
     }
 
-    /// A mistake in the line taken last.
+    /// Error in the line consumed last.
     #[cold]
-    pub(super) fn wrong(&self, message: impl Into<String>) -> ReadError {
+    pub(super) fn line_error(&self, message: impl Into<String>) -> ReadError {
         ReadError::Line { line: self.line, message: message.into() }
     }
 }
 
-/// Words of a line, between white space.
+/// Words of a line, separated by white space.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// A word as a message repeats it: not long, and nothing that moves a cursor.
-pub(super) fn shown(word: &[u8]) -> String {
+/// Word as a message quotes it: shortened, and without control characters.
+pub(super) fn quoted(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(4 * SHOWN)]);
     let mut text: String = text.trim().chars().map(|c| if c.is_control() { '�' } else { c }).collect();
     if let Some((end, _)) = text.char_indices().nth(SHOWN) {
@@ -115,12 +120,12 @@ pub(super) fn shown(word: &[u8]) -> String {
     text
 }
 
-/// A word as a number; `nan` and `inf` are numbers here.
+/// Number that a word spells, including `nan` and `inf`.
 pub(super) fn number(word: &[u8]) -> Option<f64> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The number itself if it can be a coordinate called `name`.
+/// `value`, if it can be a coordinate. The error message calls the coordinate `name`.
 pub(super) fn coordinate(value: f64, name: &str) -> Result<f64, String> {
     if value.abs() <= LARGEST {
         Ok(value)
@@ -131,17 +136,18 @@ pub(super) fn coordinate(value: f64, name: &str) -> Result<f64, String> {
     }
 }
 
-/// A word as a coordinate called `name`.
+/// Coordinate that a word spells. The error message calls the coordinate `name`.
 pub(super) fn coordinate_word(word: &[u8], name: &str) -> Result<f64, String> {
     match number(word) {
         Some(value) => coordinate(value, name),
         None if word.contains(&b',') && number(&decimal_point(word)).is_some() => {
-            Err(format!("`{}` has a decimal comma; write decimal points", shown(word)))
+            Err(format!("`{}` has a decimal comma; write decimal points", quoted(word)))
         }
-        None => Err(format!("{name} is `{}`, which is not a number", shown(word))),
+        None => Err(format!("{name} is `{}`, which is not a number", quoted(word))),
     }
 }
 
+/// Word with decimal points in place of commas.
 fn decimal_point(word: &[u8]) -> Vec<u8> {
     word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect()
 }

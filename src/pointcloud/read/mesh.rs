@@ -1,30 +1,30 @@
-//! What a file holds: positions, normals as they are written, faces.
+//! Contents of a file: positions, normals and faces.
 
 use super::{ReadError, push};
 use crate::pointcloud::{Cloud, NormalSource};
 use glam::DVec3;
 
-/// Points and faces of a file, before anything is made of them.
+/// Points and faces as they are in a file.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Positions, all finite.
     pub position: Vec<DVec3>,
-    /// Normals as they are written, of any length; none, or as many as positions.
+    /// Normals as they are in the file, of any length: one for each position, or none at all.
     pub normal: Vec<DVec3>,
-    /// Corners of all faces, one face after another.
+    /// Indices of the corners of all faces, face by face.
     pub corners: Vec<u32>,
-    /// Where the corners of each face end.
+    /// Index in `corners` of the end of each face.
     pub faces: Vec<u32>,
-    /// Things the user should know, in words.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// Twice the sum of the area vectors of the faces round each point.
+    /// Twice the sum of the area vectors of the faces around each point.
     area: Vec<DVec3>,
-    /// Faces that are in it.
+    /// Number of faces included in `area`.
     summed: usize,
 }
 
 impl Mesh {
-    /// Appends a face; one with fewer than three corners has no area and is left out.
+    /// Appends a face. One with fewer than three corners has no area and is dropped.
     pub(super) fn add_polygon(&mut self, corners: &[u32]) -> Result<(), ReadError> {
         if corners.len() < 3 {
             return Ok(());
@@ -36,8 +36,9 @@ impl Mesh {
         push(&mut self.faces, end)
     }
 
-    /// Sums the area vectors of up to `budget` more faces; true when all are in. Each corner of a polygon, plane or not, gets
-    /// the polygon's.
+    /// Adds the area vectors of up to `budget` more faces to those of their corners. Returns whether all faces are done.
+    ///
+    /// A polygon need not be planar: each of its corners gets the area vector of the whole.
     ///
     /// # Errors
     ///
@@ -63,15 +64,16 @@ impl Mesh {
         Ok(end == self.faces.len())
     }
 
-    /// Share of the faces that are summed.
+    /// Fraction of the faces whose areas are summed.
     #[must_use]
-    pub fn summed(&self) -> f64 {
+    pub fn fraction_summed(&self) -> f64 {
         self.summed as f64 / self.faces.len().max(1) as f64
     }
 
-    /// The points with their normals, and what there is to say about them. A point's normal is the one that is written, else
-    /// that of its faces; points that have neither, among others that do, are left out. With none anywhere, all points stay
-    /// and the cloud has no normals. To be called when all areas are summed.
+    /// The points with unit normals, and the warnings for the user. All areas must be summed before.
+    ///
+    /// The normal of a point is the one in the file, or else the area-weighted mean of those of its faces. If only some
+    /// points have neither, these are left out; if none has any, all points are kept and the cloud has no normals.
     #[must_use]
     pub fn into_cloud(mut self) -> (Cloud, Vec<String>) {
         let has_given = !self.normal.is_empty();

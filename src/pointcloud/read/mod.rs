@@ -1,8 +1,7 @@
-//! Files of points and of meshes: PLY, OBJ, STL and XYZ, told apart by their content and not by their name.
+//! Reader of files of points and meshes: PLY, OBJ, STL and XYZ, detected by content.
 //!
-//! A file is read row by row under a budget, so that whoever calls can show how far it has come, and nothing in it is
-//! believed: what a header claims is compared with the size of the file before memory is asked for, and a mistake is
-//! named with its place.
+//! A file is read row by row under a budget, so that the caller can show progress. Its content is not trusted: the counts
+//! in a header are compared with the size of the file before memory is allocated, and an error states its location.
 
 mod format;
 mod input;
@@ -18,54 +17,54 @@ pub use mesh::Mesh;
 
 use input::Input;
 
-/// The longest file that is read, in bytes. Fifty million hold some millions of points, ten thousand times more than an
+/// Maximum size of a file in bytes. Fifty million bytes hold some millions of points, thousands of times more than an
 /// interpolant can have centres.
 pub const MAX_BYTES: u64 = 50_000_000;
 
-/// Why a file is not read: what, where, and what to do.
+/// Why a file cannot be read. The message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("the file is empty; choose one that holds points")]
     Empty,
-    /// It is longer than [`MAX_BYTES`].
+    /// The file is larger than [`MAX_BYTES`].
     #[error(
         "the file has {} MB, and up to {} MB are read; keep fewer points, for example every tenth",
         bytes.div_ceil(1_000_000), MAX_BYTES / 1_000_000
     )]
     TooLarge {
-        /// Its size.
+        /// Size of the file.
         bytes: u64,
     },
-    /// It is in none of the formats.
+    /// The file has none of the known formats.
     #[error("this is {found}, and what is read is PLY, OBJ, STL and XYZ; {advice}")]
     Unknown {
-        /// What it looks like.
+        /// What the content looks like.
         found: &'static str,
-        /// What to do.
+        /// Advice for the user.
         advice: &'static str,
     },
-    /// A mistake in a text file or in a header.
+    /// A line of a text file or of a header is wrong.
     #[error("line {line}: {message}")]
     Line {
         /// Number of the line, from 1.
         line: u64,
-        /// What is wrong with it.
+        /// What is wrong.
         message: String,
     },
-    /// A mistake in a binary file.
+    /// A row of a binary file is wrong.
     #[error("{element} {row}, {byte} bytes into the file: {message}")]
     Row {
         /// Kind of the row.
         element: String,
         /// Number of the row among its kind, from 1.
         row: u64,
-        /// Where it begins.
+        /// Offset of the row in the file.
         byte: u64,
-        /// What is wrong with it.
+        /// What is wrong.
         message: String,
     },
-    /// A header that promises more than the file can hold.
+    /// The header claims more rows than the file can hold.
     #[error(
         "the header promises {count} {element} rows, which take at least {needed} bytes, and {left} bytes follow; \
          the file is cut off or its header is wrong: export it again"
@@ -73,26 +72,26 @@ pub enum ReadError {
     Claim {
         /// Kind of the rows.
         element: String,
-        /// Their number.
+        /// Number of the rows.
         count: u64,
-        /// Bytes that all rows up to these take at the least.
+        /// Minimum number of bytes of all rows up to these.
         needed: u64,
-        /// Bytes after the header.
+        /// Number of bytes after the header.
         left: u64,
     },
-    /// The memory does not hold it.
+    /// There is not enough memory for the file.
     #[error("there is not enough memory for this file; keep fewer points, for example every tenth")]
     Memory,
-    /// It was read to the end, and nothing came of it.
+    /// The file has no points.
     #[error("there are no points in this {format} file; choose one that holds points")]
     NoPoints {
-        /// The format it was read as.
+        /// Format that the file was read as.
         format: Format,
     },
 }
 
 impl ReadError {
-    /// A word for the kind of mistake, for programs.
+    /// Kind of error as a word in snake case, for programs.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -108,11 +107,11 @@ impl ReadError {
     }
 }
 
-/// Whether a file of this size is read; to be asked before its content is.
+/// Checks the size of a file, before its content is loaded.
 ///
 /// # Errors
 ///
-/// If it is empty or longer than [`MAX_BYTES`].
+/// If the file is empty or larger than [`MAX_BYTES`].
 pub fn check_size(bytes: u64) -> Result<(), ReadError> {
     match bytes {
         0 => Err(ReadError::Empty),
@@ -121,9 +120,9 @@ pub fn check_size(bytes: u64) -> Result<(), ReadError> {
     }
 }
 
-/// Appends to a column that grows by half, and never ends the program for want of memory.
+/// Appends to a column, whose capacity grows by half. Unlike [`Vec::push`] it does not abort if memory runs out.
 fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
-    /// The first room taken.
+    /// Initial capacity.
     const FIRST: usize = 1024;
     if column.len() == column.capacity() {
         column.try_reserve_exact((column.len() / 2).max(FIRST)).map_err(|_| ReadError::Memory)?;
@@ -132,58 +131,59 @@ fn push<T>(column: &mut Vec<T>, item: T) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// What the formats have in common: one row after another.
-trait Rows {
-    /// Reads a row; false after the last one.
+/// Reader of the rows of one format.
+trait RowReader {
+    /// Reads a row into `mesh`. Returns false after the last one.
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError>;
 }
 
-/// A file on its way to a [`Mesh`].
+/// Reads a file to a [`Mesh`], in slices of bounded work.
 pub struct Reader {
     format: Format,
     input: Input,
-    rows: Box<dyn Rows>,
+    rows: Box<dyn RowReader>,
     mesh: Mesh,
     done: bool,
 }
 
 impl Reader {
-    /// Looks at size, kind and header. Of `name` only the ending is used, where the content leaves a doubt.
+    /// Checks the size, detects the format and reads the header. Only the extension of `name` is used, where the content is
+    /// ambiguous.
     ///
     /// # Errors
     ///
-    /// If the file is empty, too long, in none of the formats, or its header is wrong.
+    /// If the file is empty, too large or of an unknown format, or if its header is wrong.
     pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, ReadError> {
         check_size(bytes.len() as u64)?;
         let format = format::sniff(name, &bytes)?;
         let mut input = Input::new(bytes);
         let mut mesh = Mesh::default();
-        let rows: Box<dyn Rows> = match format {
+        let rows: Box<dyn RowReader> = match format {
             Format::Ply => Box::new(ply::Ply::new(&mut input, &mut mesh)?),
             Format::Obj => Box::new(obj::Obj::default()),
             Format::StlText => Box::new(stl::Text::default()),
             Format::StlBinary => Box::new(stl::Binary::new(&mut input)?),
             Format::Xyz => Box::new(xyz::Xyz::new(&input, &mut mesh)),
         };
-        if let Some(ending) = format.other_ending(name) {
+        if let Some(extension) = format.contradicting_extension(name) {
             mesh.warnings.push(format!(
-                "The name ends in .{ending}, the content is {format}; it was read as {format}."
+                "The name ends in .{extension}, the content is {format}; it was read as {format}."
             ));
         }
         Ok(Self { format, input, rows, mesh, done: false })
     }
 
-    /// The format that the content has.
+    /// Detected format.
     #[must_use]
     pub fn format(&self) -> Format {
         self.format
     }
 
-    /// Reads up to `rows` rows (lines, records); true when all are read.
+    /// Reads up to `rows` rows, which are lines or records. Returns whether all are read.
     ///
     /// # Errors
     ///
-    /// What is wrong with a row, by its number. The reader is of no further use then.
+    /// What is wrong with a row, and its number. The reader must not be used after an error.
     pub fn step(&mut self, rows: u32) -> Result<bool, ReadError> {
         for _ in 0..rows {
             if self.done {
@@ -197,13 +197,13 @@ impl Reader {
         Ok(self.done)
     }
 
-    /// How much of the file is read, from 0 to 1.
+    /// Fraction of the file that is read.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         if self.done { 1.0 } else { self.input.fraction() }
     }
 
-    /// What was read.
+    /// Points and faces that were read.
     #[must_use]
     pub fn into_mesh(self) -> Mesh {
         self.mesh

@@ -1,20 +1,21 @@
-//! OBJ: `v`, `vn` and `f`, by the format's specification (Wavefront, "Object Files", appendix B1); all else is left alone.
+//! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn` and `f` and skips all
+//! others.
 
-use super::input::{Input, coordinate_word, shown, words};
+use super::input::{Input, coordinate_word, quoted, words};
 use super::mesh::Mesh;
-use super::{ReadError, Rows, push};
+use super::{ReadError, RowReader, push};
 use glam::DVec3;
 
 #[derive(Default)]
 pub(super) struct Obj {
     normals: Vec<DVec3>,
-    /// Corners of the face that is being read: a vertex and perhaps a normal.
+    /// Corners of the current face.
     corners: Vec<u32>,
     has_corner_normals: bool,
     has_faces: bool,
 }
 
-impl Rows for Obj {
+impl RowReader for Obj {
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
         let Some(range) = input.line() else {
             self.finish(mesh);
@@ -23,7 +24,7 @@ impl Rows for Obj {
         if !input.slice(range.clone()).ends_with(b"\\") {
             return self.statement(input.slice(range), input, mesh).map(|()| true);
         }
-        // A statement that goes on in the next line.
+        // A backslash continues the statement on the next line.
         let mut whole = Vec::new();
         let mut next = Some(range);
         while let Some(range) = next {
@@ -58,7 +59,7 @@ impl Obj {
         self.corners.clear();
         self.has_faces = true;
         for word in words {
-            // v, v/vt, v//vn or v/vt/vn.
+            // A corner is v, v/vt, v//vn or v/vt/vn.
             let mut parts = word.split(|&byte| byte == b'/');
             let part = parts.next().unwrap_or_default();
             let corner = index(part, mesh.position.len(), "vertex", input)?;
@@ -66,7 +67,7 @@ impl Obj {
             if let Some(part) = parts.nth(1).filter(|part| !part.is_empty()) {
                 let normal = index(part, self.normals.len(), "normal", input)?;
                 self.has_corner_normals = true;
-                level(mesh)?;
+                pad_normals(mesh)?;
                 mesh.normal[corner as usize] += self.normals[normal as usize].normalize_or_zero();
             }
         }
@@ -77,14 +78,14 @@ impl Obj {
         if self.has_corner_normals {
             mesh.normal.resize(mesh.position.len(), DVec3::ZERO);
         } else if !self.has_faces && self.normals.len() == mesh.position.len() {
-            // A file of points alone: the normals belong to them in order.
+            // In a file without faces the normals belong to the points in order.
             mesh.normal = core::mem::take(&mut self.normals);
         }
     }
 }
 
-/// Makes the column of normals as long as that of positions.
-fn level(mesh: &mut Mesh) -> Result<(), ReadError> {
+/// Pads the normals with zeros to the number of positions.
+fn pad_normals(mesh: &mut Mesh) -> Result<(), ReadError> {
     let missing = mesh.position.len() - mesh.normal.len();
     if missing > 0 {
         mesh.normal.try_reserve(missing).map_err(|_| ReadError::Memory)?;
@@ -102,18 +103,18 @@ fn vector<'a>(
     for (k, name) in names.into_iter().enumerate() {
         let word = words
             .next()
-            .ok_or_else(|| input.wrong(format!("three numbers are needed, {name} is missing")))?;
-        vector[k] = coordinate_word(word, name).map_err(|message| input.wrong(message))?;
+            .ok_or_else(|| input.line_error(format!("three numbers are needed, {name} is missing")))?;
+        vector[k] = coordinate_word(word, name).map_err(|message| input.line_error(message))?;
     }
     Ok(vector)
 }
 
-/// An index as written, from 1, or from −1 backwards.
+/// Index from 0 of the `word`, which counts from 1, or backwards from −1, among `count` items called `what`.
 fn index(word: &[u8], count: usize, what: &str, input: &Input) -> Result<u32, ReadError> {
     let written = core::str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
     let Some(written) = written else {
-        let word = shown(word);
-        return Err(input.wrong(format!(
+        let word = quoted(word);
+        return Err(input.line_error(format!(
             "`{word}` is no number of a {what}; a face is like `f 1 2 3` or `f 1//1 2//1 3//1`"
         )));
     };
@@ -122,6 +123,6 @@ fn index(word: &[u8], count: usize, what: &str, input: &Input) -> Result<u32, Re
     if (0..count).contains(&index) && index < i64::from(u32::MAX) {
         Ok(index as u32)
     } else {
-        Err(input.wrong(format!("the face has {what} {written}, and {count} stand before this line")))
+        Err(input.line_error(format!("the face has {what} {written}, and {count} stand before this line")))
     }
 }

@@ -1,15 +1,15 @@
-//! PLY: any elements with any properties in any order, as text or binary in both byte orders.
+//! Reader of PLY files, with any elements and properties in any order, as text or binary in either byte order.
 
-use super::input::{Input, coordinate, coordinate_word, number, shown, words};
+use super::input::{Input, coordinate, coordinate_word, number, quoted, words};
 use super::mesh::Mesh;
-use super::ply_header::{self, Element, Encoding, Number, Role, SLOTS};
-use super::{ReadError, Rows, push};
+use super::ply_header::{self, COMPONENTS, Element, Encoding, Role, ScalarType};
+use super::{ReadError, RowReader, push};
 use glam::DVec3;
 
 pub(super) struct Ply {
     encoding: Encoding,
     elements: Vec<Element>,
-    /// Element and row that come next.
+    /// Index of the next row's element, and of the row among its rows.
     element: usize,
     row: u64,
     vertices: u64,
@@ -19,12 +19,12 @@ pub(super) struct Ply {
 impl Ply {
     pub(super) fn new(input: &mut Input, mesh: &mut Mesh) -> Result<Self, ReadError> {
         let (encoding, mut elements) = ply_header::read(input)?;
-        // What comes after the last element that is used is not read.
-        let end = elements.iter().rposition(Element::matters).map_or(0, |last| last + 1);
+        // Elements after the last one that is used are not read.
+        let end = elements.iter().rposition(Element::is_used).map_or(0, |last| last + 1);
         elements.truncate(end);
         let vertex = elements.iter().find(|element| element.is_vertex());
         let vertices = vertex.map_or(0, |vertex| vertex.count);
-        // The header was compared with the size of the file: these are no more than the file holds.
+        // The header was compared with the size of the file, so this allocation is bounded by it.
         let count = vertices as usize;
         mesh.position.try_reserve_exact(count).map_err(|_| ReadError::Memory)?;
         if vertex.is_some_and(Element::has_normal) {
@@ -34,7 +34,7 @@ impl Ply {
     }
 }
 
-impl Rows for Ply {
+impl RowReader for Ply {
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
         let Some(element) = self.elements.get(self.element) else { return Ok(false) };
         if self.row == element.count || element.properties.is_empty() {
@@ -43,15 +43,15 @@ impl Rows for Ply {
             return Ok(true);
         }
         self.row += 1;
-        let byte = input.at() as u64;
-        let mut values = [0.0; SLOTS.len()];
+        let byte = input.offset() as u64;
+        let mut values = [0.0; COMPONENTS.len()];
         self.corners.clear();
         let result = match self.encoding {
             Encoding::Text => text_row(element, input, &mut values, &mut self.corners, self.vertices),
             encoding => binary_row(encoding, element, input, &mut values, &mut self.corners, self.vertices),
         };
         result.map_err(|message| match self.encoding {
-            Encoding::Text => input.wrong(message),
+            Encoding::Text => input.line_error(message),
             _ => ReadError::Row { element: element.name.clone(), row: self.row, byte, message },
         })?;
         if element.is_vertex() {
@@ -86,19 +86,19 @@ fn text_row(
     for property in &element.properties {
         let Some(_) = property.length else {
             let word = next()?;
-            if let Role::Slot(slot) = property.role {
-                values[slot] = coordinate_word(word, SLOTS[slot])?;
+            if let Role::Component(component) = property.role {
+                values[component] = coordinate_word(word, COMPONENTS[component])?;
             }
             continue;
         };
         let word = next()?;
         let length = number(word).filter(|length| *length >= 0.0 && length.fract() == 0.0);
-        let length = length.ok_or_else(|| format!("`{}` is no length of a list", shown(word)))?;
+        let length = length.ok_or_else(|| format!("`{}` is no length of a list", quoted(word)))?;
         for _ in 0..length as u64 {
             let word = next()?;
             if property.role == Role::Corners {
                 let value =
-                    number(word).ok_or_else(|| format!("`{}` is no number of a vertex", shown(word)))?;
+                    number(word).ok_or_else(|| format!("`{}` is no number of a vertex", quoted(word)))?;
                 corners.push(corner(value, vertices)?);
             }
         }
@@ -118,19 +118,19 @@ fn binary_row(
     for property in &element.properties {
         let Some(length) = property.length else {
             match property.role {
-                Role::Slot(slot) => {
-                    let value = value(property.number, encoding, input).ok_or_else(cut_off)?;
-                    values[slot] = coordinate(value, SLOTS[slot])?;
+                Role::Component(component) => {
+                    let value = value(property.scalar, encoding, input).ok_or_else(cut_off)?;
+                    values[component] = coordinate(value, COMPONENTS[component])?;
                 }
-                _ if input.skip(property.number.size()) => {}
+                _ if input.skip(property.scalar.size()) => {}
                 _ => return Err(cut_off()),
             }
             continue;
         };
         let length = value(length, encoding, input).ok_or_else(cut_off)?;
-        let size = length * property.number.size() as f64;
-        if !(0.0..=input.left() as f64).contains(&size) {
-            let left = input.left();
+        let size = length * property.scalar.size() as f64;
+        if !(0.0..=input.remaining() as f64).contains(&size) {
+            let left = input.remaining();
             return Err(format!(
                 "a list of {length} numbers, and {left} bytes are left; the file is damaged: export it again"
             ));
@@ -140,15 +140,15 @@ fn binary_row(
             continue;
         }
         for _ in 0..length as u64 {
-            let value = value(property.number, encoding, input).ok_or_else(cut_off)?;
+            let value = value(property.scalar, encoding, input).ok_or_else(cut_off)?;
             corners.push(corner(value, vertices)?);
         }
     }
     Ok(())
 }
 
-/// The next number of a binary file.
-fn value(number: Number, encoding: Encoding, input: &mut Input) -> Option<f64> {
+/// Consumes a number of a binary file.
+fn value(scalar: ScalarType, encoding: Encoding, input: &mut Input) -> Option<f64> {
     macro_rules! take {
         ($number:ty) => {{
             let bytes = input.take()?;
@@ -158,19 +158,19 @@ fn value(number: Number, encoding: Encoding, input: &mut Input) -> Option<f64> {
             })
         }};
     }
-    Some(match number {
-        Number::I8 => take!(i8),
-        Number::U8 => take!(u8),
-        Number::I16 => take!(i16),
-        Number::U16 => take!(u16),
-        Number::I32 => take!(i32),
-        Number::U32 => take!(u32),
-        Number::F32 => take!(f32),
-        Number::F64 => take!(f64),
+    Some(match scalar {
+        ScalarType::I8 => take!(i8),
+        ScalarType::U8 => take!(u8),
+        ScalarType::I16 => take!(i16),
+        ScalarType::U16 => take!(u16),
+        ScalarType::I32 => take!(i32),
+        ScalarType::U32 => take!(u32),
+        ScalarType::F32 => take!(f32),
+        ScalarType::F64 => take!(f64),
     })
 }
 
-/// A number as that of a vertex.
+/// Vertex index that a number stands for.
 fn corner(value: f64, vertices: u64) -> Result<u32, String> {
     if value >= 0.0 && value < vertices as f64 && value.fract() == 0.0 && value < f64::from(u32::MAX) {
         Ok(value as u32)

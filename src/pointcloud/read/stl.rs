@@ -1,29 +1,30 @@
-//! STL: triangles, each with corners of its own, which are joined where they are equal.
+//! Reader of STL files. Each triangle has corners of its own, of which equal ones are merged.
 
 use super::format::{STL_HEADER, STL_TRIANGLE, stl_size};
-use super::input::{Input, coordinate, coordinate_word, shown, words};
+use super::input::{Input, coordinate, coordinate_word, quoted, words};
 use super::mesh::Mesh;
-use super::{ReadError, Rows};
-use crate::pointcloud::table::Table;
+use super::{ReadError, RowReader};
+use crate::pointcloud::table::PointTable;
 use glam::DVec3;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Text: `facet … outer loop … vertex x y z … endloop … endfacet`. The facets' own normals are left alone: many programs
-/// write zeros, and the order of the corners says the same.
+/// Reader of the text format, `facet … outer loop … vertex x y z … endloop … endfacet`.
+///
+/// The normals of the facets are ignored: many programs write zeros, and the order of the corners gives them.
 #[derive(Default)]
 pub(super) struct Text {
-    table: Table,
+    table: PointTable,
     corners: Vec<u32>,
 }
 
-impl Rows for Text {
+impl RowReader for Text {
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
         let Some(range) = input.line_with_text() else {
             if self.corners.is_empty() {
                 return Ok(false);
             }
-            return Err(input.wrong("the file ends within a facet; it is cut off: export it again"));
+            return Err(input.line_error("the file ends within a facet; it is cut off: export it again"));
         };
         let line = input.slice(range);
         let mut words = words(line);
@@ -32,9 +33,10 @@ impl Rows for Text {
             b"vertex" => {
                 let mut p = DVec3::ZERO;
                 for (k, axis) in AXES.iter().enumerate() {
-                    let word =
-                        words.next().ok_or_else(|| input.wrong("a vertex takes three numbers, x y z"))?;
-                    p[k] = coordinate_word(word, axis).map_err(|message| input.wrong(message))?;
+                    let word = words
+                        .next()
+                        .ok_or_else(|| input.line_error("a vertex takes three numbers, x y z"))?;
+                    p[k] = coordinate_word(word, axis).map_err(|message| input.line_error(message))?;
                 }
                 let corner = self.table.find_or_add(p, &mut mesh.position).ok_or(ReadError::Memory)?;
                 self.corners.push(corner);
@@ -44,28 +46,31 @@ impl Rows for Text {
                 self.corners.clear();
             }
             b"facet" | b"outer" if !self.corners.is_empty() => {
-                return Err(input.wrong("a facet begins within another one; export the file again"));
+                return Err(input.line_error("a facet begins within another one; export the file again"));
             }
             b"solid" | b"endsolid" | b"facet" | b"outer" => {}
             _ => {
-                let word = shown(&word);
-                return Err(input.wrong(format!("`{word}` is no statement of an STL file; export it again")));
+                let word = quoted(&word);
+                return Err(
+                    input.line_error(format!("`{word}` is no statement of an STL file; export it again"))
+                );
             }
         }
         Ok(true)
     }
 }
 
-/// Binary: 80 bytes of anything, the number of triangles, and for each a normal, three corners and two bytes more.
+/// Reader of the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three corners
+/// and two bytes of attributes.
 pub(super) struct Binary {
-    table: Table,
+    table: PointTable,
     row: u64,
     count: u64,
 }
 
 impl Binary {
     pub(super) fn new(input: &mut Input) -> Result<Self, ReadError> {
-        let header = input.slice(0..input.left().min(STL_HEADER)).to_vec();
+        let header = input.slice(0..input.remaining().min(STL_HEADER)).to_vec();
         let Some(size) = stl_size(&header) else {
             return Err(ReadError::Claim {
                 element: "header".into(),
@@ -76,24 +81,24 @@ impl Binary {
         };
         input.skip(STL_HEADER as u64);
         let count = (size - STL_HEADER as u64) / STL_TRIANGLE as u64;
-        let (needed, left) = (count * STL_TRIANGLE as u64, input.left() as u64);
+        let (needed, left) = (count * STL_TRIANGLE as u64, input.remaining() as u64);
         if needed > left {
             return Err(ReadError::Claim { element: "triangle".into(), count, needed, left });
         }
-        Ok(Self { table: Table::default(), row: 0, count })
+        Ok(Self { table: PointTable::default(), row: 0, count })
     }
 }
 
-impl Rows for Binary {
+impl RowReader for Binary {
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
-        let byte = input.at() as u64;
+        let byte = input.offset() as u64;
         if self.row == self.count {
             return Ok(false);
         }
         self.row += 1;
         let record = input.take::<STL_TRIANGLE>().unwrap_or([0; STL_TRIANGLE]);
         let mut corners = [0; 3];
-        // The first twelve bytes are the normal.
+        // Bytes 0 to 11 are the normal.
         for (corner, bytes) in corners.iter_mut().zip(record[12..48].chunks_exact(12)) {
             let mut p = DVec3::ZERO;
             for (k, bytes) in bytes.chunks_exact(4).enumerate() {

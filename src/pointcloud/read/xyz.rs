@@ -1,30 +1,32 @@
-//! XYZ: a point a line, with or without a normal; also CSV with a line of names.
+//! Reader of XYZ files, with one point per line, with or without a normal, and of CSV files with a header.
 
-use super::input::{Input, coordinate_word, number, shown};
+use super::input::{Input, coordinate_word, number, quoted};
 use super::mesh::Mesh;
-use super::{ReadError, Rows, push};
+use super::{ReadError, RowReader, push};
 use glam::DVec3;
 
-/// Names of the numbers of a point, as a header and the messages have them.
+/// Names of the components of a point, in headers and messages.
 const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Lengths between which a vector can be meant as a unit normal, written with few digits.
+/// Lengths at which a vector may be a unit normal that was written with few digits.
 const UNIT: core::ops::Range<f64> = 0.9..1.1;
 
-/// Share of the rows that must have such for columns 4 to 6 to be normals.
+/// Share of the rows with such a vector from which on columns 4 to 6 are normals.
 const UNIT_SHARE: f64 = 0.9;
 
-/// Where in a line the numbers of a point are.
+/// Columns of a line that hold the components of a point.
 pub(super) struct Columns {
-    place: [usize; 6],
+    /// Column of each component.
+    index: [usize; 6],
+    /// Number of columns.
     count: usize,
     has_normal: bool,
-    /// Whether the file names them.
+    /// Whether the file names its columns.
     named: bool,
 }
 
 impl Columns {
-    /// The columns of a line of names, if it is one that names x, y and z.
+    /// Columns by a header; `None` if the line does not name x, y and z.
     pub(super) fn named(line: &[u8]) -> Option<Self> {
         let found = NAMES.map(|name| {
             words(line).position(|word| word.trim_ascii_start().eq_ignore_ascii_case(name.as_bytes()))
@@ -34,35 +36,35 @@ impl Columns {
             [Some(nx), Some(ny), Some(nz)] => (nx, ny, nz, true),
             _ => (0, 0, 0, false),
         };
-        Some(Self { place: [x, y, z, nx, ny, nz], count: words(line).count(), has_normal, named: true })
+        Some(Self { index: [x, y, z, nx, ny, nz], count: words(line).count(), has_normal, named: true })
     }
 
-    /// The usual columns in lines of `count` numbers.
+    /// Columns of lines of `count` numbers without a header.
     fn usual(count: usize) -> Self {
-        Self { place: [0, 1, 2, 3, 4, 5], count, has_normal: count >= 6, named: false }
+        Self { index: [0, 1, 2, 3, 4, 5], count, has_normal: count >= 6, named: false }
     }
 }
 
 #[derive(Default)]
 pub(super) struct Xyz {
     columns: Option<Columns>,
-    /// Rows whose columns 4 to 6 can be a unit normal.
-    unit: usize,
+    /// Number of rows whose columns 4 to 6 may be a unit normal.
+    unit_normals: usize,
 }
 
 impl Xyz {
-    /// Takes room for as many points as there are lines, where there is so much: a column that grows takes twice its room.
+    /// Allocates memory for as many points as there are lines, if there is enough: growing would take twice the memory.
     pub(super) fn new(input: &Input, mesh: &mut Mesh) -> Self {
-        /// Bytes of the shortest line with a point.
+        /// Minimum number of bytes of a line with a point.
         const SHORTEST: usize = 6;
-        let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.left() / SHORTEST + 1));
+        let _ = mesh.position.try_reserve_exact(input.count_lines().min(input.remaining() / SHORTEST + 1));
         Self::default()
     }
 
-    /// Columns without names can be colours as well as normals.
+    /// Drops the normals if they are probably colours, which columns without names may be.
     fn finish(&self, mesh: &mut Mesh) {
         let named = self.columns.as_ref().is_some_and(|columns| columns.named);
-        if !named && (self.unit as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
+        if !named && (self.unit_normals as f64) < UNIT_SHARE * mesh.normal.len() as f64 {
             mesh.normal = Vec::new();
             mesh.warnings.push(
                 "Columns 4 to 6 are not of unit length, so they are no normals (colours?) and were left out."
@@ -72,16 +74,16 @@ impl Xyz {
     }
 }
 
-/// Words of a line, between white space, commas and semicolons.
+/// Words of a line, separated by white space, commas or semicolons.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| byte.is_ascii_whitespace() || matches!(byte, b',' | b';'))
         .filter(|word| !word.is_empty())
 }
 
-/// Whether the commas of a line stand in its numbers: some words are set apart by something else, and a comma has no white
-/// space beside it.
+/// Whether the commas of a line are decimal commas: at least three words are separated otherwise, and one has a comma
+/// between digits.
 fn has_decimal_commas(line: &[u8]) -> bool {
-    /// Words that are looked at.
+    /// Number of words that are looked at.
     const LOOKED_AT: usize = 16;
     let by_others: Vec<&[u8]> = line
         .split(|byte| byte.is_ascii_whitespace() || *byte == b';')
@@ -98,7 +100,7 @@ fn has_decimal_commas(line: &[u8]) -> bool {
         })
 }
 
-impl Rows for Xyz {
+impl RowReader for Xyz {
     fn row(&mut self, input: &mut Input, mesh: &mut Mesh) -> Result<bool, ReadError> {
         let Some(range) = input.line() else {
             self.finish(mesh);
@@ -110,7 +112,7 @@ impl Rows for Xyz {
             return Ok(true);
         }
         if line.contains(&b',') && has_decimal_commas(line) {
-            return Err(input.wrong("the numbers have decimal commas; write decimal points"));
+            return Err(input.line_error("the numbers have decimal commas; write decimal points"));
         }
         let count = words(line).count();
         let columns = match &self.columns {
@@ -124,24 +126,25 @@ impl Rows for Xyz {
             }
         };
         if count < 3 {
-            return Err(input.wrong(match words(line).next() {
+            return Err(input.line_error(match words(line).next() {
                 Some(word) if number(word).is_none() => {
-                    format!("`{}` is no number; a point is x y z", shown(word))
+                    format!("`{}` is no number; a point is x y z", quoted(word))
                 }
                 _ => format!("a point takes three numbers, x y z, or six with a normal; here is {count}"),
             }));
         }
         if count != columns.count {
             return Err(
-                input.wrong(format!("{count} columns, where the lines before have {}", columns.count))
+                input.line_error(format!("{count} columns, where the lines before have {}", columns.count))
             );
         }
         let mut values = [0.0; 6];
         let used = if columns.has_normal { 6 } else { 3 };
         for (k, word) in words(line).enumerate() {
-            for (slot, name) in NAMES.iter().enumerate().take(used) {
-                if columns.place[slot] == k {
-                    values[slot] = coordinate_word(word, name).map_err(|message| input.wrong(message))?;
+            for (component, name) in NAMES.iter().enumerate().take(used) {
+                if columns.index[component] == k {
+                    values[component] =
+                        coordinate_word(word, name).map_err(|message| input.line_error(message))?;
                 }
             }
         }
@@ -149,7 +152,7 @@ impl Rows for Xyz {
         push(&mut mesh.position, DVec3::new(x, y, z))?;
         if columns.has_normal {
             let normal = DVec3::new(nx, ny, nz);
-            self.unit += usize::from(UNIT.contains(&normal.length()));
+            self.unit_normals += usize::from(UNIT.contains(&normal.length()));
             push(&mut mesh.normal, normal)?;
         }
         Ok(true)
