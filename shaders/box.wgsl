@@ -1,6 +1,6 @@
-// The twelve edges of the clip box, as quads of constant width on the screen.
+// Draws the twelve edges of the clip box as quads of constant width on the screen.
 
-// Twin of `Frame` in src/render/layout.rs, which documents the fields.
+// Copy of `Frame` in src/render/layout.rs, which documents the fields. A test compares the two.
 struct Frame {
     clip_from_world: mat4x4<f32>,
     eye: vec3<f32>,
@@ -29,17 +29,17 @@ struct Frame {
 
 // Width of an edge in page pixels.
 const WIDTH = 1.25;
-// Edges are cut off this close to the eye's plane, as a share of the farther end's distance.
+// Smallest distance from the eye's plane at which an edge is drawn, as a share of the distance of its farther end.
 const NEAR = 1e-3;
 
 struct Edge {
     @builtin(position) clip: vec4<f32>,
-    // Signed distance from the middle of the line in pixels, times w: see fs_box.
+    // Signed distance from the centre line in pixels, times w; see fs_box.
     @location(0) across_px: f32,
     @location(1) @interpolate(flat) half_px: f32,
 }
 
-// End `end` (0 or 1) of edge `edge` (0 to 11): four edges along each axis.
+// Position of end `end` (0 or 1) of edge `edge` (0 to 11); there are four edges along each axis.
 fn edge_end(edge: u32, end: f32) -> vec3<f32> {
     let axis = edge >> 2u;
     let a = f32(edge & 1u);
@@ -59,7 +59,7 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
     out.clip = vec4<f32>(0.0, 0.0, 2.0, 1.0);
     var start = frame.clip_from_world * vec4<f32>(edge_end(edge, 0.0), 1.0);
     var to = frame.clip_from_world * vec4<f32>(edge_end(edge, 1.0), 1.0);
-    // Cut the edge where it passes behind the eye.
+    // Clip the part of the edge that is behind the eye.
     let near = NEAR * max(start.w, to.w);
     if near <= 0.0 {
         return out;
@@ -80,7 +80,7 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
     let reach_px = half_px + 1.0;
     let at = select(start, to, vertex > 1u);
     let outwards = select(-along, along, vertex > 1u);
-    // Half a width past the corner, so that three edges meet without a notch.
+    // Extend the edge by half its width past the corner, so that three edges meet without a notch.
     let shift_px = side * reach_px * vec2<f32>(-along.y, along.x) + half_px * outwards;
     out.clip = at + vec4<f32>(shift_px * 2.0 / frame.viewport * at.w, 0.0, 0.0);
     out.across_px = side * reach_px * at.w;
@@ -90,8 +90,8 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
 
 @fragment
 fn fs_box(edge: Edge) -> @location(0) vec4<f32> {
-    // Perspective interpolation of a value times w gives w times the value that is linear on the screen;
-    // here, clip.w is 1/w.
+    // Perspective interpolation of a value times w gives w times the value interpolated linearly on the screen. In the
+    // fragment stage, clip.w is 1/w.
     let distance = abs(edge.across_px * edge.clip.w);
     let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * frame.box_colour.a;
     if alpha < 0.002 {

@@ -1,6 +1,6 @@
-// Particles as discs in their tangent planes, and the ring around one of them. See src/render/mod.rs.
+// Draws particles as discs in their tangent planes, and a ring around one of them. See src/render/mod.rs.
 
-// Twin of `Frame` in src/render/layout.rs, which documents the fields.
+// Copy of `Frame` in src/render/layout.rs, which documents the fields. A test compares the two.
 struct Frame {
     clip_from_world: mat4x4<f32>,
     eye: vec3<f32>,
@@ -27,7 +27,7 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-// One particle; twin of RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES.
+// A particle, as RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES in src/render/layout.rs describe it.
 struct Particle {
     @location(0) position: vec3<f32>,
     @location(1) radius: f32,
@@ -39,42 +39,42 @@ struct Particle {
 
 struct Disc {
     @builtin(position) clip: vec4<f32>,
-    // Position in the disc's plane; the rim at length 1.
+    // Position in the plane of the disc. The rim is at length 1.
     @location(0) uv: vec2<f32>,
-    // Linear colour, and the opacity by which birth and colour fade the disc.
+    // Linear colour, and the opacity: that of the colour times the progress of the appearance.
     @location(1) @interpolate(flat) colour: vec4<f32>,
-    // Key light along (t, b, n), and 1 for a disc seen from behind.
+    // Direction to the key light along (t, b, n), and 1 for a disc seen from behind.
     @location(2) @interpolate(flat) key: vec4<f32>,
-    // Sky direction along (t, b, n), and how edge-on the disc is: 0 seen from the front, 1 edge-on.
+    // Direction to the sky along (t, b, n), and 1 minus the cosine of the viewing angle: 0 face-on, 1 edge-on.
     @location(3) @interpolate(flat) sky: vec4<f32>,
-    // Half axes on the screen in pixels: along t, along b.
+    // Semi-axes of the ellipse on the screen in pixels: along t, along b.
     @location(4) @interpolate(flat) axes_px: vec2<f32>,
-    // How far the disc fades towards the ground: all of them, and those before the newest level.
+    // Fraction by which the disc fades to the background, because all do or because its level is not the newest.
     @location(5) @interpolate(flat) faded: f32,
 }
 
-// How far past the rim the quad reaches on the screen, in pixels: half a pixel of edge and half a pixel to spare,
-// since a pixel is shaded where its centre lies in the quad.
+// Padding of the quad beyond the rim, in pixels. Half a pixel holds the antialiased edge; the other half is a reserve,
+// because a pixel is shaded only if its centre is in the quad.
 const PAD_PX = 1.0;
-// In its own plane a quad reaches at most this many radii; beyond, it is widened on the screen, at constant depth.
-// Otherwise the pad of a disc seen edge-on would stab through its neighbours.
+// Largest extent of a quad in the plane of the disc, in radii. A larger quad is widened on the screen at constant depth:
+// in the plane, the padding of a disc seen edge-on would cut through its neighbours.
 const MAX_REACH = 2.0;
-// Born discs grow from this share of their size.
+// Size of a disc at the start of its appearance, as a share of its final size.
 const BIRTH_SIZE = 0.6;
-// Lean of the shading normal at the rim: a low dome, so that a disc looks like a bead when it is large.
+// Tilt of the shading normal at the rim. It gives a large disc the look of a low dome.
 const DOME = 0.34;
-// Discs with a radius below the second, in pixels, swell until at the first their gaps close: gaps of a pixel and less
-// would beat against the pixels. CLOSED is the radius, relative to the disc's, at which three neighbours meet.
+// Radii in pixels between which discs become points. Below the second a disc is enlarged, and at the first the gaps are
+// closed: gaps of about a pixel would cause moiré. CLOSED is the enlargement at which three neighbours meet.
 const SWELL_PX = vec2<f32>(0.8, 2.4);
 const CLOSED = 1.26;
-// The core pass writes points this many radii too deep. Their neighbours in the sheet then pass the depth test of the rim
-// passes, which blend all of them, and the far side of the surface does not: every pixel averages the points it sees.
+// Depth in radii that the core pass adds to points. Neighbours in the sheet then pass the depth test of the rim passes,
+// which blend them, and the far side of the surface does not. Every pixel thus averages the points of the nearest sheet.
 const POINT_DEPTH = 2.0;
-// A disc whose smaller half axis is below the first covers no pixel wholly, above the second it does, in pixels.
+// Smaller semi-axis in pixels up to which a disc covers no pixel completely, and from which it does.
 const WIDE_PX = vec2<f32>(0.7, 1.7);
-// Coverage from which a pixel counts as core: in points, in narrow discs, in wide discs.
+// Coverage from which a pixel belongs to the core: of a point, of a narrow disc, of a wide disc.
 const CORE = vec3<f32>(0.15, 0.5, 0.96);
-// Coverage below this is not worth blending: half a step of an 8-bit channel.
+// Coverage below which a pixel is discarded: half a step of an 8-bit channel.
 const NOTHING = 0.002;
 
 fn oct_decode(e: vec2<f32>) -> vec3<f32> {
@@ -87,32 +87,33 @@ fn linear_from_srgb(c: vec3<f32>) -> vec3<f32> {
     return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
 }
 
-// Unit vector perpendicular to n and to the line of sight v: the axis of the disc that does not foreshorten.
+// Unit vector perpendicular to n and to the line of sight v: the axis of the disc that is not foreshortened.
 fn facing_axis(n: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     var t = cross(n, v);
     if dot(t, t) < 1e-6 {
-        // Seen face-on any axis will do; take one of the world's that is not along n.
+        // The disc is seen face-on, so any axis in its plane will do. Start from a world axis that is not along n.
         t = cross(n, select(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), abs(n.x) > 0.7));
     }
     return normalize(t);
 }
 
-// A direction of the world in clip space.
+// World direction d in clip coordinates.
 fn clip_direction(d: vec3<f32>) -> vec4<f32> {
     let m = frame.clip_from_world;
     return d.x * m[0] + d.y * m[1] + d.z * m[2];
 }
 
-// How the projection of `centre` moves on the screen, in pixels, when it moves along `direction` (both in clip space).
+// Derivative of the projection of `centre` on the screen, in pixels, along `direction` (both in clip coordinates).
 fn moved_px(centre: vec4<f32>, direction: vec4<f32>) -> vec2<f32> {
     return 0.5 * frame.viewport * (direction.xy - centre.xy * (direction.w / centre.w)) / centre.w;
 }
 
-// 1 for a point, 0 for a disc, by its larger half axis.
+// 1 for a point, 0 for a disc, by the larger semi-axis.
 fn pointness(axes: vec2<f32>) -> f32 {
     return 1.0 - smoothstep(SWELL_PX.x, SWELL_PX.y, axes.x);
 }
 
+// Position outside of the view volume, which culls the quad.
 fn hidden() -> vec4<f32> {
     return vec4<f32>(0.0, 0.0, 2.0, 1.0);
 }
@@ -126,7 +127,7 @@ fn vs_core(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
     return disc_vertex(vertex, particle, POINT_DEPTH, 0.0);
 }
 
-// Rims seen from behind are drawn before those seen from the front: on a closed surface, from back to front.
+// Rims seen from behind are drawn before those seen from the front. On a closed surface this is from back to front.
 @vertex
 fn vs_rim_behind(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc {
     return disc_vertex(vertex, particle, 0.0, -1.0);
@@ -137,7 +138,7 @@ fn vs_rim_front(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc 
     return disc_vertex(vertex, particle, 0.0, 1.0);
 }
 
-// `side`: 1 for discs seen from the front only, -1 for those seen from behind, 0 for both.
+// `side` is 1 to draw only discs seen from the front, -1 for those seen from behind, 0 for both.
 fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> Disc {
     var out: Disc;
     out.clip = hidden();
@@ -168,7 +169,7 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let b_px = r * moved_px(centre, clip_b);
     let axes = max(vec2<f32>(length(a_px), length(b_px)), vec2<f32>(1e-4));
     let a_dir = a_px / axes.x;
-    // An axis that points at the eye has no direction of its own on the screen.
+    // An axis that points at the eye has no direction on the screen.
     let b_dir = select(vec2<f32>(-a_dir.y, a_dir.x), b_px / axes.y, axes.y > 1e-3);
 
     let corner = quad_corner(vertex);
@@ -191,19 +192,19 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     return out;
 }
 
-// Share of the pixel that the disc covers, by the distance to the rim in pixels. Derivatives: call in uniform flow.
+// Coverage of the pixel, from the distance to the rim in pixels. It takes derivatives, so call it in uniform control flow.
 fn coverage(disc: Disc) -> f32 {
     let along_x = dpdx(disc.uv);
     let along_y = dpdy(disc.uv);
     let rho = max(length(disc.uv), 1e-6);
     let slope = length(vec2<f32>(dot(disc.uv, along_x), dot(disc.uv, along_y))) / rho;
     let inside_px = (1.0 - rho) / max(slope, 1e-6);
-    // Half a pixel from the centre of a thin ellipse lies its rim, whatever the estimate says.
+    // The distance is inaccurate for thin ellipses. The coverage is at most that of a band as wide as the ellipse.
     let widest = 0.5 + min(disc.axes_px.x, disc.axes_px.y);
     return clamp(min(0.5 + inside_px, widest), 0.0, 1.0);
 }
 
-// Mixes linear colours evenly for the eye: square roots are close to sRGB's curve.
+// Mixes linear colours in steps that look even: the square root is close to the transfer function of sRGB.
 fn fade_to(colour: vec3<f32>, other: vec3<f32>, share: f32) -> vec3<f32> {
     let root = mix(sqrt(colour), sqrt(other), share);
     return root * root;
@@ -212,16 +213,16 @@ fn fade_to(colour: vec3<f32>, other: vec3<f32>, share: f32) -> vec3<f32> {
 fn shade(disc: Disc) -> vec3<f32> {
     let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
     let rho = min(length(disc.uv), 1.0);
-    // The dome: its normal leans outward by DOME at the rim.
+    // The normal of the dome tilts outward by DOME at the rim.
     let lean = disc.uv / max(length(disc.uv), 1e-6) * rho * rho * DOME * full;
     let scale = inverseSqrt(1.0 + dot(lean, lean));
     let toward_key = (dot(lean, disc.key.xy) + disc.key.z) * scale;
     let toward_sky = (dot(lean, disc.sky.xy) + disc.sky.z) * scale;
     let hemisphere = mix(0.46, 0.66, 0.5 + 0.5 * toward_sky);
-    // Wrapped: light reaches a little past the terminator, as from a large soft box.
+    // Wrapped diffuse light reaches a little past the terminator, like light from a large source.
     let key = max((toward_key + 0.25) / 1.25, 0.0);
     var light = hemisphere + 0.52 * key * key;
-    // The rim darkens, and the silhouette, so that order shows.
+    // Rim and silhouette are darker, so that discs stand out from each other.
     light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
     light *= 1.0 - 0.30 * disc.sky.w * disc.sky.w * disc.sky.w;
     let front = disc.colour.rgb * light;
@@ -229,12 +230,13 @@ fn shade(disc: Disc) -> vec3<f32> {
     return fade_to(seen, frame.background.rgb, disc.faded);
 }
 
-// How much a disc is wide enough to cover pixels wholly.
+// Degree from 0 to 1 to which a disc is wide enough to cover pixels completely.
 fn fullness(disc: Disc) -> f32 {
     return smoothstep(WIDE_PX.x, WIDE_PX.y, min(disc.axes_px.x, disc.axes_px.y));
 }
 
-// How much a disc is treated as a point: wholly as soon as half swollen, so that sheets close before gaps get small.
+// Degree from 0 to 1 to which a disc is treated as a point. It reaches 1 halfway through the enlargement, so that sheets
+// close before gaps become small.
 fn as_point(disc: Disc) -> f32 {
     return smoothstep(0.0, 0.5, pointness(disc.axes_px));
 }
@@ -251,7 +253,7 @@ fn fs_core(disc: Disc) -> @location(0) vec4<f32> {
 @fragment
 fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
     let covered = coverage(disc) * disc.colour.a;
-    // Points are drawn again, all of them.
+    // All pixels of points are drawn again.
     let core = mix(mix(CORE.y, CORE.z, fullness(disc)), 1.01, as_point(disc));
     if covered >= core || covered < NOTHING {
         discard;
@@ -261,15 +263,15 @@ fn fs_rim(disc: Disc) -> @location(0) vec4<f32> {
 
 struct Ring {
     @builtin(position) clip: vec4<f32>,
-    // Offset from the centre in pixels, along the axes of the ellipse.
+    // Offset from the centre in pixels along the axes of the ellipse.
     @location(0) offset_px: vec2<f32>,
     @location(1) @interpolate(flat) axes_px: vec2<f32>,
 }
 
-// The ring leaves this gap to its disc, and is that thick, in page pixels.
+// Gap between ring and disc, and width of the ring, in page pixels.
 const RING_GAP = 1.5;
 const RING_WIDTH = 2.0;
-// Smallest half axis of the ring, in page pixels, and smallest ratio of its axes.
+// Smallest semi-axis of the ring, in page pixels, and smallest ratio of its semi-axes.
 const RING_MIN = 4.0;
 const RING_SQUASH = 0.35;
 
@@ -299,12 +301,12 @@ fn vs_ring(@builtin(vertex_index) vertex: u32, particle: Particle) -> Ring {
 
 @fragment
 fn fs_ring(ring: Ring) -> @location(0) vec4<f32> {
-    // Distance to the ellipse to first order.
+    // First-order distance to the ellipse.
     let p = ring.offset_px / ring.axes_px;
     let rho = max(length(p), 1e-4);
     let distance = abs((rho - 1.0) * rho / max(length(p / ring.axes_px), 1e-6));
     let half = 0.5 * RING_WIDTH * frame.pixel_ratio;
-    // A line in the contrast to the ground, in a thin line of the ground's own kind: seen on any colour.
+    // A line that contrasts with the background has a thin casing like the background, so it is visible on any colour.
     let line = clamp(half + 0.5 - distance, 0.0, 1.0);
     let casing = 0.8 * clamp(half + 0.75 * frame.pixel_ratio + 0.5 - distance, 0.0, 1.0);
     let ink = vec3<f32>(mix(1.0, 0.01, frame.light_ground));

@@ -1,36 +1,37 @@
-//! The bytes that reach the GPU: one instance record per particle and one uniform block per picture, with the
-//! tables that the pipelines are built from and that the shader test compares with the WGSL.
+//! Layout of the GPU data: one instance record per particle and one uniform block per picture.
+//!
+//! The pipelines are built from the tables of attributes and fields, and a test compares the tables with the WGSL.
 
 use bytemuck::{Pod, Zeroable};
 use core::mem::offset_of;
 
-/// What the vertex stage reads per particle, apart from its colour: 28 bytes.
+/// Instance record of a particle without its colour: 28 bytes.
 ///
-/// The colour lies in a buffer of its own (see [`COLOUR_STRIDE`]), so that colouring by something else uploads 4 bytes
-/// a particle instead of 32 and no copy of the records has to be kept.
+/// Colours have a buffer of their own (see [`COLOUR_STRIDE`]). A change of colours then uploads 4 bytes per particle instead
+/// of 32, and no copy of the records has to be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
     /// World position.
     pub position: [f32; 3],
-    /// Repulsion radius in world units; 0 hides the particle.
+    /// Repulsion radius in world units. A particle with radius 0 is not drawn.
     pub radius: f32,
-    /// Unit normal, octahedral, two signed normalised 16-bit numbers (largest error 0.004°).
+    /// Unit normal in the octahedral encoding, as two signed normalised 16-bit integers. The largest error is 0.004°.
     pub normal: [i16; 2],
-    /// Time of birth in seconds on the renderer's own clock.
+    /// Time at which the particle begins to appear, in seconds on the renderer's clock.
     pub birth: f32,
-    /// Generation level; −1 for what belongs to none and is always drawn. Single precision holds 2²⁴ levels.
+    /// Generation level, or −1 for a particle without one, which is always drawn. Single precision is exact up to 2²⁴.
     pub level: f32,
 }
 
-/// Bytes of one colour: red, green, blue, opacity; sRGB, 8 bits each.
+/// Bytes of a colour: sRGB red, green, blue and opacity of 8 bits each.
 pub const COLOUR_STRIDE: usize = 4;
 
 impl Record {
-    /// Packs one particle.
+    /// Packs a particle. `level` is `u32::MAX` for a particle without a level.
     ///
-    /// `normal` need not have unit length. A non-finite position or radius, or a radius that is not positive, gives a
-    /// record that is not drawn; a zero or non-finite normal gives +z. `u32::MAX` stands for no level.
+    /// `normal` need not have unit length; a zero or non-finite one counts as +z. A non-finite position or radius, or a
+    /// radius that is not positive, gives a record that is not drawn.
     #[must_use]
     pub fn new(position: [f32; 3], normal: [f32; 3], radius: f32, birth: f32, level: u32) -> Self {
         let drawable = radius > 0.0 && radius.is_finite() && position.iter().all(|c| c.is_finite());
@@ -44,8 +45,11 @@ impl Record {
     }
 }
 
-/// A direction as two signed normalised 16-bit numbers: the octahedral map (Meyer et al. 2010; Cigolle et al.,
-/// "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014).
+/// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point Normal
+/// Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2),
+/// 2014).
+///
+/// `n` need not have unit length. A zero or non-finite `n` gives the encoding of +z.
 #[must_use]
 pub fn oct_encode(n: [f32; 3]) -> [i16; 2] {
     let sum = n[0].abs() + n[1].abs() + n[2].abs();
@@ -62,7 +66,7 @@ pub fn oct_encode(n: [f32; 3]) -> [i16; 2] {
     [quantise(x), quantise(y)]
 }
 
-/// The inverse of [`oct_encode`], as the vertex shader computes it.
+/// Unit vector with the octahedral encoding `e`, as the vertex shader computes it; the inverse of [`oct_encode`].
 #[must_use]
 pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
     let [x, y] = e.map(|c| (f32::from(c) / f32::from(i16::MAX)).max(-1.0));
@@ -73,53 +77,54 @@ pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
     v.map(|c| c / length)
 }
 
-/// The uniform block `Frame` of every shader: the camera, the light and the style of one picture.
+/// Uniform block `Frame` of all shaders: camera, light and style of a picture.
 ///
-/// Offsets follow WGSL's uniform rules, which agree with std140 for these types; [`Frame::FIELDS`] lists them for the test.
+/// The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. [`Frame::FIELDS`] lists
+/// them for a test.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Frame {
-    /// Clip from world, column-major, depth 0 to 1.
+    /// Matrix from world to clip coordinates, column-major, with depth from 0 to 1.
     pub clip_from_world: [[f32; 4]; 4],
-    /// Eye in world coordinates (perspective only).
+    /// Position of the eye in world coordinates, for a perspective camera.
     pub eye: [f32; 3],
     /// 1 for a perspective camera, 0 for an orthographic one.
     pub perspective: f32,
     /// Unit viewing direction in world coordinates.
     pub forward: [f32; 3],
-    /// Radius of a disc as a share of the repulsion radius.
+    /// Radius of a disc in repulsion radii.
     pub disc_scale: f32,
     /// Unit direction to the key light, in world coordinates.
     pub key_light: [f32; 3],
-    /// How far back faces fade towards the background, 0 to 1.
+    /// Fraction by which discs seen from behind fade to the background, 0 to 1.
     pub dim_backfaces: f32,
-    /// Unit direction to the sky of the hemisphere light, in world coordinates.
+    /// Unit direction to the sky of the hemispherical light, in world coordinates.
     pub sky: [f32; 3],
-    /// How far the whole picture fades towards the background, 0 to 1.
+    /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// Background, linear, not multiplied by its opacity.
+    /// Background colour, linear, not premultiplied by its opacity.
     pub background: [f32; 4],
     /// Width and height of the target in pixels.
     pub viewport: [f32; 2],
-    /// Target pixels per page pixel: the unit of line widths.
+    /// Target pixels per page pixel, the unit of line widths.
     pub pixel_ratio: f32,
-    /// Now, in seconds on the renderer's own clock.
+    /// Current time in seconds on the renderer's clock.
     pub time: f32,
     /// Smallest corner of the clip box.
     pub box_min: [f32; 3],
-    /// Seconds that a new particle takes to appear; 0 = at once.
+    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
     pub fade: f32,
     /// Largest corner of the clip box.
     pub box_max: [f32; 3],
-    /// 0 where the background is dark, 1 where it is light.
+    /// 1 for a light background, 0 for a dark one.
     pub light_ground: f32,
-    /// Colour of the box's edges, linear, not multiplied by its opacity.
+    /// Colour of the edges of the box, linear, not premultiplied by its opacity.
     pub box_colour: [f32; 4],
-    /// Newest generation level drawn; later ones are hidden. Beyond every level where all are drawn.
+    /// Newest generation level that is drawn. Larger than every level if all are drawn.
     pub level: f32,
-    /// How far levels before the newest fade towards the background, 0 to 1.
+    /// Fraction by which levels before the newest fade to the background, 0 to 1.
     pub mute: f32,
-    /// Uniform blocks come in multiples of 16 bytes.
+    /// Padding: the size of a uniform block is a multiple of 16 bytes.
     pub unused: [f32; 2],
 }
 
@@ -128,28 +133,28 @@ macro_rules! offsets {
 }
 
 impl Frame {
-    /// Name and byte offset of every field, in order.
+    /// Name and byte offset of each field, in order.
     pub const FIELDS: &'static [(&'static str, usize)] = offsets!(Frame:
         clip_from_world, eye, perspective, forward, disc_scale, key_light, dim_backfaces, sky, dim,
         background, viewport, pixel_ratio, time, box_min, fade, box_max, light_ground, box_colour, level, mute, unused,
     );
 }
 
-/// How the vertex stage reads an attribute. Names follow WebGPU.
+/// Format of a vertex attribute, with its WebGPU name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// One single-precision number.
+    /// A single-precision number.
     Float32,
     /// Three single-precision numbers.
     Float32x3,
-    /// Two signed normalised 16-bit numbers.
+    /// Two signed normalised 16-bit integers.
     Snorm16x2,
     /// Four unsigned normalised bytes.
     Unorm8x4,
 }
 
 impl Format {
-    /// Number of components that the shader sees; all are `f32` there.
+    /// Number of components in the shader, where each is an `f32`.
     #[must_use]
     pub const fn components(self) -> usize {
         match self {
@@ -160,7 +165,7 @@ impl Format {
         }
     }
 
-    /// Bytes in the buffer.
+    /// Size in the buffer, in bytes.
     #[must_use]
     pub const fn size(self) -> usize {
         match self {
@@ -170,18 +175,18 @@ impl Format {
     }
 }
 
-/// One per-instance attribute.
+/// A per-instance vertex attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attribute {
     /// `@location` in the shaders.
     pub location: u32,
     /// Byte offset in its record.
     pub offset: usize,
-    /// Its encoding.
+    /// Format in the buffer.
     pub format: Format,
 }
 
-/// The attributes of a [`Record`].
+/// Vertex attributes of a [`Record`].
 pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
     Attribute { location: 0, offset: offset_of!(Record, position), format: Format::Float32x3 },
     Attribute { location: 1, offset: offset_of!(Record, radius), format: Format::Float32 },
@@ -190,7 +195,7 @@ pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
     Attribute { location: 4, offset: offset_of!(Record, level), format: Format::Float32 },
 ];
 
-/// The attribute of the colour buffer.
+/// Vertex attribute of the colour buffer.
 pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
     [Attribute { location: 5, offset: 0, format: Format::Unorm8x4 }];
 
@@ -209,7 +214,7 @@ mod tests {
                 let phi = std::f32::consts::PI * j as f32 / steps as f32;
                 let n = [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()];
                 let [n, m] = [n, oct_decode(oct_encode(n.map(|c| 3.0 * c)))].map(|v| v.map(f64::from));
-                // The cross product, since the cosine of so small an angle says nothing.
+                // The cross product gives small angles accurately; the dot product does not.
                 let cross: f64 = (0..3)
                     .map(|k| (n[(k + 1) % 3] * m[(k + 2) % 3] - n[(k + 2) % 3] * m[(k + 1) % 3]).powi(2))
                     .sum();

@@ -1,28 +1,27 @@
-//! Drawing particles as discs with wgpu, on WebGPU and WebGL2 from one source.
+//! Renderer of particles as discs, on WebGPU and WebGL2 through wgpu.
 //!
-//! The renderer sees slices of numbers and a camera matrix; it knows no field and no sampler.
+//! The renderer takes columns of numbers and a camera matrix; it knows no field and no sampler.
 //!
 //! # How a disc is drawn
 //!
-//! * **Geometry.** One quad (a strip of four vertices) per particle, instanced. The vertex shader spans the tangent
-//!   plane with an axis that faces the camera and one that foreshortens, and pads the quad by one pixel on the
-//!   screen, so that the edge can be filtered even where the disc is seen edge-on. WebGL2 has no storage buffers in
-//!   the vertex stage; instance buffers work on both back ends.
-//! * **Edge.** The fragment shader turns the distance to the rim, in pixels, into coverage.
-//! * **Order.** Coverage needs blending, and blending needs an order that a million particles do not have. So the
-//!   discs are drawn in three passes: *cores* (fully covered pixels) with the depth test and depth writes, then *rims*
-//!   (partly covered pixels) blended over them, tested against the depth but not writing it, first those of discs
-//!   seen from behind, then the others. Discs of one sheet do not overlap, so that the order within a pass hardly
-//!   matters. No multisampling, no sorting, no written fragment depth: the same picture everywhere, 256 steps of
-//!   edge instead of the five of a 4× target.
-//! * **Points.** When discs shrink to a pixel or two, the gaps between them would beat against the pixels. They swell
-//!   until they touch; the core pass accepts pixels that are little covered and writes them a little too deep, and the
-//!   rim passes blend all points over that. A pixel then shows the average of the points that it sees of the nearest
-//!   sheet, and coverage fades with the size: steady under motion.
-//! * **Colour.** Colours come in as sRGB, are lit and blended in linear light, and leave through an sRGB view.
+//! * **Geometry.** Each particle is an instanced quad, a strip of four vertices. The vertex shader spans the tangent plane by
+//!   an axis that is not foreshortened and one that is. It pads the quad by one pixel on the screen, so that the edge can be
+//!   antialiased even if the disc is seen edge-on. The particles come from instance buffers, because WebGL2 has no storage
+//!   buffers in the vertex stage.
+//! * **Antialiasing.** The fragment shader computes the coverage of a pixel from its distance to the rim.
+//! * **Order.** Coverage requires blending, and blending depends on the order of drawing, but sorting a million particles is
+//!   too slow. The discs are therefore drawn in three passes. The first draws *cores*, fully covered pixels, with depth test
+//!   and depth writes. Two more blend *rims*, partly covered pixels, over them with depth test but without depth writes: those
+//!   of discs seen from behind, then the others. Discs of one sheet do not overlap, so the order within a pass hardly matters.
+//!   There is no multisampling, no sorting and no fragment depth. The picture is the same on all devices, and an edge has 256
+//!   levels of coverage instead of the five of a 4× multisampled target.
+//! * **Points.** When discs shrink to a pixel or two, the gaps between them would cause moiré. The discs are therefore
+//!   enlarged until they touch. The core pass accepts pixels with little coverage and writes a slightly larger depth; the rim
+//!   passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and coverage decreases
+//!   with the size of a point, so that the picture is steady under motion.
+//! * **Colour.** Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
-//! Layout, style and camera numbers are plain code that compiles and is tested without a GPU; everything that
-//! touches wgpu needs the feature `render`.
+//! The modules for layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.
 
 pub mod layout;
 pub mod pixels;

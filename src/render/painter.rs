@@ -1,26 +1,27 @@
-//! Draws one picture into one target.
+//! Encoder of the render pass of a picture.
 
 use super::layout::Frame;
 use super::pipelines::{DEPTH_FORMAT, Pipelines};
 use super::store::Store;
 
-/// The passes that make a picture.
+/// Draws pictures into targets.
 pub(super) struct Painter {
     pipelines: Pipelines,
     /// Depth buffer of the canvas, kept between pictures.
     depth: Option<wgpu::Texture>,
 }
 
-/// What to draw.
+/// Contents of a picture.
 pub(super) struct Scene<'a> {
     pub(super) store: &'a Store,
     /// Particles `0..count` are drawn.
     pub(super) count: u32,
-    /// Particle with a ring around it.
+    /// Index of a particle that is marked by a ring.
     pub(super) outline: Option<u32>,
+    /// Whether the edges of the clip box are drawn.
     pub(super) clip_box: bool,
     pub(super) frame: Frame,
-    /// Leave the background out.
+    /// Whether the background is left out.
     pub(super) transparent: bool,
 }
 
@@ -29,12 +30,12 @@ impl Painter {
         Self { pipelines: Pipelines::new(device, format), depth: None }
     }
 
-    /// Drops the depth buffer, whose size follows the target.
+    /// Drops the depth buffer, since the size of the target has changed.
     pub(super) fn forget_depth(&mut self) {
         self.depth = None;
     }
 
-    /// Encodes and submits the picture. The depth buffer is kept for the next target of the same size where `keep` is set.
+    /// Encodes and submits a picture. If `keep` is set, the depth buffer is kept for the next target of the same size.
     pub(super) fn paint(
         &mut self,
         device: &wgpu::Device,
@@ -94,7 +95,7 @@ impl Painter {
     }
 }
 
-/// Four vertices per particle. Slices start at the first particle drawn, since WebGL2 has no base instance.
+/// Draws a quad per particle. The buffer slices begin at the first particle drawn, because WebGL2 has no base instance.
 fn draw_particles(pass: &mut wgpu::RenderPass<'_>, store: &Store, range: core::ops::Range<u32>) {
     for run in store.runs(range) {
         pass.set_vertex_buffer(0, run.records);

@@ -1,30 +1,32 @@
-//! The pipelines and the uniform buffer they share.
+//! Render pipelines and the uniform buffer that they share.
 
 use super::layout::{Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, Format, Frame, RECORD_ATTRIBUTES, Record};
 use super::shaders::{BOX, DISCS};
 
-/// Depth format of every target.
+/// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Pipelines for one colour format.
+/// Pipelines for a colour format.
 pub(super) struct Pipelines {
-    /// Fully covered pixels of the discs: depth test and depth writes.
+    /// Draws fully covered pixels of discs, with depth test and depth writes.
     pub(super) core: wgpu::RenderPipeline,
-    /// Partly covered pixels of discs seen from behind, then from the front: blended, depth test without writes.
+    /// Blend partly covered pixels of discs seen from behind and of discs seen from the front, with depth test, without
+    /// depth writes.
     pub(super) rims: [wgpu::RenderPipeline; 2],
-    /// Ring around one particle: blended over everything.
+    /// Blends a ring around a particle over everything.
     pub(super) ring: wgpu::RenderPipeline,
-    /// Edges of the clip box: blended, depth test without writes.
+    /// Blends the edges of the clip box, with depth test, without depth writes.
     pub(super) clip_box: wgpu::RenderPipeline,
-    /// Uniform buffer with one [`Frame`].
+    /// Uniform buffer for a [`Frame`].
     pub(super) frame: wgpu::Buffer,
-    /// Binds [`Pipelines::frame`].
+    /// Bind group of [`Pipelines::frame`].
     pub(super) bind_group: wgpu::BindGroup,
 }
 
-/// Colours arrive multiplied by their opacity.
+/// Blending of colours that are premultiplied by their opacity.
 const BLEND: wgpu::BlendState = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;
 
+/// What distinguishes one pipeline from another.
 struct Recipe<'a> {
     label: &'a str,
     shader: &'a wgpu::ShaderModule,
@@ -36,7 +38,7 @@ struct Recipe<'a> {
 }
 
 impl Pipelines {
-    /// Compiles the pipelines for targets of `format`, which must be an sRGB format.
+    /// Compiles the pipelines for targets of `format`, which must be an sRGB format so that blending is linear.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let [discs, edges] = [DISCS, BOX].map(|shader| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -44,30 +46,7 @@ impl Pipelines {
                 source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
             })
         });
-        let frame = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: size_of::<Frame>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let bind_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("frame"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: wgpu::BufferSize::new(size_of::<Frame>() as u64),
-                },
-                count: None,
-            }],
-        });
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &bind_layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
-        });
+        let (frame, bind_layout, bind_group) = frame_binding(device);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("frame"),
             bind_group_layouts: &[Some(&bind_layout)],
@@ -121,6 +100,36 @@ impl Pipelines {
             bind_group,
         }
     }
+}
+
+/// Uniform buffer for a [`Frame`], with its bind group and the layout of that.
+fn frame_binding(device: &wgpu::Device) -> (wgpu::Buffer, wgpu::BindGroupLayout, wgpu::BindGroup) {
+    let label = Some("frame");
+    let frame = device.create_buffer(&wgpu::BufferDescriptor {
+        label,
+        size: size_of::<Frame>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label,
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: false,
+                min_binding_size: wgpu::BufferSize::new(size_of::<Frame>() as u64),
+            },
+            count: None,
+        }],
+    });
+    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label,
+        layout: &layout,
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
+    });
+    (frame, layout, bind_group)
 }
 
 fn pipeline(

@@ -1,17 +1,15 @@
-//! From the bytes of a read-back texture to the rows of a picture.
+//! Conversion of a read-back texture to the rows of a picture.
 
-/// Bytes of one row in a read-back buffer: rows start at multiples of 256 bytes (WebGPU, `bytesPerRow`).
+/// Bytes of a row in a read-back buffer. Rows start at multiples of 256 bytes (WebGPU, `bytesPerRow`).
 #[must_use]
 pub const fn padded_row(width_px: u32) -> u32 {
     (4 * width_px).next_multiple_of(256)
 }
 
-/// RGBA rows from top to bottom, opacity not multiplied in, from rows padded as [`padded_row`] says.
+/// Rows of RGBA pixels with straight (not premultiplied) opacity, from top to bottom.
 ///
-/// `padded` holds premultiplied pixels; where `bgra` is set, blue comes first. Where `opaque` is set, the opacity is
-/// written as 255 whatever was drawn.
-///
-/// The colours are divided by the opacity in linear light, where they were multiplied.
+/// `padded` holds sRGB pixels, premultiplied in linear light, in rows of [`padded_row`] bytes; if `bgra` is set, blue comes
+/// first. Colours are divided by the opacity in linear light. If `opaque` is set, every opacity is 255 instead.
 ///
 /// # Panics
 ///
@@ -40,11 +38,13 @@ pub fn straight_rgba(padded: &[u8], width_px: u32, height_px: u32, bgra: bool, o
     out
 }
 
+/// Linear value of an sRGB component.
 fn decode(byte: u8) -> f32 {
     let c = f32::from(byte) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
+/// sRGB component of a linear value.
 fn encode(linear: f32) -> u8 {
     let c = linear.clamp(0.0, 1.0);
     let c = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::powf(c, 1.0 / 2.4) - 0.055 };
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn padding_is_dropped_and_blue_first_is_mended() {
+    fn padding_is_dropped_and_bgra_becomes_rgba() {
         let (width, height) = (3, 2);
         let mut padded = vec![99_u8; (padded_row(width) * height) as usize];
         for y in 0..2 {

@@ -1,4 +1,4 @@
-//! A device, a surface to draw on and the particles in between.
+//! Renderer: a graphics device with a surface to draw on and the particles to draw.
 
 use super::layout::Frame;
 use super::painter::{Painter, Scene};
@@ -10,30 +10,30 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use thiserror::Error;
 
-/// Called when the device is gone: the reason ("unknown" or "destroyed") and the driver's words.
+/// Called when the device is lost, with the reason ("unknown" or "destroyed") and the driver's message.
 pub type OnLost = Arc<dyn Fn(&str, &str) + Send + Sync>;
-/// Called with what the device says when it refuses a call.
+/// Called with the device's message when it rejects a call.
 pub type OnError = Arc<dyn Fn(&str) + Send + Sync>;
 
-/// Whom to tell what the graphics device reports between calls.
+/// Callbacks for asynchronous reports of the graphics device.
 #[derive(Clone)]
 pub struct Callbacks {
-    /// The device is gone. Called once at most.
+    /// Called when the device is lost, at most once.
     pub on_lost: OnLost,
-    /// A call was refused by the device; the picture may be incomplete.
+    /// Called when the device rejects a call. The picture may then be incomplete.
     pub on_error: OnError,
 }
 
-/// Why there is no renderer.
+/// Why no renderer could be created.
 #[derive(Debug, Error)]
 pub enum CreateError {
-    /// The canvas gives no context of this kind: unsupported, or taken by another kind.
+    /// The canvas gives no graphics context: none is supported, or the canvas already has one of another kind.
     #[error("the canvas gives no graphics context: {0}")]
     Surface(#[from] wgpu::CreateSurfaceError),
-    /// No graphics adapter.
+    /// There is no graphics adapter.
     #[error("no graphics adapter: {0}")]
     Adapter(#[from] wgpu::RequestAdapterError),
-    /// The adapter gives no device.
+    /// The adapter provides no device.
     #[error("no graphics device: {0}")]
     Device(#[from] wgpu::RequestDeviceError),
     /// The adapter cannot draw on this surface in 8-bit sRGB.
@@ -41,18 +41,18 @@ pub enum CreateError {
     Format,
 }
 
-/// What became of one call to draw.
+/// Outcome of [`Renderer::draw`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The picture is on its way to the screen.
+    /// The picture was submitted and will be shown.
     Drawn,
-    /// Nothing to draw on now: size zero, hidden, or busy. Draw again when something changes.
+    /// The surface cannot be drawn on now, because it is empty, hidden or busy. Draw again when something changes.
     Skipped,
-    /// The device is gone; only a new renderer helps.
+    /// The device is lost. A new renderer is needed.
     Lost,
 }
 
-/// A picture that the device is copying to where it can be read.
+/// A picture whose pixels are being copied to memory that can be read.
 pub struct Picture {
     buffer: wgpu::Buffer,
     size: [u32; 2],
@@ -60,31 +60,33 @@ pub struct Picture {
     transparent: bool,
 }
 
-/// Draws particles on a surface.
+/// Draws particles as discs on a surface. After the device is lost, its methods do nothing.
 pub struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
-    /// Format through which the surface is drawn: sRGB, so that blending happens in linear light.
+    /// sRGB format through which the surface is drawn, so that blending is linear.
     view_format: wgpu::TextureFormat,
-    /// Size of the canvas; nothing is drawn while a side is zero.
+    /// Size of the canvas in pixels. Nothing is drawn while a side is zero.
     size: [u32; 2],
     configured: bool,
     lost: Arc<AtomicBool>,
     callbacks: Callbacks,
     painter: Painter,
     store: Store,
+    /// Number of particles that are drawn.
     count: u32,
     view: View,
     style: Style,
-    /// Second of the caller's clock at which the renderer's clock is zero, so that single precision suffices.
+    /// Time on the caller's clock at which the renderer's clock is zero, in seconds. Single precision suffices for times
+    /// relative to it.
     epoch_s: Option<f64>,
 }
 
-/// Times this many seconds from the epoch stand for ±∞: a day and more, at a resolution of 8 ms.
-const LONG_AGO_S: f64 = 1e5;
+/// Time from the epoch that stands for ±∞, in seconds. It is more than a day and has a resolution of 8 ms.
+const INFINITE_TIME_S: f64 = 1e5;
 
 impl Renderer {
     /// Largest number of particles that [`Renderer::write`] takes.
@@ -94,7 +96,7 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`CreateError`] where the surface, the adapter or the device cannot be had.
+    /// [`CreateError`] if a surface, an adapter or a device is not available.
     pub async fn new(
         surface_target: impl Into<wgpu::SurfaceTarget<'static>>,
         callbacks: Callbacks,
@@ -171,7 +173,7 @@ impl Renderer {
         })
     }
 
-    /// "webgpu", "webgl2", or the native back end's name.
+    /// Name of the back end: "webgpu", "webgl2", or that of a native one.
     #[must_use]
     pub fn backend(&self) -> &'static str {
         match self.info.backend {
@@ -181,7 +183,7 @@ impl Renderer {
         }
     }
 
-    /// What the driver calls the graphics adapter; may be empty, since browsers hide it.
+    /// Name of the graphics adapter. It may be empty, because browsers hide it.
     #[must_use]
     pub fn adapter(&self) -> &str {
         [&self.info.name, &self.info.driver, &self.info.driver_info]
@@ -190,21 +192,22 @@ impl Renderer {
             .map_or("", String::as_str)
     }
 
-    /// Whether the device is gone.
+    /// Whether the device is lost.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// Says that the device is gone, where wgpu cannot know: a lost WebGL context. Later calls do nothing.
+    /// Records the loss of the device, for a lost WebGL context, which wgpu does not report.
     pub fn mark_lost(&self, reason: &str, message: &str) {
         if !self.lost.swap(true, Ordering::Relaxed) {
             (self.callbacks.on_lost)(reason, message);
         }
     }
 
-    /// Sets the size of the surface in pixels and returns the size taken: beyond the largest texture it shrinks in
-    /// proportion. Where a side is 0 nothing is drawn until the next resize.
+    /// Sets the size of the surface in pixels and returns the size in effect.
+    ///
+    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is drawn until the next resize.
     pub fn resize(&mut self, size: [u32; 2]) -> [u32; 2] {
         let size = self.fit(size);
         if size != self.size {
@@ -214,7 +217,8 @@ impl Renderer {
         size
     }
 
-    /// The size that [`Renderer::picture`] takes for `size`: at least one pixel, within the largest texture and the largest buffer.
+    /// Size of the picture that [`Renderer::picture`] makes for `size`: at least one pixel, and within the limits of
+    /// textures and buffers.
     #[must_use]
     pub fn picture_size(&self, size: [u32; 2]) -> [u32; 2] {
         let mut size = self.fit(size.map(|side| side.max(1)));
@@ -224,6 +228,7 @@ impl Renderer {
         size
     }
 
+    /// `size`, scaled down in proportion to the largest texture if it is larger.
     fn fit(&self, size: [u32; 2]) -> [u32; 2] {
         let largest = self.device.limits().max_texture_dimension_2d;
         let longest = size[0].max(size[1]);
@@ -236,15 +241,15 @@ impl Renderer {
         })
     }
 
-    /// Appends or overwrites particles `first..first + radii.len()`; the number drawn grows to their end.
+    /// Writes particles `first..first + radii.len()`. The number of particles drawn increases to include them.
     ///
-    /// Positions and normals have three numbers per particle. Colours are 0xAABBGGRR, sRGB. `birth_s` is the second on
-    /// the caller's clock (that of [`Renderer::draw`]) at which they begin to appear; −∞ shows them at once.
+    /// Positions and normals have three numbers per particle, colours are sRGB as 0xAABBGGRR. `birth_s` is the time at which
+    /// the particles begin to appear, in seconds on the clock of [`Renderer::draw`]; −∞ shows them at once.
     ///
     /// # Panics
     ///
-    /// If the columns disagree in length or end beyond [`Renderer::MAX_PARTICLES`].
-    #[allow(clippy::too_many_arguments, reason = "one column each; a struct would only be taken apart again")]
+    /// If the columns differ in length or end beyond [`Renderer::MAX_PARTICLES`].
+    #[allow(clippy::too_many_arguments, reason = "one argument per column")]
     pub fn write(
         &mut self,
         first: u32,
@@ -266,29 +271,29 @@ impl Renderer {
         self.count = self.count.max(end as u32);
     }
 
-    /// Changes the colours of particles from `first` on; those never written are left out.
+    /// Writes the colours of particles from `first` on. Particles beyond the capacity of the buffers are skipped.
     pub fn write_colours(&mut self, first: u32, colours: &[u32]) {
         if !self.is_lost() && (first as usize + colours.len()) <= Self::MAX_PARTICLES as usize {
             self.store.write_colours(&self.queue, first, colours);
         }
     }
 
-    /// Draws particles `0..count` from now on. Buffers keep their size.
+    /// Sets the number of particles that are drawn. The buffers keep their size.
     pub fn set_count(&mut self, count: u32) {
         self.count = count.min(Self::MAX_PARTICLES);
     }
 
-    /// Sets the camera, made for the present size of the surface.
+    /// Sets the camera, which must be made for the current size of the surface.
     pub fn set_view(&mut self, view: View) {
         self.view = view;
     }
 
-    /// Sets the look.
+    /// Sets the style.
     pub fn set_style(&mut self, style: Style) {
         self.style = style;
     }
 
-    /// Draws on the surface. `time_s` is now on the caller's clock.
+    /// Draws on the surface. `time_s` is the current time on the caller's clock, in seconds.
     pub fn draw(&mut self, time_s: f64) -> Outcome {
         if self.is_lost() {
             return Outcome::Lost;
@@ -306,7 +311,7 @@ impl Renderer {
                 texture
             }
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Lost => {
-                // Once more with a fresh configuration; a second failure waits for the next call.
+                // Try once more with a fresh configuration. After a second failure the next call tries again.
                 self.configure();
                 match self.surface.get_current_texture() {
                     wgpu::CurrentSurfaceTexture::Success(texture)
@@ -327,10 +332,10 @@ impl Renderer {
         if self.is_lost() { Outcome::Lost } else { Outcome::Drawn }
     }
 
-    /// Draws the same picture into a texture of [`Renderer::picture_size`] and has it copied to where it can be read. With another shape than the
-    /// surface's, the picture shows more at the sides or at top and bottom. `None` where the device is gone.
+    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes readable.
     ///
-    /// [`Picture::map`] asks for the pixels.
+    /// A picture with another aspect ratio than the surface shows more at the sides, or at top and bottom. Returns `None` if
+    /// the device is lost.
     pub fn picture(&mut self, size: [u32; 2], transparent: bool, time_s: f64) -> Option<Picture> {
         if self.is_lost() {
             return None;
@@ -375,13 +380,13 @@ impl Renderer {
         Some(Picture { buffer, size, bgra, transparent })
     }
 
-    /// Lets callbacks of finished work run, where the back end needs it (WebGL2).
+    /// Runs the callbacks of finished work, for back ends that need it (WebGL2).
     pub fn poll(&self) {
-        // An error here means that the device is gone, which its own callback tells.
+        // An error means that the device is lost, which its callback reports.
         let _ = self.device.poll(wgpu::PollType::Poll);
     }
 
-    /// Gives the device and its memory back. Later calls do nothing.
+    /// Releases the device and its memory.
     pub fn destroy(&self) {
         self.mark_lost("destroyed", "the renderer was destroyed");
         self.device.destroy();
@@ -422,23 +427,24 @@ impl Renderer {
         self.painter.paint(&self.device, &self.queue, view, size, keep, &scene);
     }
 
-    /// The caller's second on the renderer's own clock, which starts at the first finite second seen. NaN is long ago.
+    /// Time on the renderer's clock, which is zero at the first finite time that is converted. NaN counts as −∞.
     fn clock(&mut self, time_s: f64) -> f32 {
         if !time_s.is_finite() {
-            return (if time_s > 0.0 { LONG_AGO_S } else { -LONG_AGO_S }) as f32;
+            return (if time_s > 0.0 { INFINITE_TIME_S } else { -INFINITE_TIME_S }) as f32;
         }
         let epoch_s = *self.epoch_s.get_or_insert(time_s);
-        (time_s - epoch_s).clamp(-LONG_AGO_S, LONG_AGO_S) as f32
+        (time_s - epoch_s).clamp(-INFINITE_TIME_S, INFINITE_TIME_S) as f32
     }
 }
 
 impl Picture {
-    /// Asks for the pixels; `done` is called when [`Picture::pixels`] may be, or with `false` when they will never come.
+    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or with `false` if it failed.
     pub fn map(&self, done: impl FnOnce(bool) + Send + 'static) {
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| done(result.is_ok()));
     }
 
-    /// The pixels: rows from top to bottom, four bytes each, red first, sRGB, opacity not multiplied in. `None` before [`Picture::map`] is done.
+    /// Pixels in rows from top to bottom, four bytes each: sRGB red, green, blue and straight opacity. `None` before
+    /// [`Picture::map`] has succeeded.
     #[must_use]
     pub fn pixels(&self) -> Option<Vec<u8>> {
         let [width, height] = self.size;

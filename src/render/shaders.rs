@@ -1,13 +1,13 @@
-//! The shaders, as text.
+//! Sources of the shaders.
 
-/// One shader.
+/// A shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
     /// File name in `shaders/`.
     pub name: &'static str,
-    /// The file.
+    /// Text of the file.
     pub source: &'static str,
-    /// The file without comments and indentation: what is handed to the device, and what the bundle carries.
+    /// Text without comments and indentation, which is what the device gets and what the bundle contains.
     pub lean: &'static str,
 }
 
@@ -26,15 +26,16 @@ macro_rules! shader {
         Shader { name: $name, source: SOURCE, lean: TEXT }
     }};
 }
-/// Every shader. `tests/it/shaders.rs` checks that this lists all files of `shaders/`.
+/// All shaders. A test checks that they are the files in `shaders/`.
 pub const SHADERS: [Shader; 2] = [DISCS, BOX];
 
-/// Particles as discs, and the ring around one of them.
+/// Draws particles as discs, and a ring around one of them.
 pub const DISCS: Shader = shader!("discs.wgsl");
-/// The edges of the clip box.
+/// Draws the edges of the clip box.
 pub const BOX: Shader = shader!("box.wgsl");
 
-/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as it reaches; returns the length of the whole.
+/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns the
+/// length of the whole.
 const fn strip(source: &str, out: &mut [u8]) -> usize {
     let bytes = source.as_bytes();
     let mut length = 0;

@@ -1,15 +1,15 @@
-//! The particles on the GPU: chunks of instance buffers that grow without losing what they hold.
+//! Particles on the GPU, in chunks of instance buffers that grow and keep their content.
 
 use super::layout::{COLOUR_STRIDE, Record};
 use core::ops::Range;
 
-/// Particles per chunk: 7 MiB of records and 1 MiB of colours, far below every device's largest buffer, and few
-/// enough draw calls (4 per pass for a million).
+/// Particles per chunk: 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and takes
+/// only 4 draw calls per pass for a million particles.
 const CHUNK: u32 = 1 << 18;
-/// Capacity of the first chunk before it grows.
+/// Initial capacity of the first chunk.
 const FIRST: u32 = 1 << 12;
 
-/// Instance buffers.
+/// Instance buffers of all particles.
 #[derive(Default)]
 pub(super) struct Store {
     chunks: Vec<Chunk>,
@@ -22,14 +22,14 @@ struct Chunk {
     capacity: u32,
 }
 
-/// A run of particles within one chunk, as vertex buffer slices.
+/// Consecutive particles in one chunk, as slices of its vertex buffers.
 pub(super) struct Run<'a> {
     pub(super) records: wgpu::BufferSlice<'a>,
     pub(super) colours: wgpu::BufferSlice<'a>,
     pub(super) count: u32,
 }
 
-/// Columns of particles to write, one entry per particle (three per particle for vectors).
+/// Columns of particles to write, with one entry per particle, or three for vectors.
 #[derive(Clone, Copy)]
 pub(super) struct Columns<'a> {
     pub(super) positions: &'a [f32],
@@ -41,14 +41,14 @@ pub(super) struct Columns<'a> {
 }
 
 impl Store {
-    /// Largest number of particles: 128 MiB on the GPU.
+    /// Maximum number of particles, which take 128 MiB on the GPU.
     pub(super) const MAX: u32 = 1 << 22;
 
-    /// Packs and uploads particles `first..`; buffers grow as needed.
+    /// Packs and uploads particles from `first` on. Buffers grow as needed.
     ///
     /// # Panics
     ///
-    /// If the columns disagree in length or end beyond [`Store::MAX`].
+    /// If the columns differ in length or end beyond [`Store::MAX`].
     pub(super) fn write(
         &mut self,
         device: &wgpu::Device,
@@ -69,7 +69,7 @@ impl Store {
         self.reserve(device, queue, first + count as u32);
         let positions = columns.positions.as_chunks::<3>().0;
         let normals = columns.normals.as_chunks::<3>().0;
-        for (chunk, local, span) in pieces(first, count as u32) {
+        for (chunk, local, span) in split_at_chunks(first, count as u32) {
             self.scratch.clear();
             self.scratch.extend(span.clone().map(|i| {
                 Record::new(positions[i], normals[i], columns.radii[i], columns.birth, columns.levels[i])
@@ -80,9 +80,9 @@ impl Store {
         self.write_colours(queue, first, columns.colours);
     }
 
-    /// Uploads the colours of particles `first..`; those beyond the particles written so far are dropped.
+    /// Uploads the colours of particles from `first` on. Those beyond the capacity of the buffers are dropped.
     pub(super) fn write_colours(&mut self, queue: &wgpu::Queue, first: u32, colours: &[u32]) {
-        for (chunk, local, span) in pieces(first, colours.len() as u32) {
+        for (chunk, local, span) in split_at_chunks(first, colours.len() as u32) {
             let Some(chunk) = self.chunks.get(chunk) else { break };
             let room = chunk.capacity.saturating_sub(local) as usize;
             let colours = &colours[span];
@@ -92,23 +92,26 @@ impl Store {
         }
     }
 
-    /// The particles `range` as vertex buffer slices, in order.
+    /// Slices of the vertex buffers for the particles `range`, in order.
     pub(super) fn runs(&self, range: Range<u32>) -> impl Iterator<Item = Run<'_>> {
-        pieces(range.start, range.end.saturating_sub(range.start)).filter_map(|(chunk, local, span)| {
-            let chunk = self.chunks.get(chunk)?;
-            let count = (span.len() as u32).min(chunk.capacity.saturating_sub(local));
-            let bytes = |stride: usize| {
-                let stride = stride as u64;
-                u64::from(local) * stride..u64::from(local + count) * stride
-            };
-            (count > 0).then(|| Run {
-                records: chunk.records.slice(bytes(size_of::<Record>())),
-                colours: chunk.colours.slice(bytes(COLOUR_STRIDE)),
-                count,
-            })
-        })
+        split_at_chunks(range.start, range.end.saturating_sub(range.start)).filter_map(
+            |(chunk, local, span)| {
+                let chunk = self.chunks.get(chunk)?;
+                let count = (span.len() as u32).min(chunk.capacity.saturating_sub(local));
+                let bytes = |stride: usize| {
+                    let stride = stride as u64;
+                    u64::from(local) * stride..u64::from(local + count) * stride
+                };
+                (count > 0).then(|| Run {
+                    records: chunk.records.slice(bytes(size_of::<Record>())),
+                    colours: chunk.colours.slice(bytes(COLOUR_STRIDE)),
+                    count,
+                })
+            },
+        )
     }
 
+    /// Grows the buffers to a capacity of at least `count` particles.
     fn reserve(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, count: u32) {
         assert!(count <= Self::MAX, "{count} particles asked for, at most {} are drawn", Self::MAX);
         for index in 0..count.div_ceil(CHUNK) {
@@ -152,16 +155,17 @@ impl Chunk {
     }
 }
 
-/// Splits particles `first..first + count` at chunk borders: chunk, first particle within it, span of the input.
-fn pieces(first: u32, count: u32) -> impl Iterator<Item = (usize, u32, Range<usize>)> {
+/// Splits particles `first..first + count` at chunk borders. Each item is a chunk, the first particle within it, and the range
+/// relative to `first`.
+fn split_at_chunks(first: u32, count: u32) -> impl Iterator<Item = (usize, u32, Range<usize>)> {
     let end = first + count;
     let mut at = first;
     core::iter::from_fn(move || {
         (at < end).then(|| {
             let stop = end.min((at / CHUNK + 1) * CHUNK);
-            let piece = ((at / CHUNK) as usize, at % CHUNK, (at - first) as usize..(stop - first) as usize);
+            let item = ((at / CHUNK) as usize, at % CHUNK, (at - first) as usize..(stop - first) as usize);
             at = stop;
-            piece
+            item
         })
     })
 }
@@ -171,11 +175,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_cover_the_span_and_stay_within_chunks() {
+    fn ranges_cover_the_particles_and_stay_within_chunks() {
         for (first, count) in [(0, 0), (0, 1), (5, CHUNK), (CHUNK - 1, 2), (3 * CHUNK, CHUNK), (7, 3 * CHUNK)]
         {
             let mut next = 0;
-            for (chunk, local, span) in pieces(first, count) {
+            for (chunk, local, span) in split_at_chunks(first, count) {
                 assert_eq!(span.start, next);
                 assert_eq!(chunk as u32 * CHUNK + local, first + span.start as u32);
                 assert!(!span.is_empty() && local + span.len() as u32 <= CHUNK);

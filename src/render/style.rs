@@ -1,47 +1,47 @@
-//! How the picture looks, as the page states it, and the uniform block that follows from style and camera.
+//! Style of a picture, and the uniform block that follows from style and camera.
 
 use super::layout::Frame;
 use super::view::View;
 
-/// The look of the picture. Colours are sRGB with components from 0 to 1 and opacity last.
+/// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
 ///
 /// Values out of range are clamped when the picture is drawn; NaN counts as the lower bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    /// Background. Its opacity matters only for a transparent picture; the canvas is opaque.
+    /// Background colour. The canvas is opaque, so the opacity has no effect there.
     pub background: [f32; 4],
-    /// Radius of a disc as a share of the repulsion radius. At 1 the discs of a hexagonal packing touch;
-    /// the default leaves the gaps by which the eye sees the order.
+    /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that make
+    /// the order visible.
     pub disc_scale: f32,
     /// Direction to the key light in view coordinates: x right, y up, z towards the viewer.
     pub key_light_view: [f32; 3],
-    /// How far the whole picture fades towards the background: 0 not, 1 wholly.
+    /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// How far discs seen from behind fade towards the background.
+    /// Fraction by which discs seen from behind fade to the background, 0 to 1.
     pub dim_backfaces: f32,
-    /// Seconds that a new particle takes to appear; 0 = at once.
+    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
     pub fade_s: f32,
-    /// Newest generation level drawn: particles of later ones are hidden, those of earlier ones fade by `mute`. All
-    /// levels alike where there is none.
+    /// Newest generation level that is drawn. Particles of later levels are hidden, those of earlier ones fade by `mute`.
+    /// With `None` all levels are drawn alike.
     pub level: Option<u32>,
-    /// How far earlier levels fade towards the background.
+    /// Fraction by which earlier levels fade to the background, 0 to 1.
     pub mute: f32,
-    /// Particle with a ring around it.
+    /// Index of a particle that is marked by a ring.
     pub outline: Option<u32>,
-    /// The clip box, drawn by its edges.
+    /// Clip box whose edges are drawn.
     pub clip_box: Option<ClipBox>,
-    /// Canvas pixels per page pixel: lines and rings are that much thicker.
+    /// Canvas pixels per page pixel, the unit of line widths.
     pub pixel_ratio: f32,
 }
 
-/// A box to draw; the default is invisible.
+/// A box whose edges are drawn. The default is invisible.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClipBox {
     /// Smallest corner, in world coordinates.
     pub min: [f32; 3],
     /// Largest corner.
     pub max: [f32; 3],
-    /// Colour of the edges, sRGB and opacity.
+    /// Colour of the edges: sRGB and opacity.
     pub colour: [f32; 4],
 }
 
@@ -63,19 +63,19 @@ impl Default for Style {
     }
 }
 
-/// What a picture is drawn for.
+/// Target of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Size of the canvas, for which the view was made, in pixels.
+    /// Size in pixels of the canvas, which the view was made for.
     pub canvas: [u32; 2],
     /// Size of the target in pixels.
     pub size: [u32; 2],
-    /// Now, in seconds on the renderer's own clock.
+    /// Current time in seconds on the renderer's clock.
     pub time: f32,
 }
 
 impl Style {
-    /// The uniform block for one picture.
+    /// Uniform block for a picture.
     #[must_use]
     pub fn frame(&self, view: &View, target: Target) -> Frame {
         let clamp = |v: f32, lo: f32, hi: f32| if v >= lo { v.min(hi) } else { lo };
@@ -109,17 +109,18 @@ impl Style {
     }
 }
 
-/// Beyond every level of 2³² particles.
+/// Larger than any level of 2³² particles.
 const ALL_LEVELS: f32 = 1e10;
 
-/// Luminance at which black and white contrast equally with a ground (WCAG: √(1.05 · 0.05) − 0.05).
+/// Luminance of a background to which black and white have equal contrast (WCAG 2: √(1.05 · 0.05) − 0.05).
 const LIGHT_GROUND: f32 = 0.179;
 
+/// Relative luminance of a linear colour.
 fn luminance(linear: [f32; 4]) -> f32 {
     0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 }
 
-/// sRGB components to linear light (IEC 61966-2-1), clamped to 0 … 1; opacity as it is. NaN becomes 0.
+/// Linear components of an sRGB colour (IEC 61966-2-1), clamped to 0 … 1; the opacity is only clamped. NaN becomes 0.
 #[must_use]
 pub fn linear(srgb: [f32; 4]) -> [f32; 4] {
     let [r, g, b, a] = srgb.map(|c| if c >= 0.0 { c.min(1.0) } else { 0.0 });

@@ -1,31 +1,31 @@
-//! The camera as the renderer sees it: one matrix, an eye and a direction.
+//! Camera of the renderer: a matrix, an eye and a viewing direction.
 
 use thiserror::Error;
 
-/// A camera. The projection maps depth to 0 (near) … 1 (far), as WebGPU does; x to the right and y up on the screen.
+/// A camera. In clip coordinates x points right, y points up and depth increases from 0 (near) to 1 (far), as in WebGPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Clip from world, column-major.
+    /// Matrix from world to clip coordinates, column-major.
     pub clip_from_world: [f32; 16],
-    /// Eye in world coordinates; unused by an orthographic camera.
+    /// Position of the eye in world coordinates, unused by an orthographic camera.
     pub eye: [f32; 3],
     /// Unit viewing direction in world coordinates, away from the eye.
     pub direction: [f32; 3],
 }
 
-/// Why a camera was refused.
+/// Why a slice of numbers is not a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ViewError {
-    /// Fewer numbers than a camera has.
+    /// There are fewer numbers than a camera has.
     #[error("a view is 16 + 3 + 3 numbers, not {0}")]
     Length(usize),
-    /// A number that is NaN or infinite.
+    /// A number is NaN or infinite.
     #[error("number {0} of the view is not finite")]
     NotFinite(usize),
 }
 
 impl Default for View {
-    /// Looks along −z at the cube from −1 to 1.
+    /// Orthographic camera that looks along −z at the cube from −1 to 1.
     fn default() -> Self {
         let mut clip_from_world = [0.0; 16];
         clip_from_world[0] = 1.0;
@@ -38,14 +38,15 @@ impl Default for View {
 }
 
 impl View {
-    /// Numbers that [`View::from_slice`] reads.
+    /// Number of numbers that [`View::from_slice`] reads.
     pub const LEN: usize = 22;
 
-    /// Reads a camera: clip from world (16, column-major), eye (3), viewing direction (3). Further numbers are ignored.
+    /// Camera from numbers: the matrix from world to clip coordinates (16, column-major), the eye (3) and the viewing
+    /// direction (3). Further numbers are ignored.
     ///
     /// # Errors
     ///
-    /// [`ViewError`] for a slice that is too short and for a number that is not finite.
+    /// [`ViewError`] if the slice is too short or a number is not finite.
     pub fn from_slice(numbers: &[f32]) -> Result<Self, ViewError> {
         let numbers = numbers.get(..Self::LEN).ok_or(ViewError::Length(numbers.len()))?;
         if let Some(k) = numbers.iter().position(|c| !c.is_finite()) {
@@ -58,13 +59,14 @@ impl View {
         Ok(view)
     }
 
-    /// Whether lines through the eye, not parallel lines, project to points: the last row of the matrix is not (0, 0, 0, w).
+    /// Whether the projection is perspective: the last row of the matrix is not (0, 0, 0, w).
     #[must_use]
     pub fn is_perspective(&self) -> bool {
         [3, 7, 11].iter().any(|&k| self.clip_from_world[k] != 0.0)
     }
 
-    /// The matrix for a target of another shape: all that a target of size `from` shows stays in the picture, and circles stay round.
+    /// Matrix for a target of size `to`, given a camera for size `from`. Everything visible at size `from` stays visible, and
+    /// circles stay round.
     #[must_use]
     pub fn clip_from_world_for(&self, from: [u32; 2], to: [u32; 2]) -> [[f32; 4]; 4] {
         let aspect = |size: [u32; 2]| size[0].max(1) as f32 / size[1].max(1) as f32;
@@ -78,8 +80,8 @@ impl View {
         columns
     }
 
-    /// A direction given in view coordinates (x right, y up, z towards the viewer), in world coordinates.
-    /// The unit vector towards the viewer where `v` is zero or the camera degenerate.
+    /// Unit vector in world coordinates of direction `v` in view coordinates (x right, y up, z towards the viewer). If `v` is
+    /// zero or the camera is degenerate, it points towards the viewer.
     #[must_use]
     pub fn world_from_view(&self, v: [f32; 3]) -> [f32; 3] {
         let m = &self.clip_from_world;
@@ -91,7 +93,7 @@ impl View {
     }
 }
 
-/// `v` at unit length; `None` where it is zero or not finite.
+/// `v` scaled to unit length; `None` if `v` is zero or not finite.
 pub(super) fn unit(v: [f32; 3]) -> Option<[f32; 3]> {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     (length > 0.0 && length.is_finite()).then(|| v.map(|c| c / length))
