@@ -1,4 +1,4 @@
-//! Particles as files: PLY, CSV, XYZ and NPY.
+//! Export of particles to PLY, CSV, XYZ and NPY.
 
 use crate::particles::Particles;
 use std::io::{self, Write};
@@ -6,10 +6,10 @@ use std::io::{self, Write};
 /// A file format for particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 next to a
-    /// singular point.
+    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 for a particle next
+    /// to a singular point.
     Ply,
-    /// Comma-separated values with a header line, the same columns as PLY.
+    /// Comma-separated values with a header line and the columns of [`Format::Ply`].
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
@@ -22,16 +22,17 @@ impl Format {
     pub const ALL: [(&str, Self); 4] =
         [("ply", Self::Ply), ("csv", Self::Csv), ("xyz", Self::Xyz), ("npy", Self::Npy)];
 
-    /// The format that a file name's extension stands for, in either case; none for any other.
+    /// Format with a file name extension, in upper or lower case; `None` for an unknown one.
     #[must_use]
     pub fn of_extension(extension: &str) -> Option<Self> {
         Self::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(extension)).map(|&(_, format)| format)
     }
 }
 
-/// Writes `particles` to `out`, which should be buffered. `valence` is the number of natural neighbours of each (see
-/// [`crate::quality::Report::valence`]); particles beyond its end get 0. Floats in text are the shortest that read back to the
-/// same bits.
+/// Writes `particles` to `out`, which should be buffered.
+///
+/// `valence` is the number of natural neighbours of each particle (see [`crate::quality::Report::valence`]); particles beyond
+/// its end get 0. Decimal numbers are the shortest that read back to the same bits.
 ///
 /// # Errors
 ///
@@ -45,9 +46,9 @@ pub fn write(format: Format, particles: &Particles, valence: &[u8], out: &mut dy
     }
 }
 
-/// Parent as a signed number: −1 for a seed.
+/// Index of the parent, or −1 for a seed.
 fn parent(particles: &Particles, i: usize) -> i32 {
-    // All ones, the mark of a seed, is −1.
+    // The parent of a seed is `u32::MAX`, whose bits are those of −1.
     particles.parent[i].cast_signed()
 }
 
@@ -104,7 +105,7 @@ fn xyz(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
 fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     let mut header =
         format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, 6), }}", particles.len());
-    // Magic, version and length take 10 bytes; the data starts at a multiple of 64, after a line feed.
+    // Magic, version and length take 10 bytes. A line feed ends the header, and the data starts at a multiple of 64.
     let padding = 64 - (10 + header.len() + 1) % 64;
     header.extend(core::iter::repeat_n(' ', padding % 64));
     header.push('\n');

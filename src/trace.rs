@@ -1,14 +1,14 @@
-//! An event log of the adaptive front at one chosen particle, with which Figures 7 and 8 of the paper can be replayed: the
-//! neighbours gathered, where each child starts, how it is pushed, how its angle φ compares with the free one τ, and its
-//! fate.
+//! Event log of the adaptive front at one chosen particle, from which Figures 7 and 8 of the paper can be replayed.
 //!
-//! While nothing is followed it costs a comparison per particle, and no memory.
+//! It records the neighbours gathered and, for each child, its start, the pushes, the comparison of its angle φ with the
+//! free angle τ, and its fate. If no particle is followed, the log costs a comparison per particle and no memory.
 
 use crate::particles::{Particles, SlotFate};
 use glam::Vec3;
 
-/// What happened at the particle that is followed: [`Event::Parent`], the neighbours, then the children. Children that are
-/// pushed come one after the other; those that are placed directly all start before the first one lands.
+/// Event at the followed particle: [`Event::Parent`], then the neighbours, then the children.
+///
+/// Pushed children come one after the other. Children that are placed directly all start before the first one lands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The particle begins to place its children.
@@ -22,13 +22,13 @@ pub enum Event {
         /// Direction of angle 0 in its tangent plane: towards its own parent.
         zero: Vec3,
     },
-    /// A particle was gathered (Fig. 8a).
+    /// A neighbour was gathered (Fig. 8a).
     Neighbour {
-        /// Index of the particle, or of its provisional place.
+        /// Index of the neighbour, which may be a provisional particle.
         particle: u32,
         /// Its position.
         position: Vec3,
-        /// Its radius.
+        /// Its repulsion radius.
         radius: f32,
         /// Its direction in the tangent plane, in radians.
         angle_rad: f32,
@@ -37,63 +37,63 @@ pub enum Event {
     Child {
         /// Number of the child, from 0.
         child: u32,
-        /// What it was.
+        /// What happened.
         step: Step,
     },
 }
 
-/// What happens to a child.
+/// Step in the placement of a child.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Where it begins: the point s on the circle of the parent (Fig. 7a and 7c), or the place predicted.
+    /// The start: the point s on the circle of the parent (Fig. 7a and 7c), or the predicted position.
     Start {
-        /// Its centre.
+        /// Position of the child.
         position: Vec3,
-        /// The radius there.
+        /// Repulsion radius there.
         radius: f32,
     },
     /// A push away from the parent (Fig. 7b and 7e).
     Push {
-        /// Its centre after it.
+        /// Position after the push.
         position: Vec3,
-        /// The radius there.
+        /// Repulsion radius there.
         radius: f32,
     },
     /// A push along the circle (Fig. 7f).
     PushOnCircle {
-        /// Its centre after it.
+        /// Position after the push.
         position: Vec3,
-        /// The radius there.
+        /// Repulsion radius there.
         radius: f32,
-        /// Largest share of r_i + r_j by which it overlaps another particle.
+        /// Largest overlap with another particle, as a share of r_i + r_j.
         overlap: f32,
     },
-    /// The comparison that decides (Fig. 7g, 8c and 8e).
+    /// The comparison of angles that decides whether there is room (Fig. 7g, 8c and 8e).
     Room {
-        /// φ, the angle that it takes.
+        /// Angle φ that the child takes.
         phi_rad: f32,
-        /// τ, the angle that is free.
+        /// Angle τ that is free.
         tau_rad: f32,
     },
-    /// It came to lie on the surface.
+    /// The child was projected onto the surface.
     Landed {
         /// Its position.
         position: Vec3,
         /// Its unit normal.
         normal: Vec3,
-        /// Its radius.
+        /// Its repulsion radius.
         radius: f32,
     },
-    /// What became of it.
+    /// The fate of the child.
     Fate {
         /// The fate.
         fate: SlotFate,
-        /// Index of the new particle; [`Particles::NO_PARENT`] if there is none.
+        /// Index of the new particle, or [`Particles::NO_PARENT`] if there is none.
         particle: u32,
     },
 }
 
-/// The log.
+/// Event log.
 #[derive(Clone, Debug)]
 pub struct Trace {
     followed: u32,
@@ -107,38 +107,38 @@ impl Default for Trace {
 }
 
 impl Trace {
-    /// Follows a particle, or none, from the next run on.
+    /// Chooses the particle to follow, or none, from the next run on, and discards all events.
     pub fn follow(&mut self, particle: Option<u32>) {
         self.followed = particle.unwrap_or(Particles::NO_PARENT);
         self.events = Vec::new();
     }
 
-    /// Whether this particle is followed.
+    /// Whether `particle` is followed.
     #[must_use]
     pub fn follows(&self, particle: u32) -> bool {
         self.followed == particle
     }
 
-    /// Notes an event at `particle`; made only if that is followed.
+    /// Records an event at `particle`. `event` is called only if that is followed.
     pub fn note(&mut self, particle: u32, event: impl FnOnce() -> Event) {
         if self.followed == particle {
             self.events.push(event());
         }
     }
 
-    /// Notes what happens to a child of `particle`; made only if that is followed.
+    /// Records a step of a child of `particle`. `step` is called only if that is followed.
     pub fn note_child(&mut self, particle: u32, child: u32, step: impl FnOnce() -> Step) {
         if self.followed == particle {
             self.events.push(Event::Child { child, step: step() });
         }
     }
 
-    /// Forgets the events of an earlier run.
+    /// Discards the events of an earlier run.
     pub fn clear(&mut self) {
         self.events.clear();
     }
 
-    /// The events so far.
+    /// Recorded events, in order.
     #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.events

@@ -1,4 +1,4 @@
-//! `compare`: the same surface, sampled by this method and by the one that its paper compares it with (§6, Table 1).
+//! Subcommand `compare`: samples a surface by this method and by the one that the paper compares it with (§6, Table 1).
 
 use crate::arguments::Compare;
 use crate::failure::{Failure, LIMIT};
@@ -16,36 +16,36 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The other method may place this many times as many particles before it runs into the limit.
-const ROOM: usize = 2;
+/// Limit of particles of the other method, relative to the number that this method places.
+const LIMIT_RATIO: usize = 2;
 
-/// What one of the two methods has done.
+/// Result of one of the two methods.
 #[derive(Debug, Serialize)]
 struct Side<S, R> {
     method: &'static str,
     count: usize,
-    /// Repulsion radius that was wanted; with radii that follow the curvature, that of as many particles of one size.
+    /// Wanted repulsion radius. In adaptive sampling, the radius of as many particles of equal size.
     radius: f64,
-    /// Relaxation steps, or iterations.
+    /// Number of relaxation steps, or of iterations.
     steps: u32,
     evaluations: u64,
     seconds: S,
     stop_reason: R,
-    /// Before the relaxation, where there is one.
+    /// Quality before the relaxation, if there is one.
     quality_before: Option<Figures>,
     quality: Option<Figures>,
 }
 
-/// Seconds of wall time of the other method.
+/// Wall times of the other method in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 struct OtherSeconds {
     total: f64,
-    /// The last iteration, as in Table 1 of the paper.
+    /// Time of the last iteration, as in Table 1 of the paper.
     last_step: f64,
     quality: f64,
 }
 
-/// Both runs, as `--json` prints them.
+/// Results of both methods, as `--json` prints them.
 #[derive(Debug, Serialize)]
 struct Comparison {
     version: &'static str,
@@ -59,9 +59,9 @@ struct Comparison {
     other: Side<OtherSeconds, Option<baseline::StopReason>>,
     fissions: u64,
     deaths: u64,
-    /// Particles dropped at the end because they did not come to the surface.
+    /// Number of particles dropped at the end because they did not reach the surface.
     dropped: u64,
-    /// Mean way of the particles in the last iteration, in radii.
+    /// Mean displacement of the particles in the last iteration, in radii.
     motion: f64,
 }
 
@@ -137,7 +137,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     Ok(if capped { ExitCode::from(LIMIT) } else { ExitCode::SUCCESS })
 }
 
-/// What the other method is called, in JSON and for a person.
+/// Name of the other method, in JSON and in text.
 fn method(settings: &Settings) -> (&'static str, &'static str) {
     match settings.sampling {
         Sampling::Uniform => ("witkin_heckbert", "Witkin–Heckbert"),
@@ -145,11 +145,11 @@ fn method(settings: &Settings) -> (&'static str, &'static str) {
     }
 }
 
-/// The same size for the other method: of our radius, or by the same law of the curvature.
+/// Settings of the other method with the same particle size: the radius of this run, or the same radius law.
 fn same_size(session: &Session, settings: &Settings) -> Result<Settings, Failure> {
     let range =
         |name| Settings::RANGES.iter().find(|row| row.0 == name).map_or((0.0, 0.0), |row| (row.1, row.2));
-    let room = (ROOM * session.count()).min(range("max_particles").1 as usize) as u32;
+    let room = (LIMIT_RATIO * session.count()).min(range("max_particles").1 as usize) as u32;
     let sizes = Settings { max_particles: settings.max_particles.max(room), ..*settings };
     if settings.sampling == Sampling::Adaptive {
         return Ok(sizes);
@@ -167,6 +167,7 @@ fn same_size(session: &Session, settings: &Settings) -> Result<Settings, Failure
     Ok(Settings { size_mode: SizeMode::Radius, radius_share, ..sizes })
 }
 
+/// Run of the other method.
 struct Other {
     state: baseline::Progress,
     radius: f64,
@@ -187,7 +188,7 @@ fn sample_other(
     let mut other = Baseline::start(field, &bounds, settings).map_err(|e| Failure::Usage(refusal(&e)))?;
     let mut state = other.progress();
     while state.stop_reason.is_none() {
-        // A step ends with its iteration.
+        // A step ends with an iteration, whatever is left of its budget.
         let step = Clock::start();
         let iterations = state.iterations;
         state = other.step(field, u32::MAX);
@@ -252,7 +253,7 @@ fn write(out: &mut impl Write, comparison: &Comparison, method: &str) -> io::Res
     };
     let has_front = ours.quality_before.is_some();
     for row in describe().report.iter().filter(|row| row.to.is_none()) {
-        // The pieces are among the figures too; the rest of what a report says is not about the particles alone.
+        // The number of components is among the quality figures too. All other rows outside of them concern the run.
         let path = if row.key == "components" { "quality.components" } else { row.key };
         let is_known = path.starts_with("quality.") && value(1, path).is_some();
         if !is_known || row.unless.is_some_and(|path| value(1, path).is_some()) {
@@ -276,10 +277,10 @@ fn write(out: &mut impl Write, comparison: &Comparison, method: &str) -> io::Res
     )
 }
 
-/// Width of the column of the other method, whose name is long.
+/// Width of the column of the other method, which has a long name.
 const OTHER: usize = 18;
 
-/// A reason as JSON has it.
+/// Word for a stop reason, as in JSON but with spaces.
 fn word(reason: &impl Serialize) -> String {
     match serde_json::to_value(reason) {
         Ok(Value::String(word)) => word.replace('_', " "),

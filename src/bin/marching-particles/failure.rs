@@ -1,35 +1,35 @@
-//! What can go wrong, in words, and the exit code it has.
+//! Errors of the tool, with their messages and exit codes.
 
 use marching_particles::field::formula::{FormulaError, FormulaErrorKind};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// A file could not be read or written.
+/// Exit code: a file could not be read or written.
 pub(crate) const FILE: u8 = 1;
-/// The command, the formula, a setting or a file of points cannot be understood. Also clap's code.
+/// Exit code: an argument, the formula, a setting or a file of points is invalid. clap uses the same code.
 pub(crate) const USAGE: u8 = 2;
-/// There is nothing to sample.
+/// Exit code: no particle could be placed.
 pub(crate) const NOTHING: u8 = 3;
-/// More particles than the limit.
+/// Exit code: the limit of particles was reached.
 pub(crate) const LIMIT: u8 = 4;
 
-/// Why the tool stops.
+/// Why the tool stops with an error.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// A mistake in a formula, with the text it is in.
+    /// The formula is invalid.
     Formula { text: String, error: Box<FormulaError> },
-    /// Any other mistake in the command.
+    /// Another argument is invalid.
     Usage(String),
     /// No particle could be placed.
     Nothing(String),
-    /// More particles than the limit would be placed.
+    /// The run would place more particles than the limit.
     Limit(String),
     /// A file could not be opened or read.
     Unreadable { path: PathBuf, error: std::io::Error },
     /// A file could not be written.
     File { path: PathBuf, error: std::io::Error },
-    /// Standard output is gone: whoever read it has read enough.
+    /// Standard output was closed by its reader, which is no error.
     Output,
 }
 
@@ -73,14 +73,14 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The message, the formula, and carets under the place.
+/// Writes the message, the formula with carets under the span, and suggestions.
 fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt::Result {
     write!(f, "error: {}", error.message)?;
-    // A very long formula says nothing to the eye, and a mistake in --param is at no place of it.
+    // A very long formula is not readable, and an error in --param has no span.
     const LONGEST: usize = 240;
-    let is_here = error.kind != FormulaErrorKind::BadParameter;
-    if is_here && !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
-        // One column per character: line breaks and tabs would shift the carets.
+    let has_span = error.kind != FormulaErrorKind::BadParameter;
+    if has_span && !text.is_empty() && text.len() <= LONGEST && text.is_char_boundary(error.span.start) {
+        // Line breaks and tabs would shift the carets, so each takes one column.
         let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let before = text[..error.span.start].chars().count();
         let marked = text.get(error.span.clone()).map_or(1, |span| span.chars().count().max(1));

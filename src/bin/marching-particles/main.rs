@@ -1,4 +1,4 @@
-//! The command-line tool: samples a surface to a file and says how good the result is.
+//! Command-line tool that samples a surface, writes particles to files and reports their quality.
 
 mod arguments;
 mod compare;

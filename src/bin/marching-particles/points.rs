@@ -1,4 +1,4 @@
-//! Fields from points: a built-in model or a file.
+//! Fields from points: those of a file or of a built-in model.
 
 use crate::failure::Failure;
 use indicatif::ProgressBar;
@@ -9,10 +9,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Pieces of work between two updates of the bar.
+/// Units of work between two updates of the progress bar.
 const BUDGET: u32 = 100;
 
-/// The field of a file.
+/// Fits a field to the points of a file.
 pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
     let wrong = |error: JobError| Failure::Usage(format!("{}: {error}", path.display()));
     let bytes = read(path).map_err(|error| Failure::Unreadable { path: path.to_owned(), error })?;
@@ -21,12 +21,12 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
     solve(Job::file(&name, bytes, centres), bar).map_err(wrong)
 }
 
-/// The field of a built-in model.
+/// Fits a field to a built-in model.
 pub(crate) fn of_model(id: &str, bar: &ProgressBar) -> Result<Fit, Failure> {
     solve(Job::model(id), bar).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// The content of a file that is not too large; the size is asked first, where there is one.
+/// Reads a file that is not too large. The size of a regular file is checked first; of others, no more than the limit is read.
 fn read(path: &Path) -> std::io::Result<Result<Vec<u8>, JobError>> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;

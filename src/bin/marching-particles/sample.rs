@@ -1,4 +1,4 @@
-//! `sample`: one run, its files and its figures.
+//! Subcommand `sample`: a run with its files and its report.
 
 use crate::arguments::{self, Gaps, Law, Length, Placement as Placed, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
@@ -22,17 +22,17 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Units of work between two looks at the clock: about 0.1 ms, so that the times of the phases are right to that.
+/// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
 const BUDGET: u32 = 256;
-/// Box of a formula without one.
+/// Default box of a formula.
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
-/// Room above a wanted count, which is met within 3 %.
+/// Limit of particles relative to a wanted count, which is met within 3 %.
 const ROOM: f64 = 1.1;
 
-/// Seconds of wall time by phase.
+/// Wall times of the phases in seconds.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Seconds {
-    /// Reading points and solving for the surface through them.
+    /// Time to read points and to fit a field to them.
     pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
@@ -41,12 +41,12 @@ pub(crate) struct Seconds {
     pub(crate) writing: f64,
 }
 
-/// Everything about a run, as `--json` prints it.
+/// Result of a run, as `--json` prints it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Outcome {
     pub(crate) version: &'static str,
     pub(crate) surface: Option<String>,
-    /// For a model from points.
+    /// Report of the fit, for a surface through points.
     pub(crate) model: Option<ModelInfo>,
     pub(crate) formula: String,
     pub(crate) parameters: BTreeMap<String, f64>,
@@ -56,15 +56,15 @@ pub(crate) struct Outcome {
     #[serde(flatten)]
     pub(crate) report: Report,
     pub(crate) seconds: Seconds,
-    /// Largest resident memory of the process, in 10⁶ bytes; null where the system does not say.
+    /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
     pub(crate) peak_mb: Option<f64>,
-    /// The same at the end of the sampling, before quality and files.
+    /// Peak resident memory at the end of the sampling, before quality is measured and files are written.
     pub(crate) peak_sampling_mb: Option<f64>,
-    /// Names of the files written; what is no Unicode in them is replaced.
+    /// Names of the files written, with replacement characters for invalid Unicode.
     pub(crate) files: Vec<String>,
 }
 
-/// A session with the surface that is asked for, and the run begun.
+/// A session with the requested surface, whose run has begun.
 pub(crate) struct Begun {
     pub(crate) session: Session,
     pub(crate) answer: FieldAnswer,
@@ -109,7 +109,7 @@ pub(crate) fn begin(
     Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
 }
 
-/// The name of the surface that is sampled, if it has one.
+/// Name of the surface, if it has one.
 pub(crate) fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
     surface.surface.clone().filter(|_| answer.model.is_some()).or(answer.surface.map(str::to_owned))
 }
@@ -169,7 +169,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The format of each file, checked before any work is done.
+/// Format of each file. It is checked before any work is done.
 fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
     paths
         .iter()
@@ -187,7 +187,7 @@ fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
         .collect()
 }
 
-/// The surface through the points of a file or of a built-in model, if that is what is asked for.
+/// Fit to a file of points or a built-in model, if one is requested.
 fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
     let model = arguments.surface.as_deref().and_then(model::find);
     let bar = bar(quiet || arguments.points.is_none() && model.is_none());
@@ -208,7 +208,7 @@ fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
 
 fn set_field(session: &mut Session, arguments: &Surface) -> Result<FieldAnswer, Failure> {
     let of_surface = arguments.surface.as_deref().and_then(gallery::find);
-    // A formula of one's own is not the default surface's: neither are its parameters and its box.
+    // A formula of the user's has neither the parameters nor the box of the default surface.
     let declare = match of_surface {
         Some(_) => Vec::new(),
         None => arguments.parameters.iter().map(|(name, _)| Parameter::automatic(name)).collect(),
@@ -275,7 +275,7 @@ fn settings(arguments: &arguments::Sampling, bounds: &Bounds) -> Settings {
             Gaps::Leave => GapPolicy::Leave,
         },
         seed: arguments.seed,
-        // Asking for a number of particles is asking for the room they take.
+        // A wanted count raises the limit if necessary.
         max_particles: arguments.max_particles.unwrap_or_else(|| {
             let wanted = (f64::from(arguments.count.unwrap_or(0)) * ROOM).ceil() as u32;
             wanted.max(default.max_particles)
@@ -283,7 +283,7 @@ fn settings(arguments: &arguments::Sampling, bounds: &Bounds) -> Settings {
     }
 }
 
-/// Why the settings are refused, by the name of the option and with shares as they are typed.
+/// Message for refused settings, with the name of the option, and shares in percent as they are typed.
 pub(crate) fn refusal(error: &SettingsError) -> String {
     let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
     let option = match *name {
@@ -303,9 +303,9 @@ pub(crate) fn refusal(error: &SettingsError) -> String {
     format!("--{option} is {value}, but must lie between {min} and {max}")
 }
 
-/// Steps the session to its end.
+/// Runs the session to its end and adds the times of the phases to `seconds`.
 pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
-    /// Steps between two updates of the bar.
+    /// Steps between two updates of the progress bar.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
     let mut steps = 0_u32;
@@ -335,6 +335,7 @@ pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &Progres
     }
 }
 
+/// Progress bar on standard error, if that is a terminal.
 pub(crate) fn bar(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -366,7 +367,7 @@ impl Clock {
     }
 }
 
-/// Largest resident memory so far, in 10⁶ bytes, where /proc tells.
+/// Peak resident memory so far in 10⁶ bytes, from /proc.
 fn peak_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,4 +1,4 @@
-//! A run's figures as text.
+//! Report of a run as text.
 
 use crate::sample::Outcome;
 use marching_particles::field::model::{ModelInfo, NormalSource};
@@ -57,7 +57,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     Ok(())
 }
 
-/// What the surface through points is made of, and how well it meets them.
+/// Writes the origin of a surface through points and the distances of the points from it.
 fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()> {
     let credit = if model.credit.is_empty() { "" } else { ", " };
     writeln!(out, "{title}: {}{credit}{}", model.name, model.credit)?;
@@ -80,8 +80,8 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     )
 }
 
-/// The rows of the report that the lines above have not told: about quality, before and after the relaxation, and about the
-/// pieces of the surface.
+/// Writes the table of quality figures, before and after relaxation. The group `Run` of the report is left out, because the
+/// lines above the table have it.
 fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = serde_json::to_value(&outcome.report).map_err(io::Error::other)?;
     let compared = !report["quality_before"].is_null();
@@ -106,7 +106,7 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     Ok(())
 }
 
-/// A figure with the digits and the unit that the description gives it.
+/// Formats a figure with the digits and the unit of its row.
 pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     if let Some(word) = value.and_then(Value::as_str) {
         return if word == "searched" { "dense search".to_owned() } else { word.to_owned() };
@@ -122,7 +122,7 @@ pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     format!("{value:.*}{unit}", usize::from(row.digits))
 }
 
-/// A count with its thousands set apart.
+/// Formats a count with separated thousands.
 pub(crate) fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::new();
@@ -135,6 +135,7 @@ pub(crate) fn grouped(count: usize) -> String {
     text
 }
 
+/// Formats a duration in milliseconds or seconds.
 pub(crate) fn time(seconds: f64) -> String {
     if seconds < 1.0 { format!("{:.1} ms", seconds * 1e3) } else { format!("{seconds:.2} s") }
 }

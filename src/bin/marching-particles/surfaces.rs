@@ -1,4 +1,4 @@
-//! `surfaces`: the gallery and the models from points.
+//! Subcommand `surfaces`: lists the gallery and the built-in models.
 
 use crate::arguments::Surfaces;
 use crate::failure::Failure;
