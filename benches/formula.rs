@@ -1,4 +1,4 @@
-//! Formula evaluation by kind of formula and of result; the throughput is in points.
+//! Benchmark of formula evaluation, by formula and kind of result, in points per second.
 //!
 //! `cargo bench --bench formula`
 
@@ -11,7 +11,7 @@ use marching_particles::math::Sym3;
 use rand_core::Rng;
 use std::hint::black_box;
 
-/// Points in a batch: a large generation level.
+/// Number of points in a batch, that of a large generation level.
 const POINTS: usize = 4096;
 
 fn field(id: &str) -> FormulaField {

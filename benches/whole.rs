@@ -1,10 +1,12 @@
-//! The whole job and its parts on the ellipsoid with semi-axes 1, 0.7 and 0.5, and a mesher beside it.
+//! Benchmark of whole runs and their phases on the ellipsoid with semi-axes 1, 0.7 and 0.5, beside a mesher.
 //!
-//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` the million, no argument
-//! both. Either way it ends with the ratio of the whole job to naive surface nets (`fast-surface-nets`) with as many
-//! vertices on the same field, timed by turns so that a busy machine disturbs both alike, with the share of the job that goes
-//! into finding every piece of the surface, and with the whole job on the bunny of 200 points, uniform and adaptive, by turns
-//! with the uniform one on the ellipsoid.
+//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` runs a million particles, and
+//! without an argument both run. Each ends with three measurements:
+//!
+//! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices on the same field, timed
+//!   alternately so that a busy machine disturbs both alike;
+//! * the share of the run that the search for all components takes;
+//! * the whole run on the bunny of 200 points, uniform and adaptive, alternating with the uniform one on the ellipsoid.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
 #![allow(missing_docs, reason = "the macros' items have none")]
 
@@ -24,7 +26,7 @@ use marching_particles::sampler::{Phase, Sampler, Sampling, Settings, SizeMode, 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Sizes of the quick set: those of the paper's uniform ellipsoids.
+/// Numbers of particles of the quick set, which are those of the paper's uniform ellipsoids.
 const QUICK: [u32; 2] = [13_923, 55_748];
 const FULL: u32 = 1_000_000;
 /// Half-widths of the ellipsoid.
@@ -37,7 +39,7 @@ struct Job {
 }
 
 impl Job {
-    /// A job whose radius gives about `count` particles: found by a run that meets the count, so that the timed runs
+    /// Job whose radius gives about `count` particles. A run that meets the count finds the radius, so that the timed runs
     /// do the front once.
     fn new(count: u32) -> Self {
         let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
@@ -72,7 +74,7 @@ fn finish(sampler: &mut Sampler, field: &mut dyn Field) {
     assert_eq!(reason, StopReason::Complete);
 }
 
-/// The mesher: samples the field on a grid with the same batched evaluation, and extracts the surface.
+/// A mesher, which samples the field on a grid with the same batched evaluation and extracts the surface.
 struct Mesher {
     field: FormulaField,
     shape: RuntimeShape<u32, 3>,
@@ -84,7 +86,7 @@ struct Mesher {
 }
 
 impl Mesher {
-    /// The grid on the ellipsoid's own box, one cell wider, with `resolution` cells along x.
+    /// Mesher with a grid on the ellipsoid's box, one cell wider, with `resolution` cells along x.
     fn new(resolution: u32) -> Self {
         let step = 2.0 * HALF[0] / resolution as f32;
         let size = HALF.map(|half| (2.0 * half / step).ceil() as u32 + 3);
@@ -100,7 +102,7 @@ impl Mesher {
         }
     }
 
-    /// The mesher with about `count` vertices.
+    /// Mesher with about `count` vertices.
     fn with_vertices(count: u32) -> Self {
         // The number of vertices grows with the square of the resolution.
         let mut resolution = 100.0;
@@ -171,14 +173,14 @@ fn quick(criterion: &mut Criterion) {
 }
 
 fn full(criterion: &mut Criterion) {
-    // Setting the job up takes seconds: not when it is filtered out.
+    // Setting the job up takes seconds, so it is skipped if the benchmark is filtered out.
     if !std::env::args().any(|argument| argument == "quick") {
         parts(criterion, "full", FULL);
     }
 }
 
-/// Seconds of processor time this thread has had, where the system tells, else of wall time: other work on the machine
-/// does not count.
+/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the system
+/// does not report it.
 fn processor_seconds(start: Instant) -> f64 {
     std::fs::read_to_string("/proc/thread-self/schedstat")
         .ok()
@@ -189,7 +191,7 @@ fn processor_seconds(start: Instant) -> f64 {
 /// Prints the medians over rounds of the processor time of the front, the whole job and the mesher, and of the ratio of
 /// the last two.
 fn ratio(count: u32, rounds: usize) {
-    /// The mesher runs this often in a round: the system counts time by its ticks of a few milliseconds.
+    /// Number of runs of the mesher in a round. The system counts time in ticks of a few milliseconds.
     const REPEAT: u32 = 8;
     let mut job = Job::new(count);
     let mut front = Job::new(count);
@@ -226,8 +228,8 @@ fn ratio(count: u32, rounds: usize) {
     );
 }
 
-/// Prints how much of a job of `count` particles goes into finding a first point on every piece: the survey, the proof, and the
-/// check of every candidate.
+/// Prints the share of a run of `count` particles that finding a first point on every component takes: the survey, the proof,
+/// and the check of every candidate.
 fn search_share(id: &str, count: u32, rounds: usize) {
     let surface = gallery::find(id).expect("a gallery surface");
     let mut field = surface.field();
@@ -242,7 +244,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         let (mut seeding, mut phase) = (0.0, Phase::Seeding);
         let reason = loop {
             let before = start.elapsed().as_secs_f64();
-            // Small steps, so that hardly any of the front is counted with it.
+            // The steps are small, so that hardly any work of the front is included.
             let is_seeding = matches!(phase, Phase::Seeding | Phase::Search);
             let progress = sampler.step(&mut field, if is_seeding { 64 } else { 4_096 });
             if is_seeding {
@@ -256,7 +258,7 @@ fn search_share(id: &str, count: u32, rounds: usize) {
         assert_eq!(reason, StopReason::Complete);
         let whole = start.elapsed().as_secs_f64();
         if round == 0 {
-            // By count the front is run twice; from here on once.
+            // A wanted count runs the front twice; from here on the radius is given, and it runs once.
             let radius_share = sampler.radius() / surface.bounds.diagonal();
             settings = Settings { radius_share, ..Settings::default() };
         } else {
@@ -274,8 +276,8 @@ fn search_share(id: &str, count: u32, rounds: usize) {
     );
 }
 
-/// Prints the whole job's time per particle on the bunny, after the run that makes the field's cells and with that run's
-/// own, by turns with the uniform job on the ellipsoid, which tells how busy the machine is.
+/// Prints the time per particle of a whole run on the bunny, for the first run, which makes the field's cells, and for later
+/// ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
 fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
     let fit = models::begin(model).finish().expect("the bunny is solved for");
@@ -292,7 +294,7 @@ fn bunny(count: u32, rounds: usize) {
             (processor_seconds(start) - before, sampler)
         };
         let settings = match sampling {
-            // A run that meets a count does the front twice: the timed runs are given the radius.
+            // A run that meets a count does the front twice, so the timed runs are given the radius.
             Sampling::Uniform => {
                 let radius_share = run(&mut field, &by_count).1.radius() / fit.bounds.diagonal();
                 Settings { radius_share, ..Settings::default() }

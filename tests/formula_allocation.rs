@@ -1,4 +1,4 @@
-//! Evaluation takes no memory once its buffers have grown.
+//! Test that a warm field evaluates without allocating.
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use glam::{DVec3, Vec3};
@@ -8,7 +8,7 @@ use marching_particles::math::Sym3;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// The system's allocator, counting the calls of each thread.
+/// The system's allocator, which counts the allocations of each thread.
 struct Counting;
 
 thread_local! {

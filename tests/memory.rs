@@ -1,4 +1,4 @@
-//! How much memory a run takes beyond the particles it gives.
+//! Test of the memory that a run takes beyond its particles.
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use marching_particles::field::gallery;
@@ -6,7 +6,7 @@ use marching_particles::sampler::{Sampler, Sampling, Settings};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The system's allocator, counting the bytes in use and their peak.
+/// The system's allocator, which counts the bytes in use and their peak.
 struct Counting;
 
 static USED: AtomicUsize = AtomicUsize::new(0);
@@ -27,7 +27,7 @@ unsafe impl GlobalAlloc for Counting {
         unsafe { System.dealloc(memory, layout) }
     }
 
-    // The system grows large blocks in place or moves their pages: old and new are not both in use.
+    // The system grows a large block in place or moves its pages, so the old and the new block are not both in use.
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         let used = USED.fetch_add(size, Ordering::Relaxed) + size - layout.size();
         USED.fetch_sub(layout.size(), Ordering::Relaxed);
@@ -40,17 +40,18 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Most bytes per particle beyond the output. In the front these are the neighbour lists, the grid and the room reserved for
-/// a denser packing, in the relaxation the lists, the forces, the places before the step and a smaller grid.
+/// Maximum number of bytes per particle beyond the output. The front takes them for the neighbour lists, the grid and the
+/// reserve for a denser packing; the relaxation takes them for the lists, the forces, the positions before the step and a
+/// smaller grid.
 const MOST: f64 = 60.0;
 
-/// The same where the radii vary: the radii before the step and the way since they were brought up to date come on top.
+/// The same for adaptive sampling, which also keeps the radii before the step and the displacements since their last update.
 const MOST_ADAPTIVE: f64 = 64.0;
 
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
 const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
 
-/// Particles of a run, and the peak of the memory it takes.
+/// Number of particles of a run, and its peak memory in bytes.
 fn peak_of(settings: Settings) -> (usize, usize) {
     let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
     let mut field = surface.field();
@@ -63,8 +64,8 @@ fn peak_of(settings: Settings) -> (usize, usize) {
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
 
-/// Bytes per particle beyond the output, at the worst of the runs: the survey, which does not grow with the number of
-/// particles, is in the `small` one too.
+/// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which does not grow with the
+/// number of particles, cancels against that of the `small` run.
 fn beyond(small: Settings, runs: &[Settings]) -> f64 {
     let (few, fixed) = peak_of(small);
     runs.iter().fold(0.0, |worst, &settings| {
@@ -75,7 +76,7 @@ fn beyond(small: Settings, runs: &[Settings]) -> f64 {
     })
 }
 
-// One test, since other tests running beside it would be counted.
+// This binary has one test, because the allocations of concurrent tests would be counted too.
 #[test]
 fn run_takes_few_bytes_per_particle_beyond_its_output() {
     let uniform = |radius_share| Settings { radius_share, ..Settings::default() };

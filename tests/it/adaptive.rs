@@ -1,5 +1,5 @@
-//! The adaptive front of paper §5: children touch their parents, both placements cover, and nothing about a run depends on how
-//! it is cut into steps.
+//! Tests of the adaptive front (paper §5): children touch their parents, both placements cover the surface, and a run does not
+//! depend on how it is cut into steps.
 
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -11,12 +11,12 @@ use marching_particles::sampler::{
 use marching_particles::spatial::CellGrid;
 use marching_particles::trace::{Event, Step};
 
-/// Smooth surfaces with their Euler numbers; positive, negative and mixed curvature.
+/// Smooth surfaces of positive, negative and mixed curvature, with their Euler numbers.
 const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
 const PLACEMENTS: [Placement; 2] = [Placement::Direct, Placement::Faithful];
 
-/// About 4,000 particles, without relaxation.
+/// Settings for about 4,000 particles without relaxation.
 fn settings(placement: Placement) -> Settings {
     Settings {
         sampling: Sampling::Adaptive,
@@ -48,7 +48,7 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
         .figures
 }
 
-/// Largest circumradius of a triangle of neighbours, over that of three discs of their mean radius that touch.
+/// Largest circumradius of a triangle of neighbours, relative to that of three touching discs of their mean radius.
 fn largest_hole(surface: &str, particles: &Particles) -> f32 {
     let mut field = gallery::find(surface).expect("a gallery surface").field();
     let mut largest = 0.0_f32;
@@ -62,7 +62,7 @@ fn largest_hole(surface: &str, particles: &Particles) -> f32 {
     largest
 }
 
-/// Smallest distance over r_i + r_j between two particles of a sheet.
+/// Smallest distance between two particles of a sheet, relative to r_i + r_j.
 fn closest(particles: &Particles) -> f32 {
     let largest = particles.radius.iter().fold(0.0_f32, |a, &b| a.max(b));
     let mut grid = CellGrid::new(3.0 * largest);
@@ -81,8 +81,8 @@ fn closest(particles: &Particles) -> f32 {
     least
 }
 
-/// Largest deviation of a child's distance from its parent from r_i + r_j, relative, but for one child in fifty:
-/// where the law is steep, the grading lowers a radius after the children are placed.
+/// 98th percentile of the relative deviation of a child's distance to its parent from r_i + r_j. The other children are
+/// left out because, where the radius law is steep, grading lowers a radius after the children are placed.
 fn untouched(particles: &Particles) -> f32 {
     let mut deviation: Vec<f32> = (0..particles.len())
         .filter(|&i| particles.parent[i] != Particles::NO_PARENT)
@@ -99,12 +99,12 @@ fn untouched(particles: &Particles) -> f32 {
 #[test]
 fn children_touch_their_parents() {
     for (surface, _) in SMOOTH {
-        // Fine enough that the grading behind the front finds nothing to lower.
+        // The particles are so small that grading lowers no radius behind the front.
         let fine =
             |placement| Settings { size_mode: SizeMode::Radius, chord_error: 1e-4, ..settings(placement) };
         let direct = sampled(surface, &fine(Placement::Direct));
         assert!(untouched(direct.particles()) <= 2e-3, "{surface}: {}", untouched(direct.particles()));
-        // The radius of a child that was pushed is that at its place in the tangent plane until it is projected.
+        // Until it is projected, a pushed child has the radius of its position in the tangent plane.
         let faithful = sampled(surface, &fine(Placement::Faithful));
         assert!(untouched(faithful.particles()) <= 0.1, "{surface}: {}", untouched(faithful.particles()));
     }
@@ -122,7 +122,7 @@ fn both_placements_cover_and_crowd_nothing() {
             assert!((figures.euler - euler).abs() <= 1, "{context}");
             let hole = largest_hole(surface, particles);
             assert!(hole <= 1.6, "{context}: a hole of {hole}");
-            // The match tolerance, given the rounding.
+            // The bound is the match tolerance plus rounding.
             assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
             assert!(figures.err_max <= 3e-4, "{context}");
         }
@@ -175,7 +175,7 @@ fn the_bunny_is_even_after_ten_steps() {
 fn direct_placement_is_better_for_a_third_of_the_evaluations() {
     for (surface, _) in SMOOTH {
         let [direct, faithful] = PLACEMENTS.map(|placement| {
-            // By radius, so that the work is one front and not the search for a count.
+            // A given radius takes one front; a given count would take the search for the radius too.
             let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings(placement) };
             let sampler = sampled(surface, &settings);
             let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
@@ -245,7 +245,7 @@ fn radii_follow_the_curvature_and_neighbours_differ_little() {
     let particles = sampler.particles();
     let (least, most) =
         particles.radius.iter().fold((f32::INFINITY, 0.0_f32), |(a, b), &r| (a.min(r), b.max(r)));
-    // The curvature ranges from 1.4 to 4, and the radius goes with the square root.
+    // The curvature ranges from 1.4 to 4, and the radius varies with its inverse square root.
     assert!(most / least > 1.6, "{least} to {most}");
     let ratio = ((1.0 + settings.grading) / (1.0 - settings.grading)) as f32;
     for i in 1..particles.len() {
@@ -283,9 +283,9 @@ fn the_limit_and_the_stop_button_leave_whole_particles() {
 }
 
 #[test]
-fn every_gallery_surface_comes_to_an_end_inside_its_box() {
+fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
     for surface in gallery::SURFACES {
-        // Pushing is slow, and at its worst where the surface is singular.
+        // Faithful placement is slow, most of all near singular points.
         let placements = if surface.smooth { &PLACEMENTS[..1] } else { &PLACEMENTS };
         for &placement in placements {
             let mut field = surface.field();
@@ -310,7 +310,7 @@ fn a_surface_cut_by_its_box_ends_there() {
 }
 
 #[test]
-fn slots_and_counts_tell_the_same() {
+fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
         for placement in PLACEMENTS {
             let sampler = sampled(
@@ -335,7 +335,7 @@ fn slots_and_counts_tell_the_same() {
 }
 
 #[test]
-fn levels_are_rings_in_the_order_of_the_queue() {
+fn levels_increase_along_the_columns() {
     for placement in PLACEMENTS {
         let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings(placement) });
         let particles = sampler.particles();
@@ -364,7 +364,7 @@ fn a_particles_children_can_be_replayed_from_the_log() {
     }
 }
 
-/// Walks through the events as Figures 7 and 8 do, and compares what comes out with the columns.
+/// Replays the events in the order of Figures 7 and 8 and compares the result with the columns.
 fn replay(particles: &Particles, followed: u32, events: &[Event], placement: Placement) {
     let i = followed as usize;
     let Event::Parent { position, normal, radius, zero } = events[0] else { panic!("{:?}", events[0]) };
@@ -392,7 +392,7 @@ fn replay(particles: &Particles, followed: u32, events: &[Event], placement: Pla
             match *step {
                 Step::Start { .. } => panic!("a child starts once: {steps:?}"),
                 Step::Push { position: p, radius: r } => {
-                    // Away from the parent, until they touch.
+                    // The push is away from the parent, until the two touch.
                     assert!(at.distance(position) < radius + r);
                     assert!(p.distance(position) > at.distance(position));
                     (at, size, pushes) = (p, r, pushes + 1);

@@ -1,5 +1,5 @@
-//! The particle systems that the paper compares its method with (§6): from one particle they cover a surface by themselves, as evenly as
-//! their sources promise, the same every time, and they end on any field.
+//! Tests of the particle systems that the paper compares its method with (§6): from one particle they cover a surface, as evenly
+//! as their sources promise, with the same result every time, and they end on any field.
 
 use marching_particles::baseline::{Baseline, Settings, StopReason};
 use marching_particles::field::formula::FormulaField;
@@ -40,7 +40,7 @@ fn of_gallery(id: &str, settings: &Settings) -> (Baseline, Figures) {
 }
 
 #[test]
-fn one_particle_comes_to_cover_a_surface_without_holes() {
+fn one_particle_multiplies_until_the_surface_has_no_holes() {
     for (id, euler) in [("sphere", 2), ("ellipsoid", 2), ("torus", 0)] {
         for (sampling, hole) in [(Sampling::Uniform, 1.45), (Sampling::Adaptive, 1.75)] {
             let (baseline, figures) = of_gallery(id, &settings(sampling, 1_500));
@@ -56,8 +56,9 @@ fn one_particle_comes_to_cover_a_surface_without_holes() {
 }
 
 #[test]
-fn count_is_near_that_of_hexagons_of_the_wanted_radius() {
-    // A particle of the first divides above σ̂ and settles below, one of the second only where the next ones are 2.3 radii away.
+fn count_is_near_that_of_a_hexagonal_lattice_of_the_wanted_radius() {
+    // A particle of the first system divides above σ̂ and settles below it. One of the second divides only if its nearest
+    // neighbours are 2.3 radii away.
     for (sampling, range) in [(Sampling::Uniform, 1.0..1.3), (Sampling::Adaptive, 0.7..0.95)] {
         for id in ["sphere", "torus"] {
             let (baseline, _) = of_gallery(id, &settings(sampling, 2_000));
@@ -68,7 +69,7 @@ fn count_is_near_that_of_hexagons_of_the_wanted_radius() {
 }
 
 #[test]
-fn every_particle_but_the_first_comes_of_a_fission() {
+fn every_particle_but_the_first_comes_from_a_fission() {
     for sampling in SCHEMES {
         let (baseline, _) = of_gallery("ellipsoid", &settings(sampling, 3_000));
         let state = baseline.progress();
@@ -80,7 +81,7 @@ fn every_particle_but_the_first_comes_of_a_fission() {
 
 #[test]
 fn crowded_particles_die_until_they_have_room() {
-    // Children of half the area that never rest in between: the surface is overfull when they come to rest.
+    // Children have half of the area and divide without resting, so the surface is overcrowded when they come to rest.
     let hasty =
         Settings { fission_energy: 0.0, equilibrium_speed: 1e3, ..settings(Sampling::Uniform, 3_000) };
     let (baseline, figures) = of_gallery("ellipsoid", &hasty);
@@ -99,7 +100,7 @@ fn radii_of_settled_particles_lie_between_those_of_death_and_fission() {
 }
 
 #[test]
-fn any_cut_into_steps_gives_the_same_particles_and_another_seed_gives_others() {
+fn particles_depend_on_the_seed_and_not_on_the_steps() {
     let surface = gallery::find("torus").expect("a surface of the gallery");
     for sampling in SCHEMES {
         let of = |seed: u64, budget: u32| {
@@ -119,7 +120,7 @@ fn any_cut_into_steps_gives_the_same_particles_and_another_seed_gives_others() {
 }
 
 #[test]
-fn reason_for_the_end_is_the_true_one() {
+fn stop_reason_is_the_true_one() {
     let surface = gallery::find("sphere").expect("a surface of the gallery");
     let (field, bounds) = (&mut surface.field(), &surface.bounds);
     for sampling in SCHEMES {

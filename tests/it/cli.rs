@@ -1,4 +1,4 @@
-//! The command-line tool, run as its users run it.
+//! Tests of the command-line tool, which run the binary.
 
 use serde_json::Value;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text on standard error")
 }
 
-/// Runs `sample --json` with `arguments`; the one line it prints.
+/// Runs `sample --json` with `arguments` and returns the line that it prints.
 #[track_caller]
 fn sample(arguments: &[&str]) -> Value {
     let output = run(&[&["sample", "--json"], arguments].concat());
@@ -30,7 +30,7 @@ fn sample(arguments: &[&str]) -> Value {
     serde_json::from_str(&text).expect("a line of JSON")
 }
 
-/// Runs the tool; its message when it fails with `code` and prints nothing else.
+/// Runs the tool, which must fail with `code` and print nothing on standard output, and returns its message.
 #[track_caller]
 fn fails(code: i32, arguments: &[&str]) -> String {
     let output = run(arguments);
@@ -95,7 +95,7 @@ fn parameters_reach_the_formula() {
     let values =
         ["--param", "a=4", "--param", "b=0.25", "--param", "c=1", "--param", "d=1", "--param", "k=0.25"];
     let run = sample(&[&arguments[..], &values].concat());
-    // A sphere of radius 1/2.
+    // The surface is a sphere of radius 1/2.
     let area = run["quality"]["area"].as_f64().expect("an area");
     assert!((area / std::f64::consts::PI - 1.0).abs() < 0.1, "area {area}");
 }
@@ -134,7 +134,7 @@ fn files_hold_every_particle() {
 
 #[cfg(unix)]
 #[test]
-fn file_whose_name_is_no_unicode_is_written_and_reported() {
+fn file_with_a_name_that_is_not_unicode_is_written_and_reported() {
     use std::os::unix::ffi::OsStrExt;
     let path = file("").join(std::ffi::OsStr::from_bytes(b"odd \xff.xyz"));
     let output = Command::new(env!("CARGO_BIN_EXE_marching-particles"))
@@ -185,7 +185,7 @@ fn text_report_names_the_figures_before_and_after() {
 }
 
 #[test]
-fn formula_error_is_shown_under_its_place() {
+fn formula_error_is_marked_under_its_span() {
     let message = fails(2, &["sample", "--formula", "x^2 + α)"]);
     let lines: Vec<&str> = message.lines().collect();
     assert!(lines[0].starts_with("error: "), "{message}");
@@ -196,7 +196,7 @@ fn formula_error_is_shown_under_its_place() {
 }
 
 #[test]
-fn mistakes_in_the_command_are_told_from_each_other() {
+fn each_invalid_argument_has_its_message() {
     assert!(fails(2, &["sample", "--surface", "teapot"]).contains("ellipsoid"));
     assert!(fails(2, &["sample", "--surface", "sphere", "--param", "q=1"]).contains("its parameters: r"));
     assert!(fails(2, &["sample", "--param", "a"]).contains("NAME=VALUE"));
@@ -219,7 +219,7 @@ fn mistakes_in_the_command_are_told_from_each_other() {
         let message = fails(2, &["sample", option, "5000000"]);
         assert!(message.contains(&format!("{option} is 5000000, but must lie between {range}")), "{message}");
     }
-    // A name that no parameter can have is shown without a place in the formula.
+    // A name that no parameter can have is reported without a span of the formula.
     let message = fails(2, &["sample", "--formula", "x = a", "--param", "a b=2"]);
     assert!(
         message.contains("`a b` cannot be the name of a parameter") && !message.contains('^'),
@@ -240,7 +240,7 @@ fn nothing_to_sample_has_its_own_exit_code() {
 }
 
 #[test]
-fn more_particles_than_the_limit_are_asked_for_first() {
+fn a_run_that_would_exceed_the_limit_is_refused() {
     let message = fails(4, &["sample", "--surface", "sphere", "--radius", "0.05%"]);
     let wanted = message.split("--max-particles ").nth(1).expect("advice");
     assert!(wanted.trim().parse::<u64>().expect("a number") > 200_000, "{message}");
@@ -270,7 +270,7 @@ fn models_from_points_are_sampled_by_name() {
     }
 }
 
-/// Runs `compare --json` with `arguments`; the one line it prints.
+/// Runs `compare --json` with `arguments` and returns the line that it prints.
 #[track_caller]
 fn compare(arguments: &[&str]) -> Value {
     let output = run(&[&["compare", "--json"], arguments].concat());
@@ -280,8 +280,8 @@ fn compare(arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn comparison_says_what_to_change_where_the_other_method_takes_no_such_radius() {
-    // The radius follows from the count: the box is 70 times as wide as the sphere.
+fn comparison_says_what_to_change_if_the_other_method_cannot_take_the_radius() {
+    // The radius that follows from the count is too small a share of the box, which is 70 times as wide as the sphere.
     let output =
         run(&["compare", "--formula", "x^2+y^2+z^2=1e-4", "--count", "4000", "--box", "1.5", "--quiet"]);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
@@ -327,8 +327,8 @@ fn comparison_holds_the_figures_of_both_methods_at_one_radius() {
 }
 
 #[test]
-fn no_particle_of_a_comparison_is_lost_where_rounding_hides_the_surface() {
-    // Near the centres of the model single precision does not bring every particle to within the tolerance.
+fn comparison_drops_no_particle_because_of_rounding() {
+    // Near the centres of the model, rounding keeps some particles from reaching the tolerance.
     let both = compare(&["--surface", "bunny", "--count", "14600"]);
     assert_eq!(both["dropped"], 0);
     assert!(both["other"]["quality"]["cover"].as_f64() < Some(1.45), "{}", both["other"]["quality"]["cover"]);
@@ -336,7 +336,7 @@ fn no_particle_of_a_comparison_is_lost_where_rounding_hides_the_surface() {
 }
 
 #[test]
-fn comparison_in_words_stands_in_columns_and_says_why_each_run_ended() {
+fn comparison_as_text_has_columns_and_the_stop_reasons() {
     let output = run(&["compare", "--surface", "sphere", "--radius", "3%", "--iterations", "30"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let text = stdout(&output);
@@ -355,7 +355,7 @@ fn comparison_in_words_stands_in_columns_and_says_why_each_run_ended() {
 }
 
 #[test]
-fn mistakes_in_a_comparison_are_told_by_the_name_of_the_option() {
+fn invalid_settings_of_a_comparison_are_named_by_their_option() {
     let range = "is 2, but must lie between 0 and 1";
     assert!(fails(2, &["compare", "--radius", "3%", "--rest", "2"]).contains(&format!("--rest {range}")));
     let range = "is 0, but must lie between 1 and 1000000";
@@ -381,7 +381,7 @@ fn surfaces_lists_the_gallery() {
 }
 
 #[test]
-fn help_teaches() {
+fn help_explains_units_defaults_and_examples() {
     let help = stdout(&run(&["sample", "--help"]));
     for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
         assert!(help.contains(part), "no `{part}` in the help");
@@ -397,7 +397,7 @@ fn help_teaches() {
     ] {
         assert!(help.contains(part), "no `{part}` in the help");
     }
-    // The default limit in the words is the default limit.
+    // The default limit in the text is the actual one.
     assert_eq!(marching_particles::sampler::Settings::default().max_particles, 200_000);
     assert!(run(&["--version"]).status.success());
     assert_eq!(run(&[]).status.code(), Some(2));
@@ -422,7 +422,7 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
     let more = sample(&["--points", &path(&even), "--centres", "300", "--radius", "2%", "--relax", "0"]);
     assert_eq!((more["model"]["centres"].as_u64(), &more["model"]["points"]), (Some(300), &again["count"]));
 
-    // Without normals, and in words.
+    // The second file has no normals, and the report is text.
     let text = std::fs::read_to_string(&cloud).expect("the file was written");
     let bare: String =
         text.lines().map(|line| line.split(' ').take(3).collect::<Vec<_>>().join(" ") + "\n").collect();
@@ -456,7 +456,7 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
 #[test]
 fn a_file_of_two_gigabytes_is_refused_before_it_is_read() {
     let path = file("huge.ply");
-    // The file has a size and no content.
+    // The file is sparse: it has a size and no content.
     let huge = std::fs::File::create(&path).expect("a file can be created");
     huge.set_len(2_000_000_000).expect("a size can be set");
     let message = fails(2, &["sample", "--points", path.to_str().expect("a plain path")]);

@@ -1,5 +1,5 @@
-//! Every connected piece of the surface gets particles, however small or near another one, and the report says how sure
-//! that is.
+//! Tests that every component of the surface gets particles, however small or near another one, and that the report says
+//! whether this is proven.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::FormulaField;
@@ -21,7 +21,7 @@ fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Repo
     (session, report)
 }
 
-/// Samples in the cube of half-width `half` with a radius of `share` of its diagonal.
+/// Samples in the cube of half-width `half`, with `share` of its diagonal as radius.
 fn sampled(formula: &str, half: f64, share: f64) -> (Session, Report) {
     session(formula, Bounds::cube(half), &Settings { radius_share: share, ..Settings::default() })
 }
@@ -31,7 +31,7 @@ fn is_proven(report: &Report, context: &str) {
     assert_eq!(report.undecided_cells, Some(0), "{context}");
 }
 
-/// f = the product of the balls, each given by its centre and its radius.
+/// Product of the functions of balls, each given by its centre and radius.
 fn balls(balls: &[([f64; 3], f64)]) -> String {
     let factors: Vec<String> = balls
         .iter()
@@ -40,25 +40,25 @@ fn balls(balls: &[([f64; 3], f64)]) -> String {
     factors.join("*")
 }
 
-/// Share of the particles that a hexagonal cover of the area would have.
+/// Number of particles relative to that of a hexagonal lattice on the area.
 fn cover(report: &Report, area: f64) -> f64 {
     report.count as f64 * 2.0 * 3.0_f64.sqrt() * report.radius * report.radius / area
 }
 
-/// The union of two things given by their functions.
+/// Function of the union of solids given by their functions.
 fn least(parts: &[String]) -> String {
     parts.iter().skip(1).fold(parts[0].clone(), |all, part| format!("min({all}, {part})"))
 }
 
 #[test]
-fn two_spheres_a_thousandth_apart_are_two_pieces() {
+fn two_spheres_a_thousandth_apart_are_two_components() {
     let pair = [([-0.4005, 0.013, 0.021], 0.4), ([0.4005, 0.013, 0.021], 0.4)];
     for formula in [balls(&pair), least(&pair.map(|ball| balls(&[ball])))] {
         let (session, report) = sampled(&formula, 1.0, 0.01);
         is_proven(&report, &formula);
         assert_eq!(report.components, 2, "{formula}");
         assert_eq!(report.quality.map(|q| q.euler), Some(4), "{formula}");
-        // Labels tell the two apart.
+        // The component labels distinguish the two.
         let component = &session.measured().component;
         for (p, &label) in session.particles().position.iter().zip(component) {
             let left = session.particles().position.iter().zip(component).find(|(q, _)| q.x < 0.0);
@@ -69,7 +69,7 @@ fn two_spheres_a_thousandth_apart_are_two_pieces() {
 }
 
 #[test]
-fn two_spheres_ten_diameters_apart_are_two_pieces() {
+fn two_spheres_ten_diameters_apart_are_two_components() {
     let formula = balls(&[([-0.9, 0.1, 0.0], 0.09), ([0.9, -0.1, 0.05], 0.09)]);
     let (_, report) = sampled(&formula, 1.0, 0.004);
     is_proven(&report, &formula);
@@ -77,18 +77,18 @@ fn two_spheres_ten_diameters_apart_are_two_pieces() {
 }
 
 #[test]
-fn nested_spheres_are_as_many_pieces_as_there_are() {
+fn each_of_nested_spheres_is_a_component() {
     let formula = balls(&[([0.0; 3], 0.9), ([0.0; 3], 0.88), ([0.0; 3], 0.5), ([0.02, 0.0, 0.0], 0.3)]);
     let (session, report) = sampled(&formula, 1.0, 0.01);
     is_proven(&report, &formula);
     assert_eq!(report.components, 4);
-    // Labels go by size.
+    // Labels are in order of size.
     let mut counts = [0_usize; 4];
     session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
     assert!(counts.is_sorted_by(|a, b| a >= b) && counts[3] > 0, "{counts:?}");
 }
 
-/// Ten bells of density on a ring.
+/// Sum of ten Gaussian densities on a ring.
 fn metaballs(level: f64) -> String {
     let bells: Vec<String> = (0..10)
         .map(|k| {
@@ -101,7 +101,7 @@ fn metaballs(level: f64) -> String {
 }
 
 #[test]
-fn ten_metaballs_are_ten_pieces_or_two() {
+fn ten_metaballs_are_ten_components_or_two() {
     let (_, apart) = sampled(&metaballs(0.7), 1.5, 0.006);
     is_proven(&apart, "apart");
     assert_eq!((apart.components, apart.quality.map(|q| q.euler)), (10, Some(20)));
@@ -111,7 +111,7 @@ fn ten_metaballs_are_ten_pieces_or_two() {
 }
 
 #[test]
-fn a_chain_of_linked_tori_is_as_many_pieces_as_it_has_links() {
+fn each_link_of_a_chain_of_tori_is_a_component() {
     let torus = |centre: f64, flat: bool| {
         let (y, z) = if flat { ("y", "z") } else { ("z", "y") };
         format!("hypot(hypot(x - ({centre}), {y}) - 0.4, {z}) - 0.07")
@@ -124,7 +124,7 @@ fn a_chain_of_linked_tori_is_as_many_pieces_as_it_has_links() {
 
 #[test]
 fn a_sphere_of_two_radii_in_a_large_box_is_found() {
-    // Between the nodes of any grid of 32 cells a side: they are 0.0625 apart.
+    // The sphere is between the nodes of any grid of 32 cells a side, which are 0.0625 apart.
     let radius = 0.004;
     for centre in [[0.03, 0.03, 0.03], [-0.41, 0.72, 0.345], [0.97, -0.97, 0.03]] {
         let settings = Settings { radius_share: 0.5 * radius / 12.0_f64.sqrt(), ..Settings::default() };
@@ -141,7 +141,7 @@ fn a_sphere_of_two_radii_in_a_large_box_is_found() {
 }
 
 #[test]
-fn a_piece_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
+fn a_component_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
     let formula = least(&[
         balls(&[([-0.3, 0.0, 0.0], 0.5)]),
         format!("({}) / 0.05", balls(&[([0.53, 0.53, 0.53], 0.025)])),
@@ -154,7 +154,7 @@ fn a_piece_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
 }
 
 #[test]
-fn a_count_is_met_on_a_piece_that_the_survey_does_not_see() {
+fn a_count_is_met_on_a_component_that_the_survey_misses() {
     let settings = Settings {
         size_mode: marching_particles::sampler::SizeMode::Count,
         count: 1_000,
@@ -174,7 +174,7 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
-    /// More cells than the search may look at: thin parts of high degree, and long formulas with blends.
+    /// Surfaces that take more cells than the search may examine: thin parts of high degree, and long formulas with blends.
     const LONG: [&str; 2] = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES {
         for share in [0.02, 0.006] {
@@ -190,8 +190,8 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             }
             let mut counts = vec![0; report.components];
             session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
-            // At 2 % the decocube's ridges are narrower than a spacing, and which of its particles triangles join is chance:
-            // of ten seeds three to five leave one or two apart, with the front alone and relaxed by whatever law.
+            // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which particles the triangles connect.
+            // Of ten seeds, three to five leave one or two particles unconnected, with or without relaxation.
             let is_resolved = surface.smooth && (surface.id != "decocube" || share < 0.01);
             assert!(!is_resolved || counts.iter().all(|&count| count > 2), "{context}: {counts:?}");
         }
@@ -200,14 +200,14 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
 
 #[test]
 fn a_surface_that_touches_its_box_is_proven_to_be_found() {
-    // From inside on all faces, on one face only, and cut by one.
-    for (centre, pieces) in [([0.0; 3], 1), ([0.0, 0.0, 1e-9], 1), ([0.3, 0.0, 0.0], 1)] {
+    // The sphere touches all faces from inside, touches one face only, or is cut by one.
+    for (centre, components) in [([0.0; 3], 1), ([0.0, 0.0, 1e-9], 1), ([0.3, 0.0, 0.0], 1)] {
         let formula = balls(&[(centre, 1.0)]);
         let (_, report) = sampled(&formula, 1.0, 0.01);
         is_proven(&report, &formula);
-        assert_eq!(report.components, pieces, "{formula}");
+        assert_eq!(report.components, components, "{formula}");
     }
-    // A plane that is a face of the box.
+    // The plane coincides with a face of the box.
     let bounds = Bounds { min: [-1.0, -1.0, 0.0], max: [1.0, 1.0, 1.0] };
     let (_, report) = session("z", bounds, &Settings { radius_share: 0.01, ..Settings::default() });
     is_proven(&report, "z");
@@ -215,8 +215,8 @@ fn a_surface_that_touches_its_box_is_proven_to_be_found() {
 }
 
 #[test]
-fn caps_that_the_box_cuts_off_are_pieces_of_their_own() {
-    // A sphere larger than the box: eight corners are left of it. And one that pokes through a face, a hundredth deep.
+fn caps_that_the_box_cuts_off_are_components() {
+    // Of a sphere larger than the box eight corners are left. Another one reaches through a face by a hundredth.
     let (_, report) = sampled("x^2 + y^2 + z^2 - 2.5", 1.0, 0.008);
     is_proven(&report, "corners");
     assert_eq!(report.components, 8);
@@ -231,7 +231,7 @@ fn caps_that_the_box_cuts_off_are_pieces_of_their_own() {
 }
 
 #[test]
-fn a_piece_that_is_not_there_is_proven_absent() {
+fn an_empty_surface_is_proven_empty() {
     for (formula, half) in [
         ("x^2 + y^2 + z^2 + 0.0001", 1.0),
         ("sin(x) + sin(y) + sin(z) - 3.01", 6.0),
@@ -256,8 +256,8 @@ fn a_piece_that_is_not_there_is_proven_absent() {
 
 #[test]
 fn cone_points_leave_nothing_undecided() {
-    // A cone, off the middle so that its circle in the lid touches no edge, and the Cayley cubic and Kummer's quartic with
-    // their nodes, at them and a little beside.
+    // A cone off the centre, so that its circle in a face touches no edge, and the Cayley cubic at the level of its cone points
+    // and at levels close to it.
     for formula in [
         "(x - 0.1)^2 + (y + 0.05)^2 = (z - 0.02)^2",
         "4(x^2 + y^2 + z^2) + 16x y z = 1",
@@ -272,8 +272,8 @@ fn cone_points_leave_nothing_undecided() {
 }
 
 #[test]
-fn a_small_piece_beside_a_cone_point_is_found() {
-    // Bubbles off the cone, as near to its apex as makes boxes around that shrink, in and beside the cone.
+fn a_small_component_beside_a_cone_point_is_found() {
+    // Small spheres inside and outside of the cone, so near to its apex that the cells around the apex must shrink.
     for [x, y, z] in [[0.07, 0.03, 0.01], [0.2, -0.1, 0.03], [0.02, 0.01, 0.15]] {
         let bubble = format!("exp(-((x - {x})^2 + (y - ({y}))^2 + (z - {z})^2)/0.0001)");
         let value = 1.2 * x * x + 1.1 * y * y - z * z;
@@ -286,8 +286,8 @@ fn a_small_piece_beside_a_cone_point_is_found() {
 }
 
 #[test]
-fn slopes_that_jump_hide_no_piece() {
-    // Two octahedra and two boxes, all highest points of which are at edges and corners, on cells of every size.
+fn discontinuous_gradients_hide_no_component() {
+    // All extreme points of two octahedra and two boxes are at edges and corners.
     for formula in [
         "min(abs(x - 0.31) + abs(y - 0.17) + abs(z + 0.23) - 0.4, abs(x + 0.6) + abs(y + 0.6) + abs(z - 0.6) - 0.02)",
         "min(max(abs(x - 0.31), abs(y - 0.17), abs(z + 0.23)) - 0.4, max(abs(x + 0.6), abs(y + 0.6), abs(z - 0.6)) - 0.02)",
@@ -295,7 +295,7 @@ fn slopes_that_jump_hide_no_piece() {
         let (_, report) = sampled(formula, 1.0, 0.002);
         assert_eq!(report.components_seeded.min(2), 2, "{formula}: {report:?}");
     }
-    // Bounds of the second derivatives say that there is no piece, unless it is known where they do not hold.
+    // The bounds of the second derivatives would exclude the component if they were used where they do not hold.
     let mut field = FormulaField::parse("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
     let across = [[DVec3::splat(-0.1), DVec3::splat(0.2)], [DVec3::splat(0.1), DVec3::splat(0.2)]];
     let mut known = [Enclosure::UNKNOWN; 2];
@@ -304,7 +304,7 @@ fn slopes_that_jump_hide_no_piece() {
 }
 
 #[test]
-fn singular_surfaces_end_the_search_and_say_what_is_open() {
+fn search_ends_on_singular_surfaces_and_reports_undecided_cells() {
     for (formula, half) in [
         ("y^2 - x^3", 1.0),
         ("max(x^2 + y^2 + z^2 - 0.5, 0)", 1.0),
@@ -321,7 +321,7 @@ fn singular_surfaces_end_the_search_and_say_what_is_open() {
 
 #[test]
 fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
-    // A plate, a flat ellipsoid, and shells within shells: sheets a tenth and a third of a spacing apart.
+    // A plate, a flat ellipsoid, and nested shells have sheets a tenth and a third of a spacing apart.
     let shells = balls(&[([0.0; 3], 0.7), ([0.0; 3], 0.69), ([0.0; 3], 0.66), ([0.0; 3], 0.65)]);
     let sheet = |p: Vec3| -> u32 {
         let d = p.length();
@@ -341,7 +341,7 @@ fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
 
     let as_placed = Settings { radius_share: share, relax_steps: 0, ..Settings::default() };
     let (session, _) = session("(x^2 + y^2)/0.81 + z^2/0.0001 - 1", Bounds::cube(1.0), &as_placed);
-    // Round the rim the two sheets are one.
+    // The two sheets meet at the rim.
     check(
         session.particles(),
         &|p| if p.truncate().length() > 0.85 { 2 } else { u32::from(p.z > 0.0) },
@@ -354,15 +354,15 @@ fn thin_sheets_nearer_than_a_spacing_are_never_joined() {
 
 #[test]
 fn factors_are_searched_one_by_one() {
-    // Where planes cross, their product has no gradient; each of them has one.
-    for (formula, pieces) in [("(x - 0.1)(x + 0.1)(x^2 + y^2 + z^2 - 4)", 2), ("-3 x / (y - 2)", 1)] {
+    // Where planes cross, their product has no gradient, but each plane has one.
+    for (formula, components) in [("(x - 0.1)(x + 0.1)(x^2 + y^2 + z^2 - 4)", 2), ("-3 x / (y - 2)", 1)] {
         let (_, report) = sampled(formula, 1.0, 0.02);
         is_proven(&report, formula);
-        assert_eq!(report.components, pieces, "{formula}");
+        assert_eq!(report.components, components, "{formula}");
     }
 }
 
-/// No child is on another sheet than its parent.
+/// Checks that every child is on the sheet of its parent.
 fn check(particles: &Particles, sheet: &dyn Fn(Vec3) -> u32, context: &str) {
     assert!(particles.len() > 200, "{context}: {} particles", particles.len());
     for i in 0..particles.len() {
@@ -381,7 +381,7 @@ fn check(particles: &Particles, sheet: &dyn Fn(Vec3) -> u32, context: &str) {
 }
 
 #[test]
-fn how_the_run_is_cut_into_steps_changes_nothing() {
+fn cutting_a_run_into_steps_changes_nothing() {
     let formula = least(&[
         balls(&[([-0.3, 0.0, 0.0], 0.5)]),
         format!("({}) / 0.05", balls(&[([0.53, 0.53, 0.53], 0.025)])),

@@ -1,4 +1,4 @@
-//! Claims about the curvature of surfaces.
+//! Tests of curvatures against closed forms and finite differences.
 
 use glam::{DVec3, Vec3};
 use marching_particles::differential::{Curvature, curvature, curvatures, curvatures_of, exact_curvature};
@@ -7,10 +7,10 @@ use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 
-/// What double precision has to reach.
+/// Tolerance for double precision.
 const RELATIVE: f64 = 1e-5;
 
-/// Points of the surface found from pseudo-random places in the box, the same in every run.
+/// Points of the surface near pseudo-random points of the box, the same in every run.
 fn surface_points(field: &mut dyn Field, bounds: &Bounds, count: usize) -> Vec<DVec3> {
     let mut random = rand_pcg::Pcg32::new(3, 5);
     let mut unit = || f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -49,7 +49,7 @@ fn assert_close(got: f64, exact: f64, what: &str, p: DVec3) {
 }
 
 #[test]
-fn a_sphere_bends_the_same_way_everywhere() {
+fn a_sphere_has_the_same_curvature_everywhere() {
     for (p, k) in sampled("sphere", 200) {
         assert_close(k.k1, 1.0, "κ₁", p);
         assert_close(k.k2, 1.0, "κ₂", p);
@@ -68,7 +68,7 @@ fn a_torus_has_the_curvatures_of_its_circles() {
         let along_ring = (axis_distance - ring) / (tube * axis_distance);
         assert_close(k.k1, around_tube, "κ₁", p);
         assert!((k.k2 - along_ring).abs() <= RELATIVE * around_tube, "κ₂ at {p}: {}", k.k2);
-        // κ₁ is that of the tube: its direction turns around the ring's circle, never along it.
+        // κ₁ is the curvature of the tube, so its direction is in the plane of the tube's cross-section.
         let along = DVec3::new(-p.y, p.x, 0.0) / axis_distance;
         assert!(k.direction.dot(along).abs() < 1e-6, "direction at {p}: {}", k.direction);
         assert_close(k.max_abs(), around_tube, "max|κ|", p);
@@ -102,7 +102,7 @@ fn an_ellipsoid_has_the_curvatures_of_the_closed_form() {
 }
 
 #[test]
-fn every_gallery_surface_turns_its_normal_as_the_curvature_says() {
+fn normals_of_the_gallery_turn_as_the_curvature_says() {
     let normal = |field: &mut dyn Field, p: DVec3| {
         let gradient = field.jet(p).gradient;
         gradient / gradient.length()
@@ -122,8 +122,8 @@ fn every_gallery_surface_turns_its_normal_as_the_curvature_says() {
                     |h: f64| (normal(&mut field, p + d * h) - normal(&mut field, p - d * h)) / (2.0 * h);
                 let h = 2e-4 / size;
                 let (coarse, fine) = (difference(h), difference(0.5 * h));
-                // Where halving the step changes a difference it is none of a smooth normal (a joint of the blends of
-                // the drilled block, the foot of a cone): there it says nothing.
+                // A difference that changes when the step is halved is not that of a smooth normal, as at the joints of
+                // the drilled block's blends and at the foot of a cone. Such points are skipped.
                 if (coarse - fine).length() > 0.5 * RELATIVE * size {
                     continue;
                 }
@@ -161,7 +161,7 @@ fn single_precision_and_lanes_agree_with_double() {
             let error = (f64::from(lanes[k].k1) - exact.k1).abs() + (f64::from(lanes[k].k2) - exact.k2).abs();
             errors.push(error / exact.max_abs());
         }
-        // Near singular points the formulas themselves cancel in single precision; elsewhere nothing is lost.
+        // Near singular points the formulas suffer from cancellation in single precision.
         errors.sort_by(f64::total_cmp);
         assert!(errors[n * 9 / 10] < 1e-3, "{}: {:e}", surface.id, errors[n * 9 / 10]);
         if surface.smooth {

@@ -1,5 +1,5 @@
-//! What becomes of formulas that have no good surface: poles, jumps, crossings, points without a normal, open surfaces.
-//! The sampler ends on all of them, places particles only on zeros, and says in words what it met.
+//! Tests on formulas without a regular surface: poles, jumps, self-intersections, singular points, open surfaces. The
+//! sampler ends on all of them, places particles only on zeros, and reports what it met.
 
 use glam::Vec3;
 use marching_particles::field::formula::FormulaField;
@@ -18,7 +18,7 @@ fn sampled(formula: &str, half: f64, settings: &Settings) -> (Session, Progress,
     };
     session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
     session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
-    // Far more work than any of these surfaces takes: a run that never ends fails here.
+    // The limit is far more work than any of these surfaces takes, so a run that does not end fails.
     let mut progress = session.step(0);
     for _ in 0..2_000 {
         if progress.stop_reason.is_some() {
@@ -39,21 +39,21 @@ fn coarse() -> Settings {
     Settings { radius_share: 0.01, ..Settings::default() }
 }
 
-/// Particles that hexagons of this radius take on an area.
+/// Number of particles of a hexagonal lattice of the report's radius on an area.
 fn expected(area: f64, report: &Report) -> f64 {
     area / (2.0 * 3.0_f64.sqrt() * report.radius * report.radius)
 }
 
 #[test]
 fn poles_are_not_taken_for_zeros() {
-    // The last but one has its pole a hair beside the place where the grid looks for it.
+    // The last but one has its pole just beside a node of the grid.
     for formula in ["1/x", "1/(x - 0.03125)", "1/(x - 0.0312501)", "1/(x^2 + y^2 + z^2 - 0.5)"] {
         let (session, progress, _) = sampled(formula, 1.0, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
         assert_eq!(session.count(), 0, "{formula}");
         assert!(progress.message.is_some_and(|m| !m.contains("keeps one sign")), "{formula}");
     }
-    // Three planes of zeros, at 0 and ±π/4, and two of poles between them, at ±π/8.
+    // There are three planes of zeros, at 0 and ±π/4, and two of poles between them, at ±π/8.
     let (session, _, report) = sampled("tan(4x)", 1.0, &coarse());
     for p in &session.particles().position {
         let from_zero = (p.x / core::f32::consts::FRAC_PI_4).round() * core::f32::consts::FRAC_PI_4 - p.x;
@@ -61,13 +61,13 @@ fn poles_are_not_taken_for_zeros() {
     }
     let share = report.count as f64 / expected(12.0, &report);
     assert!((0.9..1.2).contains(&share), "{} particles are {share} of a cover", report.count);
-    // The holes are those of the zeros: the poles are no surface that the particles leave bare.
+    // Holes are measured on the zeros; the poles are no uncovered surface.
     assert!(report.quality.is_some_and(|q| q.cover < 1.6), "{:?}", report.quality);
 }
 
 #[test]
 fn no_particle_sits_where_the_gradient_overflows() {
-    // Beside such a pole f is small against its gradient, whatever it is. `sampled` looks at every normal.
+    // Near such a pole f is small relative to its gradient. `sampled` checks every normal.
     for (formula, half) in [("exp(x) = x y", 1e4), ("cosh(z x/y)^12 = 1.6 + z", 100.0)] {
         for sampling in [Sampling::Uniform, Sampling::Adaptive] {
             let settings = Settings { sampling, radius_share: 0.03, radius_min_share: 0.01, ..coarse() };
@@ -93,7 +93,7 @@ fn adaptive_runs_say_that_there_is_no_surface_as_uniform_ones_do() {
 
 #[test]
 fn no_particle_is_smaller_than_the_smallest_radius() {
-    // Sheets that cross at poles and steps, where neighbours' radii foretell nothing of each other's.
+    // Sheets cross at poles and steps, where the radii of neighbours are unrelated.
     for formula in ["x*(floor(y) + z^-1) = cbrt(x)", "x y z", "tan(3x) + y"] {
         for seed in [0, 4, 1_327_422_460_186_159_666] {
             let settings =
@@ -107,7 +107,7 @@ fn no_particle_is_smaller_than_the_smallest_radius() {
 
 #[test]
 fn an_undefined_region_ends_the_front_and_is_counted() {
-    // Half of a sphere is there.
+    // The formula is defined on half of a sphere.
     let (session, progress, report) = sampled("x^2 + y^2 + z^2 - 0.6 + 0*ln(x)", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.fates.undefined > 20, "{:?}", report.fates);
@@ -118,9 +118,9 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
 }
 
 #[test]
-fn a_singular_point_stops_its_neighbours_from_nothing() {
-    // Apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where the gradient vanishes along
-    // whole lines: the cover goes on beyond, and the run ends.
+fn singular_points_do_not_stop_the_front() {
+    // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where the
+    // gradient vanishes along lines. The front passes all of them, and the run ends.
     for (formula, area) in [
         ("x^2 + y^2 - z^2", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
         ("hypot(x, y) - abs(z)", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
@@ -148,9 +148,9 @@ fn singular_points_are_counted_and_the_particles_next_to_them_marked() {
         ("x^2 + y^2 = z^2", 1.0, 1),
         ("4(x^2 + y^2 + z^2) + 16x y z = 1", 1.6, 4),
         (gallery::find("kummer").expect("in the gallery").formula, 2.6, 16),
-        // Fifteen more are at infinity.
+        // Fifteen more cone points are at infinity.
         (gallery::find("barth-sextic").expect("in the gallery").formula, 1.9, 50),
-        // A cusp along a line, and planes that cross.
+        // These have a cusp along a line, and planes that cross.
         ("y^2 = x^3", 1.0, 1),
         ("x^2 = y^2", 1.0, 1),
         ("x^2 + y^2 + z^2 = 0.7", 1.0, 0),
@@ -237,7 +237,7 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         assert!(report.warnings.iter().any(|w| w.contains("is sampled")), "{formula}: {:?}", report.warnings);
         assert!(!report.warnings.iter().any(|w| w.contains("twice")), "{formula}: {:?}", report.warnings);
     }
-    // In a product a root says where the other factors count, and a pole what order of a zero is one.
+    // In a product, the domain of a root restricts the zeros of the other factors, and a pole lowers the order of a zero.
     for formula in [
         "z sqrt(1 - x^2 - y^2)",
         "y x^0.5",
@@ -250,7 +250,7 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         let field = FormulaField::parse(formula, &[]).expect(formula).without_powers();
         assert_eq!(field.evaluated_as(), None, "{formula}");
     }
-    // A constant factor, another side, and a pole are left alone, and nothing is said.
+    // A constant factor, an equation with two sides, and a pole are left alone without a warning.
     for formula in ["x^2 = 0.3", "a^2 x", "x^3 + y", "x/(y + 3)^2"] {
         let (_, _, report) = sampled(formula, 1.0, &coarse());
         assert_eq!(report.warnings, Vec::<String>::new(), "{formula}");
@@ -258,7 +258,7 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
 }
 
 #[test]
-fn a_square_that_is_not_written_as_one_is_sampled_and_said_to_be_one() {
+fn a_square_that_is_not_written_as_one_is_sampled_with_a_warning() {
     let (session, progress, report) =
         sampled("(x^2 + y^2 + z^2)^2 - (x^2 + y^2 + z^2) + 0.25", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
@@ -272,7 +272,7 @@ fn a_square_that_is_not_written_as_one_is_sampled_and_said_to_be_one() {
 
 #[test]
 fn zeros_without_a_gradient_are_never_called_absent() {
-    // A line, a point, another line, and planes that f touches.
+    // f vanishes, without changing its sign, on a line, at a point, on another line, and on planes.
     for formula in ["x^2 + y^2", "x^2 + y^2 + z^2", "(x - 0.1)^2 + (y + z)^2", "(x + y)^2 + z^2"] {
         let (_, progress, report) = sampled(formula, 1.0, &coarse());
         assert_ne!(progress.stop_reason, Some(StopReason::Complete), "{formula}");
@@ -283,14 +283,14 @@ fn zeros_without_a_gradient_are_never_called_absent() {
 }
 
 #[test]
-fn jumps_are_no_surface_and_end_the_search_on_the_circle() {
+fn jumps_are_no_surface_and_end_the_projection_along_the_circle() {
     for formula in ["floor(3x) + 0.5", "sign(x - 0.1234) + y/100", "sign(x)"] {
         let (session, progress, _) = sampled(formula, 0.9, &coarse());
         assert_eq!(progress.stop_reason, Some(StopReason::NoSurface), "{formula}");
         assert_eq!(session.count(), 0, "{formula}");
         assert!(progress.message.is_some_and(|m| m.contains("jumps")), "{formula}");
     }
-    // Steps: treads that are surface, risers that are not.
+    // The treads of the steps are surface; the risers are not.
     let (session, progress, report) = sampled("floor(5x)/5 - y", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.fates.not_converged > 100, "{:?}", report.fates);
@@ -298,7 +298,7 @@ fn jumps_are_no_surface_and_end_the_search_on_the_circle() {
     for p in &session.particles().position {
         assert!(((5.0 * p.x).floor() / 5.0 - p.y).abs() < 1e-4, "{p}");
     }
-    // A search takes at most 50 evaluations, and a particle's six slots are searched once.
+    // A projection takes at most 50 evaluations, and each of a particle's six slots is projected once.
     let slots = 6.0 * report.count as f64;
     assert!(report.evaluations_per_particle * report.count as f64 <= 50.0 * slots, "{report:?}");
 }
@@ -316,7 +316,7 @@ fn an_open_surface_ends_at_the_box_and_its_border_is_counted() {
 
 #[test]
 fn every_component_has_a_front_and_they_are_counted() {
-    // Eight balls; the metaballs of the formula are apart at this level.
+    // There are eight balls, which are disjoint at this level.
     let formula = "(abs(x) - 0.5)^2 + (abs(y) - 0.5)^2 + (abs(z) - 0.5)^2 = 0.06";
     let (_, progress, report) = sampled(formula, 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
@@ -338,7 +338,7 @@ fn steep_and_flat_functions_have_the_surface_of_the_tame_ones() {
 
 #[test]
 fn sheets_nearer_than_a_spacing_are_kept_apart() {
-    // Two planes 0.01 apart, particles ten times that.
+    // Two planes are 0.01 apart, and the particles are ten times as large.
     let (session, progress, report) = sampled("z^2 - 0.000025", 1.0, &coarse());
     assert_eq!(progress.stop_reason, Some(StopReason::Complete));
     assert!(report.warnings.iter().any(|w| w.contains("face another sheet")), "{:?}", report.warnings);
@@ -348,7 +348,7 @@ fn sheets_nearer_than_a_spacing_are_kept_apart() {
     let lower = position.len() as f64 - upper;
     assert!(upper > 100.0 && (upper / lower - 1.0).abs() < 0.1, "{upper} above, {lower} below");
     assert!(position.iter().all(|p| (p.z.abs() - 0.005).abs() < 1e-4));
-    // Sheets farther apart than 2r, and sharp edges, are no reason to warn.
+    // Sheets farther apart than 2r and sharp edges give no warning.
     for formula in ["z^2 - 0.01", "abs(x) + abs(y) + abs(z) - 0.9", "x^2 + y^2 + z^2 - 0.5"] {
         let (_, _, report) = sampled(formula, 1.0, &coarse());
         assert!(
@@ -381,7 +381,7 @@ fn a_formula_may_be_in_any_units() {
     let ellipsoid = "x^2 + 2y^2 + 3z^2 - 0.7";
     let (plain, _, _) = sampled(ellipsoid, 1.0, &coarse());
     for factor in ["2^100", "2^-100"] {
-        // A power of two changes no digit.
+        // A power of two changes no digits.
         let (session, _, report) = sampled(&format!("{factor} * ({ellipsoid})"), 1.0, &coarse());
         assert_eq!(session.particles().digest(), plain.particles().digest(), "{factor}");
         assert_eq!(report.quality.expect("there are particles").euler, 2, "{factor}");

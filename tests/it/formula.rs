@@ -1,4 +1,4 @@
-//! The formula language: what it accepts, what it means, and how it says no.
+//! Tests of the formula language: what it accepts, what a formula means, and the errors.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{
@@ -19,7 +19,7 @@ fn error(text: &str) -> FormulaError {
     }
 }
 
-/// The value at (x, y, z) = (1.25, −0.5, 2).
+/// Value at (x, y, z) = (1.25, −0.5, 2).
 fn value(text: &str) -> f64 {
     parse(text).jet(DVec3::new(1.25, -0.5, 2.0)).value
 }
@@ -102,7 +102,7 @@ fn formulas_mean_what_a_mathematician_reads() {
 }
 
 #[test]
-fn every_error_names_its_kind_its_place_and_its_remedy() {
+fn every_error_has_its_kind_span_and_suggestion() {
     let cases: &[(&str, Kind, core::ops::Range<usize>, Option<&str>)] = &[
         ("", Kind::Empty, 0..0, None),
         (" \t\n ", Kind::Empty, 0..0, None),
@@ -186,7 +186,7 @@ fn strange_characters_are_named_by_their_code_points() {
 
 #[test]
 fn spans_convert_to_the_units_of_a_text_field() {
-    // One byte, two bytes and one unit, four bytes and two units.
+    // The characters have one byte, two bytes and one unit, and four bytes and two units.
     let text = "aπ𝛼b";
     let units: Vec<usize> = (0..=text.len()).map(|byte| utf16_offset(text, byte)).collect();
     assert_eq!(units, [0, 1, 1, 2, 2, 2, 2, 4, 5]);
@@ -197,7 +197,7 @@ fn spans_convert_to_the_units_of_a_text_field() {
 }
 
 #[test]
-fn a_suggestion_put_in_place_of_the_span_mends_the_formula() {
+fn a_suggestion_in_place_of_the_span_corrects_the_formula() {
     for text in [
         "sin x",
         "2 sin x^2 + 1",
@@ -250,14 +250,14 @@ fn up_to_four_unknown_names_become_parameters_and_a_fifth_asks_for_a_slider() {
 }
 
 #[test]
-fn a_likely_slip_is_not_made_a_parameter_unless_it_is_declared() {
+fn a_likely_misspelling_is_no_parameter_unless_it_is_declared() {
     let slip = error("alpha x + sim y");
     assert_eq!((slip.kind, slip.names.as_slice()), (Kind::UnknownName, ["sim".to_owned()].as_slice()));
     assert!(slip.message.contains("did you mean `sin`") && slip.message.contains("add a slider `sim`"));
     assert!(FormulaField::parse("alpha x + sim y", &[Parameter::automatic("sim")]).is_ok());
     let near = FormulaField::parse("radius x + radios y", &[Parameter::automatic("radius")]).unwrap_err();
     assert_eq!(near.suggestion.as_deref(), Some("radius"));
-    // Indexed names, single letters and Greek ones are meant as they are.
+    // Indexed names, single letters and Greek letters are not taken for misspellings.
     for text in ["phi0 x", "r_1 x + r_2 y", "E x + R", "λ x + μ", "rx x"] {
         parse(text);
     }
@@ -335,10 +335,10 @@ fn declarations_that_make_no_sense_are_refused() {
 #[test]
 fn deep_nesting_is_refused_before_it_can_overflow_a_stack() {
     for unit in ["(", "-", "+", "sin(", "2^", "x^-", "abs(-("] {
-        // Within the limit of length, so that it is the limit of depth that answers.
+        // The text is within the limit of length, so the limit of depth refuses it.
         let text = unit.repeat(MAX_FORMULA_BYTES / unit.len());
         assert_eq!(error(&text).kind, Kind::TooDeep, "{unit}");
-        // And beyond both.
+        // This text is beyond both limits.
         assert_eq!(error(&unit.repeat(100_000)).kind, Kind::TooLong, "{unit}");
     }
     let nested = |n: usize| format!("{}x{}", "(".repeat(n), ")".repeat(n));
@@ -351,20 +351,20 @@ fn a_megabyte_is_refused_before_parsing() {
     let text = "x+".repeat(500_000);
     let error = error(&text);
     assert_eq!((error.kind, error.span), (Kind::TooLong, MAX_FORMULA_BYTES..text.len()));
-    // The cut does not fall inside a character.
+    // The span does not split a character.
     let text = "π".repeat(3000);
     let error = FormulaField::parse(&text[..], &[]).unwrap_err();
     assert!(text.is_char_boundary(error.span.start), "{:?}", error.span);
 }
 
 #[test]
-fn swelling_expressions_are_bounded() {
+fn the_number_of_operations_is_bounded() {
     let tower = format!("{}x", "x^".repeat(1000));
     assert_eq!(error(&tower).kind, Kind::TooDeep);
-    // Each power needs some thirty products.
+    // Each power takes about thirty products.
     let powers: Vec<String> = (0..200).map(|k| format!("(x+{k})^{}", 1_073_741_823 - k)).collect();
     assert_eq!(error(&powers.join("+")).kind, Kind::TooComplex);
-    // As long a sum as fits: fine, and evaluated without trouble.
+    // The longest sum that fits is accepted and evaluated.
     let long = format!("x{}", "+y^2".repeat(1000));
     let mut field = parse(&long);
     assert_eq!(field.jet(DVec3::new(1.0, 2.0, 0.0)).value, 4001.0);
@@ -387,7 +387,7 @@ fn extreme_numbers_are_errors_where_constant_and_harmless_elsewhere() {
     assert_eq!(parse("x^1e300").jet(DVec3::ONE).value, 1.0);
     assert_eq!(parse("x*1e-310").jet(DVec3::ONE).value, 1e-310);
     assert_eq!(parse("-0 + x").jet(DVec3::ONE).value, 1.0);
-    // Too large for single precision: infinite there, never a false zero.
+    // A number too large for single precision is infinite there, not a false zero.
     let mut value = [0.0];
     parse("x - 1e300").values(&[Vec3::ONE], &mut value);
     assert_eq!(value[0], f32::NEG_INFINITY);
@@ -416,7 +416,7 @@ fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
         parse(text).enclose(0, &[[DVec3::new(x[0], 0.1, 0.1), DVec3::new(x[1], 0.2, 0.2)]], &mut out);
         out[0]
     };
-    // On both sides of a pole there is still no zero.
+    // A box with a pole inside still has no zero.
     for (text, x) in [("1/x", [-0.5, 0.7]), ("exp(y)/x", [-0.5, 0.7]), ("tan(x)", [1.5, 1.6])] {
         let known = known(text, x);
         assert!(!known.may_vanish && !known.defined, "{text}: {known:?}");
@@ -468,7 +468,7 @@ fn undefined_regions_are_nan_and_poles_are_infinite() {
     assert_eq!(probe("ln(x)", 0.0).0, f32::NEG_INFINITY);
     assert!(probe("x/x", 0.0).0.is_nan());
     assert!(probe("tan(x)", core::f32::consts::FRAC_PI_2).0.abs() > 1e7);
-    // The apex of a cone: defined, with no direction.
+    // At the apex of a cone f is defined and has no gradient.
     let (value, gradient) = {
         let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
         parse("hypot(x, y) - abs(z)").gradients(&[Vec3::ZERO], &mut value, &mut gradient);
@@ -501,7 +501,7 @@ fn kinks_have_the_documented_slopes() {
     assert_eq!(slope("sign(x) + floor(y)", DVec3::splat(0.5)), DVec3::ZERO);
     assert_eq!(slope("min(x, 2y)", DVec3::ZERO), DVec3::X);
     assert_eq!(slope("max(2y, x)", DVec3::ZERO), DVec3::Y * 2.0);
-    // The smooth minimum has no kink: at a tie it takes half of either slope.
+    // The smooth minimum has no kink: at a tie its slope is the mean of both.
     assert_eq!(slope("smin(x, 2y, 1)", DVec3::ZERO), DVec3::new(0.5, 1.0, 0.0));
 }
 

@@ -1,5 +1,5 @@
-//! Claims about any formula at all: nothing panics, printing and parsing are inverse, the readings of one formula
-//! agree, and its MathML is well formed.
+//! Properties of arbitrary formulas: nothing panics, printing and parsing are inverse, all ways of evaluation agree, and the
+//! MathML is well formed.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES};
@@ -8,7 +8,7 @@ use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::Sym3;
 use proptest::prelude::*;
 
-/// Text of a formula, with every construct of the language; `a` and `b_1` are parameters.
+/// Strategy for formulas with all constructs of the language; `a` and `b_1` are parameters.
 fn formulas() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![
         6 => prop::sample::select(vec!["x", "y", "z"]).prop_map(str::to_owned),
@@ -47,7 +47,7 @@ fn formulas() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    // The same formulas in every run; `PROPTEST_CASES` and `PROPTEST_RNG_SEED` ask for others.
+    // The formulas are the same in every run, unless `PROPTEST_CASES` or `PROPTEST_RNG_SEED` is set.
     #![proptest_config(ProptestConfig {
         rng_seed: match std::env::var("PROPTEST_RNG_SEED") {
             Ok(_) => ProptestConfig::default().rng_seed,
@@ -116,7 +116,7 @@ proptest! {
         let bounds = field.interval(lo, hi);
         let value = field.jet(p).value;
         prop_assert!(!bounds.lo.is_nan() && !bounds.hi.is_nan(), "{:?}", bounds);
-        // A pole may give an infinity of either sign, by the sign of a zero.
+        // At a pole the sign of a zero decides the sign of the infinity.
         if value.is_nan() || value.is_infinite() && !bounds.defined {
             prop_assert!(!bounds.defined, "{text} = {value} at {p} but {bounds:?}");
         } else {
@@ -133,7 +133,7 @@ proptest! {
         exponent in 0..12_i32,
         a in -2.0..2.0_f64,
     ) {
-        // A sum is its own only part, as long as the last term cancels nothing.
+        // A sum has itself as its only part, provided that the last term cancels nothing.
         let text = format!("({text}) + x^2 + 0.618034");
         let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
         for name in field.auto().to_vec() {
@@ -164,7 +164,7 @@ proptest! {
         for ([lo, hi], exact) in second[0].into_iter().zip([h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]) {
             prop_assert!(!exact.is_finite() || lo <= exact && exact <= hi, "{text}: {h:?} at {p}, not in {second:?}");
         }
-        // f(q) − f(p) is a slope of the box times q − p, also across kinks.
+        // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across kinks.
         let (from, to) = (field.jet(p).value, field.jet(q).value);
         let mut rise = [0.0, 0.0];
         for axis in 0..3 {
@@ -211,22 +211,22 @@ proptest! {
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);
-        // How much rounding may cost depends on the formula: take as a measure how much the result changes when the
-        // point moves by some thousand roundings.
+        // The effect of rounding depends on the formula. Its measure here is the change of the result when the point moves
+        // by some thousand units in the last place.
         let near = field.jet(p * (1.0 + 1e-12));
         let (exact, moved, other) = (numbers(&jet), numbers(&near), numbers(&other));
         let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();
         let steady = exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size);
         if steady && size < 1e9 {
             for (a, b) in exact.iter().zip(&other) {
-                // Where a branch that is not taken overflows, the transformed derivative may be NaN, never wrong.
+                // If a branch that is not taken overflows, the transformed derivative may be NaN, but not wrong.
                 prop_assert!(b.is_nan() || (a - b).abs() < 1e-6 * size, "{text}: {exact:?} but {other:?}");
             }
         }
     }
 }
 
-/// Value, gradient and Hessian in a row.
+/// Value, gradient and Hessian in one array.
 fn numbers(jet: &Jet) -> [f64; 10] {
     let (g, h) = (jet.gradient, jet.hessian);
     [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]

@@ -1,5 +1,5 @@
-//! The front of paper §4: what it promises on smooth surfaces, and that working on whole levels in lanes changes nothing
-//! about the sequential algorithm.
+//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement, though it places whole levels
+//! at once, with the sequential algorithm.
 #![allow(
     clippy::disallowed_methods,
     clippy::needless_range_loop,
@@ -13,13 +13,13 @@ use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures};
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
 
-/// Surfaces on which the claims are made: name and Euler number.
+/// Surfaces of the tests, with their Euler numbers.
 const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
-/// Least share of particles with six neighbours and least mean smallest angle after the front, at 56,000 particles. The
-/// aim is 0.93 and 55.5° everywhere. The torus misses the angle and the tanglecube both: where the curvature changes sign,
-/// rows of the front are squeezed on one side and spread on the other, and fronts that went around a handle meet out of
-/// step; the hexagons of the paper do not bend for that.
+/// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000 particles.
+/// The aim is 0.93 and 55.5° everywhere. The torus misses the angle, and the tanglecube misses both. Where the curvature
+/// changes its sign, the rows of the front are compressed on one side and stretched on the other. Fronts that went around
+/// a handle meet out of step. The hexagons of the paper do not adapt to either.
 const ORDER: [(&str, f64, f64); 4] =
     [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
 
@@ -32,7 +32,7 @@ fn sampled(surface: &str, settings: &Settings) -> Sampler {
     sampler
 }
 
-/// The paper's front alone.
+/// Samples by the front of the paper alone, without gap filling and relaxation.
 fn front(surface: &str, radius_share: f64) -> Sampler {
     let settings = Settings { radius_share, relax_steps: 0, gaps: GapPolicy::Leave, ..Settings::default() };
     sampled(surface, &settings)
@@ -46,9 +46,9 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
         .figures
 }
 
-/// The front by the book: one particle after the other, every neighbour found by looking at all particles, every child
-/// projected alone, as soon as its turn has come. The rules and the arithmetic are those of the sampler; the order of
-/// work, the search and the batches are not.
+/// The sequential front of the paper: it treats one particle after the other, searches all particles for neighbours, and
+/// projects each child by itself as soon as it is proposed. Rules and arithmetic are those of the sampler; the order of
+/// work, the neighbour search and the batches are not.
 struct Naive {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
@@ -154,7 +154,8 @@ impl Naive {
         }
     }
 
-    /// Second fundamental form fitted to the normals around `parent`: least squares with a slight pull to isotropy.
+    /// Second fundamental form fitted to the normals around `parent` by least squares, with slight regularisation towards
+    /// isotropy.
     fn fitted(&self, parent: usize, radius: f32, u: Vec3, w: Vec3) -> [f32; 3] {
         let (p, n) = (self.position[parent], self.normal[parent]);
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -171,7 +172,7 @@ impl Naive {
         let pull = 0.005 * (xx + yy);
         let m = [[xx + pull, xy, -pull], [xy, xx + yy + pull, xy], [-pull, xy, yy + pull]];
         let right = [xa, ya + xb, yb];
-        // Inverse by cofactors; the matrix is symmetric.
+        // The symmetric matrix is inverted by cofactors.
         let cofactor = |i: usize, k: usize| {
             let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (k + 1) % 3, (k + 2) % 3);
             m[a][c] * m[b][d] - m[a][d] * m[b][c]
@@ -196,7 +197,7 @@ fn from_hessian(field: &mut dyn Field, p: Vec3, u: Vec3, w: Vec3) -> [f32; 3] {
     [(u, u), (u, w), (w, w)].map(|(a, b)| (a.dot(jet.hessian.apply(b)) / jet.gradient.length()) as f32)
 }
 
-/// The surface on the circle around `p`, nearest to `guess`, by Newton's method.
+/// Point of the surface on the circle around `p` that Newton's method finds from `guess`.
 fn on_circle(
     field: &mut dyn Field,
     p: Vec3,
@@ -215,7 +216,7 @@ fn on_circle(
             return (q, gradient[0] / slope);
         }
         let derivative = gradient[0].dot((n * cos - direction * sin) * distance);
-        // tan of half the angle to turn by.
+        // Tangent of half the rotation angle.
         let t = (-0.5 * value[0] / derivative).clamp(-0.2, 0.2);
         let scale = 1.0 / (1.0 + t * t);
         let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
@@ -225,7 +226,7 @@ fn on_circle(
 }
 
 #[test]
-fn levels_in_lanes_are_the_sequential_front_particle_by_particle() {
+fn the_front_places_the_particles_of_the_sequential_algorithm() {
     for (surface, share) in [("sphere", 0.02), ("ellipsoid", 0.02), ("torus", 0.02), ("tanglecube", 0.008)] {
         let sampler = front(surface, share);
         let fast = sampler.particles();
@@ -237,9 +238,9 @@ fn levels_in_lanes_are_the_sequential_front_particle_by_particle() {
         assert_eq!(fast.level, naive.level, "{surface}");
         let slots: Vec<_> = fast.slots.iter().map(|s| [0, 1, 2, 3, 4, 5].map(|k| s.get(k))).collect();
         assert_eq!(slots, naive.slots, "{surface}");
-        // The same places, but for the rounding of the order of operations in the curvature fit. Where it makes a child just
-        // pass or just miss the residual of 10⁻⁴ r, the difference is of that size and grows through the levels behind it:
-        // to 0.9 % of r on the tanglecube.
+        // The positions differ by rounding, since the curvature fit has another order of operations. If rounding decides
+        // whether a child passes the residual of 10⁻⁴ r, the difference is of that size and grows from level to level, to
+        // 0.9 % of r on the tanglecube.
         let apart =
             fast.position.iter().zip(&naive.position).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(apart < 0.02 * sampler.radius() as f32, "{surface}: {apart} apart");
@@ -247,7 +248,7 @@ fn levels_in_lanes_are_the_sequential_front_particle_by_particle() {
 }
 
 #[test]
-fn a_front_covers_smooth_surfaces_in_order() {
+fn a_front_covers_smooth_surfaces_regularly() {
     for (surface, euler) in SMOOTH {
         let sampler = sampled(
             surface,
@@ -260,9 +261,9 @@ fn a_front_covers_smooth_surfaces_in_order() {
         assert_eq!(figures.open, 0, "{context}");
         assert_eq!(figures.components, 1, "{context}");
         assert_eq!(figures.euler, euler, "{context}");
-        // 10⁻⁴ r is half of that in units of the spacing; f32 rounding adds its own.
+        // A residual of 10⁻⁴ r is half of that in units of the spacing. Single precision adds its rounding.
         assert!(figures.err_max <= 2.5e-4, "{context}");
-        // Nothing is closer than the match tolerance.
+        // No two particles are closer than the match tolerance.
         let closest = figures.nn_min * figures.d_hex / (2.0 * sampler.radius());
         assert!(closest >= 0.7 * (1.0 - 1e-5), "{context}: closest pair {closest}");
     }
@@ -292,7 +293,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
         assert_eq!(particles.len(), left.len() + count, "{surface}");
         assert_eq!(particles.position[..left.len()], left.position, "{surface}");
         let (was, is) = (figures(surface, left), figures(surface, particles));
-        // In units of 2r, since the spacing of the perfect lattice changes with the count.
+        // The unit is 2r, because the hexagonal spacing changes with the count.
         let hole = |f: &Figures| f.cover * f.d_hex / 3.0_f64.sqrt() / (2.0 * filled.radius());
         assert!(hole(&is) < hole(&was), "{surface}: {} to {}", hole(&was), hole(&is));
         assert!(hole(&is) < 0.83, "{surface}: {}", hole(&is));
@@ -338,18 +339,18 @@ fn every_child_is_two_radii_from_its_parent() {
 }
 
 #[test]
-fn levels_are_rings_in_the_order_of_the_queue() {
+fn levels_increase_along_the_columns_and_grow_as_hexagons() {
     let sampler = front("sphere", 0.01);
     let particles = sampler.particles();
     assert!(particles.level.is_sorted());
     assert!(particles.parent[1..].is_sorted());
-    // On the flat, level k of a hexagonal front has 6k particles.
+    // In the plane, level k of a hexagonal front has 6k particles.
     let count = |level| particles.level.iter().filter(|&&l| l == level).count();
     assert_eq!([0, 1, 2, 3, 4].map(count), [1, 6, 12, 18, 24]);
 }
 
 #[test]
-fn slots_and_counts_tell_the_same() {
+fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
         let sampler = front(surface, 0.01);
         let (particles, fates) = (sampler.particles(), sampler.counts().fates);

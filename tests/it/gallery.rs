@@ -1,4 +1,4 @@
-//! Claims about every surface of the gallery.
+//! Tests of every surface of the gallery.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, SURFACES, Surface};
@@ -6,7 +6,7 @@ use marching_particles::field::{Field, Jet};
 use marching_particles::math::Sym3;
 use rand_core::Rng;
 
-/// Pseudo-random points of the surface's box, the same in every run.
+/// Pseudo-random points in the surface's box, the same in every run.
 fn points(surface: &Surface, count: usize) -> Vec<DVec3> {
     let mut random = rand_pcg::Pcg32::new(7, 11);
     let mut unit = || f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -29,7 +29,7 @@ fn differences(field: &mut dyn Field, p: DVec3, h: f64) -> (DVec3, [f64; 6]) {
 
 #[test]
 fn derivatives_agree_with_central_differences() {
-    // The error of a central difference is about h² in the third derivative plus 1e-16/h in rounding.
+    // The error of a central difference is about h² times the third derivative, plus a rounding error of 1e-16/h.
     const STEP: f64 = 1e-5;
     const TOLERANCE: f64 = 1e-6;
     for surface in SURFACES {
@@ -71,7 +71,7 @@ fn batches_agree_with_double_precision() {
         let (mut value2, mut gradient2) = (vec![0.0; n], vec![Vec3::ZERO; n]);
         field.hessians(&points, &mut value2, &mut gradient2, &mut hessian);
         let jets: Vec<Jet> = points.iter().map(|p| field.jet(p.as_dvec3())).collect();
-        // Rounding is relative to the terms that are summed, which are as large as the field ever is in the box.
+        // Rounding errors are relative to the terms of the sum, which are as large as the field's maximum in the box.
         let size = |of: &dyn Fn(&Jet) -> f64| jets.iter().map(of).fold(1.0, f64::max);
         let sizes = [
             size(&|jet| jet.value.abs()),
@@ -98,13 +98,13 @@ fn batches_agree_with_double_precision() {
 }
 
 #[test]
-fn a_value_lies_in_the_interval_of_every_box_that_holds_its_point() {
+fn values_lie_within_the_bounds_of_boxes_around_the_point() {
     for surface in SURFACES {
         let mut field = surface.field();
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));
-            // The point sits off the middle of its box.
+            // The point is off the centre of its box.
             let lo = p - half * 0.3;
             let hi = p + half * 0.7;
             let bounds = field.interval(lo, hi);
@@ -195,7 +195,7 @@ fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_paramete
     }
 }
 
-/// Number of vertices − edges + faces of the surface's mesh on a grid of `n` cells a side.
+/// Euler number, vertices − edges + faces, of the surface's mesh on a grid of `n` cells a side.
 fn euler_number(surface: &Surface, n: u32) -> i64 {
     use fast_surface_nets::ndshape::{RuntimeShape, Shape};
     let shape = RuntimeShape::<u32, 3>::new([n + 1; 3]);
@@ -246,7 +246,7 @@ fn every_surface_meets_its_box_and_is_positive_and_negative_there() {
     }
 }
 
-/// A point of the surface near `p` by Newton's method along the gradient.
+/// Point of the surface that Newton's method along the gradient finds from `p`.
 fn on_surface(field: &mut dyn Field, mut p: DVec3) -> Option<DVec3> {
     for _ in 0..30 {
         let jet = field.jet(p);

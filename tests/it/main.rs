@@ -1,5 +1,5 @@
-//! The integration tests, one module per part of the library, in one binary: linking the library once for each of them would
-//! take longer than running them. One module runs by its name: `cargo test --test it front::`.
+//! Integration tests, one module per part of the library. They are one binary, because linking each module by itself would
+//! take longer than running it. `cargo test --test it front::` runs one module.
 
 mod adaptive;
 mod baseline;

@@ -1,7 +1,7 @@
-//! Where the points of the built-in models come from, and that the shipped files hold them.
+//! Origin of the points of the built-in models, with tests that the shipped files hold them.
 //!
-//! The two models of our own are made from formulas, here. The bunny's points are vertices of the closed mesh in the npm
-//! package `bunny` 1.0.1, which is not part of this project; to make its files again, and all others:
+//! Two models are made here from formulas. The bunny's points are vertices of the closed mesh in the npm package `bunny`
+//! 1.0.1, which is not part of this project. These commands make all files again:
 //!
 //! ```sh
 //! npm pack bunny@1.0.1 && tar xzf bunny-1.0.1.tgz
@@ -17,7 +17,7 @@ use marching_particles::pointcloud::models;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-/// Points per model.
+/// Number of points per model.
 const COUNT: usize = 200;
 
 fn check(id: &str, made: &Cloud) {
@@ -30,7 +30,7 @@ fn check(id: &str, made: &Cloud) {
     assert!(shipped == bytes, "{} does not hold the points that are made here", path.display());
 }
 
-/// The cloud moved and scaled so that the centre of its box is the origin and its longest side 2.
+/// Cloud moved and scaled so that its box is centred at the origin and has the longest side 2.
 fn centred(cloud: &Cloud) -> Cloud {
     let lo = cloud.position.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let hi = cloud.position.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -38,7 +38,7 @@ fn centred(cloud: &Cloud) -> Cloud {
     Cloud { position: cloud.position.iter().map(|&p| (p - middle) * scale).collect(), ..cloud.clone() }
 }
 
-/// `COUNT` points of the cloud, each the one farthest from those before it.
+/// `COUNT` points of the cloud by farthest-point sampling.
 fn spread(cloud: &Cloud) -> Cloud {
     let mut distance = vec![f64::INFINITY; cloud.len()];
     let (mut chosen, mut next) = (Cloud::default(), 0);
@@ -62,7 +62,7 @@ fn every_model_has_two_hundred_points_of_its_own() {
         let places: BTreeSet<_> = cloud.position.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
         assert_eq!(places.len(), COUNT, "{}: a point is there twice", model.id);
         assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-12), "{}", model.id);
-        // What is read is written again to the last bit: nothing is lost by storing it twice.
+        // Encoding a decoded cloud gives the same bytes.
         let again = models::encode(&cloud);
         let path =
             PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("src/pointcloud/data/{}.bin", model.id));
@@ -71,8 +71,8 @@ fn every_model_has_two_hundred_points_of_its_own() {
     assert_eq!(models::cloud("ellipsoid"), None);
 }
 
-/// An ellipsoid: centre, semi-axes, and the angles in degrees by which it is turned about y (its top forward) and then
-/// about z (its front to the left). Nearly the distance from it, the closer the rounder it is.
+/// Function of an ellipsoid with the given centre and semi-axes, rotated about y (top forward) and then about z (front to
+/// the left) by angles in degrees. It approximates the distance; the rounder the ellipsoid, the better.
 fn ellipsoid(centre: [f64; 3], axes: [f64; 3], (pitch, yaw): (f64, f64)) -> String {
     let (sp, cp) = libm::sincos(pitch.to_radians());
     let (sy, cy) = libm::sincos(yaw.to_radians());
@@ -86,14 +86,14 @@ fn ellipsoid(centre: [f64; 3], axes: [f64; 3], (pitch, yaw): (f64, f64)) -> Stri
     format!("(sqrt({} + {} + {}) - 1)*{least}", along(0), along(1), along(2))
 }
 
-/// The smooth union of parts, each with the width of its blend into those before it.
+/// Smooth union of parts, each with the width of its blend with the parts before it.
 fn union(parts: &[(f64, String)]) -> String {
     let first = parts[0].1.clone();
     parts[1..].iter().fold(first, |all, (width, part)| format!("smin({all}, {part}, {width})"))
 }
 
-/// Points of the formula's surface: where lattice lines parallel to the axes cross it, in the box from (−1.3, −1.3, −0.3)
-/// to (1.3, 1.3, 2.7).
+/// Points of the formula's surface on lattice lines parallel to the axes, in the box from (−1.3, −1.3, −0.3) to
+/// (1.3, 1.3, 2.7).
 fn points_of(formula: &str) -> Cloud {
     const STEP: f64 = 0.04;
     const CELLS: [usize; 3] = [65, 65, 75];
@@ -132,7 +132,7 @@ fn points_of(formula: &str) -> Cloud {
     cloud
 }
 
-/// Not turned.
+/// Rotation by no angle.
 const UPRIGHT: (f64, f64) = (0.0, 0.0);
 
 #[test]
@@ -160,7 +160,7 @@ fn the_figure_with_sack_and_hat_is_made_of_fifteen_ellipsoids() {
     let part = |width, centre, axes, turn| (width, ellipsoid(centre, axes, turn));
     let parts = [
         part(0.0, [0.0, 0.0, 0.74], [0.46, 0.50, 0.54], UPRIGHT),
-        // Head, beard, nose.
+        // Head, beard and nose.
         part(0.12, [0.05, 0.0, 1.44], [0.33; 3], UPRIGHT),
         part(0.12, [0.25, 0.0, 1.20], [0.20, 0.26, 0.26], UPRIGHT),
         part(0.06, [0.42, 0.0, 1.46], [0.11; 3], UPRIGHT),
@@ -190,7 +190,7 @@ struct Mesh {
     faces: Vec<[usize; 3]>,
 }
 
-/// The bunny's mesh from the package's only file, stood upright (z up) and facing along x.
+/// Mesh of the bunny from the only file of the package, rotated so that z is up and the bunny faces along x.
 fn bunny(text: &str) -> Mesh {
     let rows = |name: &str| -> Vec<[f64; 3]> {
         let list = text.split_once(&format!("exports.{name}=[[")).expect("the list is there").1;
@@ -210,7 +210,7 @@ fn bunny(text: &str) -> Mesh {
     for face in &faces {
         let [a, b, c] = face.map(|i| position[i]);
         for &i in face {
-            // Twice the triangle's area long.
+            // The length is twice the area of the triangle.
             normal[i] += (b - a).cross(c - a);
         }
     }
@@ -218,23 +218,23 @@ fn bunny(text: &str) -> Mesh {
     Mesh { vertices: Cloud { position, normal, ..Cloud::default() }, faces }
 }
 
-/// Vertices of the ears but for their outer sides: of the two largest pieces of the mesh above `HEIGHT`, those whose normal does
-/// not point away from the nearest vertex of the other piece. (With those alone gone that face the other ear, the gap below
-/// the handle is so narrow that coarse particles bridge it.)
+/// Vertices of the ears without their outer sides. The ears are the two largest components of the mesh above `HEIGHT`. A
+/// vertex belongs if its normal does not point away from the nearest vertex of the other ear. (If only the vertices that face
+/// the other ear were removed, the gap below the handle would be so narrow that coarse particles bridge it.)
 fn between_the_ears(mesh: &Mesh) -> Vec<bool> {
     const HEIGHT: f64 = 8.0;
-    /// Cosine of the angle between the normal and the way to the other ear.
+    /// Cosine of the angle between the normal and the direction to the other ear.
     const AWAY: f64 = -0.6;
     let (position, normal) = (&mesh.vertices.position, &mesh.vertices.normal);
-    let mut piece: Vec<usize> = (0..position.len()).collect();
-    // Labels spread until they are the same all over a piece.
+    let mut component: Vec<usize> = (0..position.len()).collect();
+    // Labels spread until each component has a single one.
     loop {
         let mut changed = false;
         for face in &mesh.faces {
             for (i, j) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (face[i], face[j])) {
-                if position[i].z > HEIGHT && position[j].z > HEIGHT && piece[i] != piece[j] {
-                    let least = piece[i].min(piece[j]);
-                    (piece[i], piece[j], changed) = (least, least, true);
+                if position[i].z > HEIGHT && position[j].z > HEIGHT && component[i] != component[j] {
+                    let least = component[i].min(component[j]);
+                    (component[i], component[j], changed) = (least, least, true);
                 }
             }
         }
@@ -242,14 +242,14 @@ fn between_the_ears(mesh: &Mesh) -> Vec<bool> {
             break;
         }
     }
-    let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut components: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for i in (0..position.len()).filter(|&i| position[i].z > HEIGHT) {
-        pieces.entry(piece[i]).or_default().push(i);
+        components.entry(component[i]).or_default().push(i);
     }
-    let mut pieces: Vec<Vec<usize>> = pieces.into_values().collect();
-    pieces.sort_by_key(|piece| std::cmp::Reverse(piece.len()));
+    let mut components: Vec<Vec<usize>> = components.into_values().collect();
+    components.sort_by_key(|component| std::cmp::Reverse(component.len()));
     let mut between = vec![false; position.len()];
-    for (ear, other) in [(&pieces[0], &pieces[1]), (&pieces[1], &pieces[0])] {
+    for (ear, other) in [(&components[0], &components[1]), (&components[1], &components[0])] {
         for &i in ear {
             let nearest = other
                 .iter()

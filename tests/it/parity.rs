@@ -1,6 +1,6 @@
-//! The same field, parameters and seed give the same particles everywhere. This test holds the native core to the
-//! digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` holds the WebAssembly core to the same file, and the
-//! browser tests hold the page to it.
+//! Test that the same field, parameters and seed give the same particles on every platform. It compares the native core with the
+//! digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and the browser tests the
+//! page, with the same file.
 //!
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
@@ -12,15 +12,15 @@ use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The golden file.
+/// Contents of the golden file.
 #[derive(Serialize, Deserialize)]
 struct Golden {
     runs: Vec<Run>,
-    /// Runs on built-in models, which the page solves in a bundle of its own.
+    /// Runs on built-in models, which the page solves in another WebAssembly module.
     models: Vec<Run>,
 }
 
-/// A run and what it must give.
+/// A run with its expected result.
 #[derive(Serialize, Deserialize)]
 struct Run {
     name: String,
@@ -33,7 +33,7 @@ struct Run {
     digest: String,
 }
 
-/// Units of work per step; any other number must give the same particles, and the other side uses another.
+/// Units of work per step. Any other number must give the same particles, and the WebAssembly test uses another one.
 const BUDGET: u32 = 100_000;
 
 fn run(case: &Run) -> (usize, String) {

@@ -1,4 +1,4 @@
-//! From clouds of points to a few hundred centres with normals: what is thinned out, chosen and estimated.
+//! Tests of merging, thinning, farthest-point sampling and normal estimation.
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::DVec3;
@@ -24,7 +24,7 @@ fn estimate(cloud: &mut Cloud) -> Vec<String> {
     estimator.finish(cloud).expect("memory enough")
 }
 
-/// Fibonacci points on the unit sphere.
+/// Points of a Fibonacci spiral on the unit sphere.
 fn sphere(count: usize) -> Vec<DVec3> {
     let turn = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     let point = |i: usize| {
@@ -36,7 +36,7 @@ fn sphere(count: usize) -> Vec<DVec3> {
     (0..count).map(point).collect()
 }
 
-/// Points on the torus of radii 1 and 0.4 about z, spread evenly, with their normals.
+/// Evenly spread points on the torus of radii 1 and 0.4 about z, with their normals.
 fn torus(count: usize) -> (Vec<DVec3>, Vec<DVec3>) {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let tau = std::f64::consts::TAU;
@@ -48,7 +48,7 @@ fn torus(count: usize) -> (Vec<DVec3>, Vec<DVec3>) {
             tau * (f64::from(k) * golden).fract(),
             tau * (f64::from(k) * golden * golden * 0.754_877).fract(),
         );
-        // Fewer on the inner side, where the same angles take less area.
+        // On the inner side, where the same angles take less area, there are fewer points.
         if 1.0 + 0.4 * v.cos() < 1.4 * (f64::from(k) * 0.569_840).fract() {
             continue;
         }
@@ -96,7 +96,8 @@ fn estimated_normals_of_sphere_and_torus_are_right_and_outward() {
 
 #[test]
 fn estimated_normals_of_thin_shapes_point_outward() {
-    // A leaf, a twentieth as thick as long, and a needle. At the rim of the leaf the curvature is finer than the points.
+    // The shapes are a leaf, whose thickness is a twentieth of its length, and a needle. The points do not resolve the
+    // curvature at the rim of the leaf.
     for axes in [DVec3::new(1.0, 0.7, 0.05), DVec3::new(1.0, 0.05, 0.05)] {
         let position: Vec<DVec3> = sphere(5000).iter().map(|p| *p * axes).collect();
         let mut cloud = Cloud { position, normal: Vec::new(), source: NormalSource::Estimated };
@@ -113,7 +114,7 @@ fn estimated_normals_of_thin_shapes_point_outward() {
 }
 
 #[test]
-fn pieces_apart_are_each_turned_outward_and_said_to_be() {
+fn separate_components_are_each_oriented_outward_with_a_warning() {
     let ball = sphere(300);
     let mut position: Vec<DVec3> = ball.clone();
     position.extend(ball.iter().map(|p| *p + DVec3::new(5.0, 0.0, 0.0)));
@@ -124,7 +125,7 @@ fn pieces_apart_are_each_turned_outward_and_said_to_be() {
 }
 
 #[test]
-fn points_that_are_flat_or_one_are_refused() {
+fn degenerate_points_are_refused() {
     let (a, b) = (DVec3::new(1.0, 2.0, -1.0), DVec3::new(0.3, -1.0, 0.5));
     let at = DVec3::new(10.0, -4.0, 3.0);
     let one = vec![at; 10];
@@ -147,22 +148,22 @@ fn equal_points_become_one_with_the_mean_of_their_normals() {
     let normal = vec![DVec3::X, DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X];
     let (cloud, joined) = merged(Cloud { position, normal, source: NormalSource::Given });
     assert_eq!(joined, 2);
-    // The two at Y contradict each other.
+    // The normals of the two points at Y cancel.
     assert_eq!(cloud.position, [DVec3::ZERO, DVec3::X]);
     assert!((cloud.normal[0] - DVec3::new(0.5_f64.sqrt(), 0.5_f64.sqrt(), 0.0)).length() < 1e-15);
 }
 
 #[test]
-fn a_million_points_are_thinned_evenly_whatever_lies_far_away() {
+fn a_million_points_are_thinned_evenly_despite_an_outlier() {
     let mut position = sphere(1_000_000);
-    // A stray point, a thousand diameters off.
+    // The outlier is a thousand diameters away.
     position.push(DVec3::new(2000.0, 0.0, 0.0));
     let normal = position.clone();
     let cloud = thinned(Cloud { position, normal, source: NormalSource::Given });
     println!("{} kept", cloud.len());
     assert!((KEPT * 3 / 10..=KEPT).contains(&cloud.len()), "{} kept", cloud.len());
     assert_eq!(cloud.normal.len(), cloud.len());
-    // Nowhere is a hole: of the whole sphere every point is within some steps of one that is kept.
+    // There is no hole: every point of the sphere is within a few cells of a kept one.
     let spacing = (4.0 * std::f64::consts::PI / cloud.len() as f64).sqrt();
     for p in sphere(500) {
         let nearest = cloud.position.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
@@ -173,7 +174,7 @@ fn a_million_points_are_thinned_evenly_whatever_lies_far_away() {
 }
 
 #[test]
-fn centres_are_spread_as_far_as_can_be_and_chosen_alike_each_time() {
+fn centres_are_spread_evenly_and_reproducibly() {
     let points = sphere(20_000);
     let spread = |wanted: usize| {
         let mut spreader = Spreader::new(&points, wanted);
@@ -184,7 +185,7 @@ fn centres_are_spread_as_far_as_can_be_and_chosen_alike_each_time() {
         let chosen = spread(wanted);
         assert_eq!(chosen.len(), wanted);
         assert_eq!(chosen, spread(wanted));
-        // The first centres of more are those of fewer.
+        // A smaller choice is the beginning of a larger one.
         assert_eq!(chosen[..100], spread(100));
         let distance = |i: u32, j: u32| points[i as usize].distance(points[j as usize]);
         let nearest_pair = (0..wanted)
@@ -194,7 +195,7 @@ fn centres_are_spread_as_far_as_can_be_and_chosen_alike_each_time() {
         let hole = (0..points.len() as u32)
             .map(|i| chosen.iter().map(|&j| distance(i, j)).fold(f64::INFINITY, f64::min))
             .fold(0.0, f64::max);
-        // Hexagons of as many points on the sphere are this far apart.
+        // Hexagonal spacing of as many points on the sphere.
         let hexagonal = (8.0 * std::f64::consts::PI / (3.0_f64.sqrt() * wanted as f64)).sqrt();
         println!(
             "{wanted}: pairs {:.3}, holes {:.3} of the hexagonal distance",
@@ -204,7 +205,7 @@ fn centres_are_spread_as_far_as_can_be_and_chosen_alike_each_time() {
         assert!(nearest_pair >= hole, "what the method promises");
         assert!(nearest_pair > 0.7 * hexagonal, "{nearest_pair} for {hexagonal}");
     }
-    // Fewer points than are wanted, some of them twice.
+    // There are fewer points than wanted, and some occur twice.
     let mut few = sphere(30);
     few.extend(sphere(30).iter().map(|p| *p * (1.0 + 1e-6)));
     let mut spreader = Spreader::new(&few, 200);

@@ -1,7 +1,8 @@
-//! The whole way from a file or a model to a field: the same bits everywhere, in any cut, and mistakes in words.
+//! Tests of jobs from a file or a model to a field: they give the same bits on every platform and for any budget per step, and
+//! errors are explained.
 //!
-//! `tests/golden/points.json` holds digests of the solved systems; `tests/wasm/points.mjs` holds the WebAssembly bundle to the
-//! same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::`.
+//! `tests/golden/points.json` holds digests of the solved systems, and `tests/wasm/points.mjs` compares the WebAssembly module
+//! with the same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::`.
 
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Runs a job by steps of `budget` pieces.
+/// Runs a job in steps of `budget` units of work.
 fn run(mut job: Job, budget: u32) -> Result<Fit, JobError> {
     let mut before = job.progress();
     for _ in 0..1_000_000 {
@@ -37,7 +38,7 @@ fn file(text: &str, centres: u32) -> Result<Fit, JobError> {
     run(Job::file("points.xyz", text.into(), centres)?, 100)
 }
 
-/// Points on an ellipsoid as text: those of the faces of a cube, on a grid, moved to it. `tests/wasm/points.mjs` makes the same.
+/// Text of points on an ellipsoid: grid points on the faces of a cube, projected onto it. `tests/wasm/points.mjs` makes the same.
 fn ellipsoid(steps: i32, normals: bool) -> String {
     let mut text = String::new();
     for i in -steps..=steps {
@@ -62,7 +63,7 @@ fn ellipsoid(steps: i32, normals: bool) -> String {
     text
 }
 
-/// FNV-1a over bytes, 16 hexadecimal digits.
+/// FNV-1a hash of bytes in 16 hexadecimal digits.
 fn digest(bytes: &[u8]) -> String {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -75,7 +76,7 @@ struct Golden {
     runs: Vec<Run>,
 }
 
-/// A built-in model, or the ellipsoid of so many steps.
+/// Job for a built-in model, or for the ellipsoid with the given number of steps.
 #[derive(Serialize, Deserialize)]
 struct Run {
     name: String,
@@ -116,7 +117,7 @@ fn systems_have_the_digests_that_other_platforms_give() {
 }
 
 #[test]
-fn any_cut_into_steps_gives_the_same_system() {
+fn the_system_does_not_depend_on_the_budget_per_step() {
     let text = ellipsoid(7, false);
     let of = |budget| {
         let job = Job::file("points.xyz", text.clone().into(), DEFAULT_CENTRES).expect("a good file");
@@ -129,7 +130,7 @@ fn any_cut_into_steps_gives_the_same_system() {
 }
 
 #[test]
-fn a_field_meets_its_points_and_is_bounded() {
+fn a_field_passes_through_its_points_and_is_bounded() {
     for (normals, source, warnings) in [(true, NormalSource::Given, 0), (false, NormalSource::Estimated, 1)] {
         let fit = file(&ellipsoid(8, normals), 300).expect("a good cloud");
         let info = &fit.info;
@@ -141,7 +142,7 @@ fn a_field_meets_its_points_and_is_bounded() {
         for (k, half) in [1.0, 0.7, 0.5].into_iter().enumerate() {
             assert!(fit.bounds.max[k] > half && fit.bounds.max[k] < half + 0.3, "{:?}", fit.bounds);
         }
-        // What crosses to the core is read there.
+        // The core reads the bytes that cross to it.
         let data = RbfData::from_bytes(&fit.data.to_bytes()).expect("bytes of our own");
         let mut field = RbfField::new(data).expect("data of our own");
         assert!(field.jet(glam::DVec3::ZERO).value < 0.0);
@@ -188,7 +189,7 @@ fn every_built_in_model_becomes_a_field() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said_and_said_again() {
+fn a_failed_job_returns_its_error_in_every_later_step() {
     let message = |result: Result<Fit, JobError>| result.map(|_| ()).expect_err("a mistake").to_string();
     let tail = "; a surface takes points all round it";
     assert_eq!(message(file("1 2 3\n1 2 3\n", 200)), format!("all points are at the same place{tail}"));
@@ -214,9 +215,9 @@ fn what_cannot_be_done_is_said_and_said_again() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Few points, many of them the same or nearly so, some with normals that contradict each other.
+    /// There are few points, many of them equal or nearly so, and some with contradictory normals.
     #[test]
-    fn no_cloud_ends_the_program(
+    fn no_cloud_makes_a_job_panic(
         points in proptest::collection::vec((-2_i8..3, -2_i8..3, -2_i8..3, 0_u8..3), 1..60),
         normals in any::<bool>(), scale in -9_i32..9,
     ) {

@@ -1,4 +1,4 @@
-//! Files of points and meshes: every format, and every mistake in one.
+//! Tests of the readers of point and mesh files: every format and every kind of error.
 
 use glam::{DVec3, Vec3};
 use marching_particles::export;
@@ -8,7 +8,7 @@ use marching_particles::pointcloud::{Cloud, NormalSource};
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
-/// Reads a file by steps of `rows` rows.
+/// Reads a file in steps of `rows` rows.
 fn read_by(rows: u32, name: &str, bytes: &[u8]) -> Result<(Format, Mesh), ReadError> {
     let mut reader = Reader::new(name, bytes.to_vec())?;
     let mut before = 0.0;
@@ -25,14 +25,14 @@ fn read(name: &str, bytes: impl AsRef<[u8]>) -> (Format, Mesh) {
     result.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The cloud of a file, with what was said about it.
+/// Cloud of a file, with the warnings.
 fn cloud(name: &str, bytes: impl AsRef<[u8]>) -> (Cloud, Vec<String>) {
     let (_, mut mesh) = read(name, bytes);
     while !mesh.sum_areas(2).expect("memory enough") {}
     mesh.into_cloud()
 }
 
-/// The cloud of what was read from damaged bytes.
+/// Makes a cloud of what was read from damaged bytes.
 fn made((_, mut mesh): (Format, Mesh)) {
     while !mesh.sum_areas(3).expect("memory enough") {}
     let (cloud, _) = mesh.into_cloud();
@@ -48,7 +48,7 @@ fn refused(name: &str, bytes: impl AsRef<[u8]>) -> String {
         .to_string()
 }
 
-/// Corners of a tetrahedron; its faces, outward.
+/// Corners of a tetrahedron, and its faces, oriented outward.
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 4.0]];
 const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
@@ -56,7 +56,7 @@ fn corners() -> Vec<DVec3> {
     CORNERS.iter().map(|&p| DVec3::from_array(p)).collect()
 }
 
-/// Area-weighted normals of the tetrahedron's corners.
+/// Area-weighted normals at the corners of the tetrahedron.
 fn tetrahedron_normals() -> Vec<DVec3> {
     let p = corners();
     let mut sum = [DVec3::ZERO; 4];
@@ -73,14 +73,14 @@ fn tetrahedron_normals() -> Vec<DVec3> {
 fn assert_is_tetrahedron(cloud: &Cloud) {
     assert_eq!(cloud.source, NormalSource::FromMesh);
     assert_eq!(cloud.len(), 4);
-    // STL has its corners in the order of the faces.
+    // An STL file has the corners in the order of the faces.
     for (p, n) in corners().iter().zip(tetrahedron_normals()) {
         let i = cloud.position.iter().position(|q| q == p).unwrap_or_else(|| panic!("{p} is missing"));
         assert!((cloud.normal[i] - n).length() < 1e-12, "{p}: {} for {n}", cloud.normal[i]);
     }
 }
 
-/// A binary PLY in either byte order: `header` after the format line, and rows of numbers.
+/// Binary PLY in either byte order: `header` follows the format line, and rows of numbers follow the header.
 fn binary_ply(big: bool, header: &str, rows: &[(&str, f64)]) -> Vec<u8> {
     let order = if big { "big" } else { "little" };
     let mut bytes = format!("ply\nformat binary_{order}_endian 1.0\n{header}end_header\n").into_bytes();
@@ -104,7 +104,7 @@ fn binary_ply(big: bool, header: &str, rows: &[(&str, f64)]) -> Vec<u8> {
     bytes
 }
 
-/// The tetrahedron as a PLY with numbers of the given types.
+/// PLY of the tetrahedron, with scalars of the given types.
 fn tetrahedron_ply(big: bool, coordinate: &str, index: &str, length: &str) -> Vec<u8> {
     let header = format!(
         "comment a tetrahedron\nelement face 4\nproperty uchar red\nproperty list {length} {index} vertex_indices\n\
@@ -154,7 +154,7 @@ fn ply_is_read_in_any_order_type_and_byte_order() {
 
 #[test]
 fn ply_as_text_has_any_line_ends_and_faces_of_any_size() {
-    // A pyramid on a square, whose base is one face.
+    // The square base of the pyramid is one face.
     let text = "ply\nformat ascii 1.0\nobj_info x\nelement vertex 5\nproperty float32 x\nproperty float32 y\nproperty float32 z\n\
                 element face 5\nproperty list uint8 int32 vertex_index\nelement edge 1\nproperty int a\nend_header\n\
                 -1 -1 0\n1 -1 0\n1 1 0\n\n-1 1 0\n0 0 1\n4 0 3 2 1\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n";
@@ -162,7 +162,8 @@ fn ply_as_text_has_any_line_ends_and_faces_of_any_size() {
         let (cloud, _) = cloud("a.ply", text.replace('\n', end));
         assert_eq!(cloud.len(), 5);
         assert_eq!(cloud.normal[4], DVec3::Z);
-        // Every corner of the base has the whole base, of area 4 downwards, and two sides of area √2 with 1 upwards each.
+        // A corner of the base gets the area vector of the base, 4 downwards, and those of two sides of area √2, each with
+        // 1 upwards.
         for (n, p) in cloud.normal.iter().zip(&cloud.position).take(4) {
             assert!(
                 (*n - DVec3::new(p.x, p.y, -2.0).normalize_or_zero()).length() < 1e-12,
@@ -182,7 +183,7 @@ fn given_normals_win_over_faces_and_are_made_unit() {
                 0 0 -2 0 0 0\n0 0 0 1 0 0\n3 4 0 0 1 0\n3 0 1 2\n";
     let (cloud, _) = cloud("a.ply", text);
     assert_eq!(cloud.source, NormalSource::Given);
-    // The second is zero in the file: its face has one.
+    // The second normal is zero in the file, so that of its face takes its place.
     let expected = [DVec3::NEG_Z, DVec3::Z, DVec3::new(0.6, 0.8, 0.0)];
     assert!(
         cloud.normal.iter().zip(&expected).all(|(n, e)| (*n - *e).length() < 1e-15),
@@ -210,20 +211,20 @@ fn obj_is_read_with_every_form_of_index() {
         }
         assert_is_tetrahedron(&cloud("a.obj", &text).0);
     }
-    // With normals at the corners; their mean is the point's.
+    // The normal of a point is the mean of those at its corners.
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//-2 3//-2\nf 1//2 2//1 3/7/1\n";
     let (with_normals, _) = cloud("a.obj", text);
     assert_eq!(with_normals.source, NormalSource::Given);
     assert!((with_normals.normal[0] - DVec3::new(0.0, 0.5_f64.sqrt(), 0.5_f64.sqrt())).length() < 1e-15);
     assert_eq!(with_normals.normal[1], DVec3::Z);
-    // Points alone, with a normal each.
+    // The file has points with a normal each and no faces.
     let (points, _) = cloud("a.obj", "v 0 0 0\nvn 0 0 1\nv 1 0 0\nvn 0 1 0\n");
     assert_eq!((points.source, points.normal), (NormalSource::Given, vec![DVec3::Z, DVec3::Y]));
 }
 
 #[test]
-fn stl_is_read_both_ways_and_its_corners_are_joined() {
-    // Many programs begin a binary file with the word that begins a text.
+fn stl_is_read_as_text_and_binary_and_its_corners_are_merged() {
+    // Many programs begin a binary file with `solid`, like a text file.
     for name in [&b""[..], b"solid tetrahedron"] {
         let (format, _) = read("a.stl", stl_binary(name, &stl_triangles()));
         assert_eq!(format, Format::StlBinary);
@@ -269,7 +270,7 @@ fn xyz_is_read_with_any_separator_comments_and_names() {
         );
         assert_eq!(warnings, Vec::<String>::new());
     }
-    // Colours are no normals.
+    // Colours are not taken for normals.
     let (cloud, warnings) = cloud("a.xyz", "1 2 3 255 0 10\n4 5 6 7 8 9\n");
     assert_eq!((cloud.len(), cloud.normal.len()), (2, 0));
     assert!(warnings[0].contains("colours"), "{warnings:?}");
@@ -304,7 +305,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
 }
 
 #[test]
-fn content_decides_and_a_wrong_ending_is_mentioned() {
+fn content_decides_and_a_wrong_extension_gives_a_warning() {
     let (cloud, warnings) = cloud("scan.stl", tetrahedron_ply(true, "float", "int", "uchar"));
     assert_is_tetrahedron(&cloud);
     assert_eq!(warnings, ["The name ends in .stl, the content is PLY; it was read as PLY."]);
@@ -313,12 +314,12 @@ fn content_decides_and_a_wrong_ending_is_mentioned() {
 }
 
 #[test]
-fn mistakes_are_named_with_their_place_and_what_to_do() {
+fn errors_name_their_place_and_give_advice() {
     let ply = |header: &str, rows: &str| format!("ply\nformat ascii 1.0\n{header}end_header\n{rows}");
     let xyz = "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
     let face = format!("{xyz}element face 1\nproperty list uchar int vertex_indices\n");
     let table: Vec<(&str, String, &str)> = vec![
-        // name, content, what the message says
+        // File name, content, part of the message.
         ("a.xyz", String::new(), "the file is empty; choose one that holds points"),
         ("a.xyz", " \n\n".into(), "there are no points in this XYZ file"),
         ("a", "\n# nothing\n".into(), "a text file without content"),
@@ -463,7 +464,7 @@ fn binary_files_that_are_damaged_are_refused_by_row() {
 }
 
 #[test]
-fn headers_that_lie_are_refused_before_memory_is_asked_for() {
+fn headers_with_false_counts_are_refused_before_memory_is_allocated() {
     let xyz = "property double x\nproperty double y\nproperty double z\n";
     for count in ["4000000000", "18446744073709551615"] {
         for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
@@ -474,13 +475,13 @@ fn headers_that_lie_are_refused_before_memory_is_asked_for() {
                 message.contains("and 6 bytes follow; the file is cut off or its header is wrong"),
                 "{message}"
             );
-            // Each element is possible by itself.
+            // Each element alone would fit.
             let text = format!(
                 "ply\nformat {format} 1.0\nelement a 3\nproperty char a\nelement vertex 1\n{xyz}end_header\n1 2 3\n"
             );
             assert!(refused("a.ply", text).starts_with("the header promises 1 vertex rows"));
         }
-        // Rows of nothing take no time.
+        // Rows without properties take no time.
         let text =
             format!("ply\nformat ascii 1.0\nelement a {count}\nelement vertex 1\n{xyz}end_header\n1 2 3\n");
         assert_eq!(read("a.ply", text).1.position, [DVec3::new(1.0, 2.0, 3.0)]);
@@ -497,7 +498,7 @@ fn headers_that_lie_are_refused_before_memory_is_asked_for() {
 }
 
 #[test]
-fn files_of_other_kinds_and_sizes_are_refused_in_words() {
+fn files_of_other_formats_and_sizes_are_refused_with_advice() {
     for (bytes, part) in [
         (&b"\x89PNG\r\n\x1a\n"[..], "this is a PNG picture"),
         (b"PK\x03\x04rest", "this is a ZIP archive"),
@@ -526,7 +527,7 @@ fn files_of_other_kinds_and_sizes_are_refused_in_words() {
     ));
 }
 
-/// Beginnings that lead into every reader.
+/// First bytes that select each of the readers.
 const BEGINNINGS: [&str; 8] = [
     "",
     "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list char int vertex_index\nend_header\n",
@@ -542,7 +543,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_bytes_end_the_program(
+    fn no_bytes_make_a_reader_panic(
         beginning in 0..BEGINNINGS.len(),
         rest in proptest::collection::vec(any::<u8>(), 0..200),
         name in prop_oneof!["a.stl", "a.obj", "a.xyz", "a"],
@@ -552,7 +553,7 @@ proptest! {
     }
 
     #[test]
-    fn no_text_ends_the_program(
+    fn no_text_makes_a_reader_panic(
         beginning in 0..BEGINNINGS.len(),
         words in proptest::collection::vec(
             prop_oneof!["-?[0-9]{1,3}", "[-+.,;/#eE0-9]{1,6}", "[a-z]{1,4}", "\n", "vertex|endloop|element|property|list|float|int",
@@ -565,7 +566,7 @@ proptest! {
     }
 
     #[test]
-    fn files_with_a_damaged_byte_end_nothing_and_any_cut_reads_alike(
+    fn a_damaged_byte_makes_no_reader_panic_and_any_number_of_rows_per_step_reads_alike(
         big in any::<bool>(), at in any::<prop::sample::Index>(), value in any::<u8>(), rows in 1_u32..9,
     ) {
         let mut bytes = tetrahedron_ply(big, "float", "int", "uchar");
@@ -574,7 +575,7 @@ proptest! {
         let _ = read_by(5, "a", &bytes).map(made);
         let by = |rows| read_by(rows, "a", &bytes).map(|(_, mesh)| (mesh.position, mesh.faces));
         prop_assert_eq!(by(rows), by(100));
-        // Cut off anywhere, it is refused.
+        // A file that is cut off is refused, wherever the cut is.
         let cut = tetrahedron_ply(big, "float", "int", "uchar");
         prop_assert!(read_by(5, "a", &cut[..at]).is_err());
     }

@@ -1,4 +1,4 @@
-//! Every figure of the quality report, on point sets whose figures are known.
+//! Tests of every quality figure, on point sets with known figures.
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::{DVec3, Vec3};
@@ -67,8 +67,8 @@ fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
 
 const HEXAGONAL: [f64; 2] = [0.5, 0.866_025_403_784_438_6];
 
-/// The plane lattice spanned by (1, 0) and `second`, times `scale`, inside the square of half-width `half`; and that
-/// square as a clip box.
+/// Plane lattice spanned by (1, 0) and `second`, times `scale`, in the square of half-width `half`, and that square as clip
+/// box.
 fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
     let steps = (4.0 * half / scale) as i32;
     let mut points = Vec::new();
@@ -84,12 +84,12 @@ fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
     (points, Bounds::cube(half))
 }
 
-/// Options for `n` points of a lattice with cells of the given area.
+/// Options with the exact area of `n` points of a lattice with cells of area `cell`.
 fn with_area<'a>(n: usize, cell: f64) -> Options<'a> {
     Options { area: Some(n as f64 * cell), ..Options::default() }
 }
 
-/// A spiral of `n` evenly spread points on the unit sphere.
+/// `n` points of a Fibonacci spiral on the unit sphere.
 fn fibonacci(n: usize) -> Vec<Vec3> {
     let turn = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     (0..n)
@@ -176,7 +176,7 @@ fn hexagonal_lattice_is_perfect_in_every_figure() {
 
 #[test]
 fn square_lattice_has_valence_four_and_half_right_angles() {
-    // A power of two: every coordinate is exact and every square exactly cocircular.
+    // The scale is a power of two: all coordinates are exact, and the corners of each square are exactly cocircular.
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice([0.0, 1.0], scale, 1.0);
     let report = measure(&points, &[], &mut plane(), Some(&bounds), &with_area(points.len(), scale * scale));
@@ -188,16 +188,16 @@ fn square_lattice_has_valence_four_and_half_right_angles() {
     close("val_sd", f.val_sd, 0.0, 0.0);
     let centre = points.iter().position(|&p| p == Vec3::ZERO).expect("the origin is a lattice point");
     assert_eq!(report.valence[centre], 4);
-    // exp(6iθ) is 1, −1, 1, −1.
+    // exp(6iθ) of the four neighbours is 1, −1, 1, −1.
     close("psi6", f.psi6, 0.0, 1e-9);
-    // Every square is seen by its corners as four half squares that no two corners agree on.
+    // The four corners of a square see different triangulations of it, on none of which two corners agree.
     close("agree", f.agree, 0.0, 0.0);
     assert!(f.ang_min.is_nan());
 }
 
 #[test]
 fn nearly_square_lattice_has_the_figures_of_the_square() {
-    // A shear of 2 % decides every diagonal.
+    // A shear of 2 % decides the diagonal of every square.
     let scale = 1.0 / 32.0;
     let (points, bounds) = lattice([0.02, 1.0], scale, 1.0);
     let options = with_area(points.len(), scale * scale);
@@ -211,7 +211,7 @@ fn nearly_square_lattice_has_the_figures_of_the_square() {
     // The circumradius of a triangle of area 1/2 is half the product of its sides.
     let circumradius = 0.5 * (1.0_f64 + 0.02 * 0.02).sqrt() * (1.0_f64 + 0.98 * 0.98).sqrt();
     close("cover", f.cover, circumradius / (d_hex / 3.0_f64.sqrt()), 1e-4);
-    // The mean squared distance to the centre of a unit square is 1/6; the region measured cuts through a row of cells.
+    // The mean squared distance to the centre of a unit square is 1/6. The measured region cuts through a row of cells.
     close("quant", f.quant, (1.0 / 6.0) / (5.0 / (18.0 * 3.0_f64.sqrt())), 0.01);
 }
 
@@ -249,12 +249,12 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     close("tri_ok", f.tri_ok, 1.0, 2e-3);
     close("agree", f.agree, 1.0, 3e-3);
     assert_eq!((f.open, f.boundary_excluded), (0, 0));
-    // Σ (6 − valence) = 6χ on a closed triangulation; near the poles four points are almost cocircular, and every pair
-    // that holds to both diagonals adds two neighbours and two triangles too many.
+    // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost cocircular; where both diagonals
+    // are accepted, there are two neighbours and two triangles too many.
     let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
     let surplus = (f.tri_ok - 1.0) * (2 * n - 4) as f64;
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
-    // Single precision leaves the points within a rounding of the sphere.
+    // Rounding to single precision moves the points off the sphere.
     assert!(f.err_max * f.d_hex < 2e-7 && f.err_max > 0.0, "err_max = {}", f.err_max);
     assert!(f.nrm_max < 1e-4, "nrm_max = {}", f.nrm_max);
     // The flat triangles have a little less area than the sphere.
@@ -314,7 +314,7 @@ fn white_noise_has_its_known_figures() {
     // The nearest-neighbour distance of a Poisson process is Rayleigh distributed.
     close("nn_cv", f.nn_cv, (4.0 / core::f64::consts::PI - 1.0).sqrt(), 0.01);
     assert!(f.rho < 0.02, "rho = {}", f.rho);
-    // The share of the distances below x is 1 − exp(−π N x²/A).
+    // The cumulative distribution of the distances is 1 − exp(−π N x²/A).
     let first = (-(1.0_f64 - 0.01).ln() * 3.0_f64.sqrt() / 2.0 / core::f64::consts::PI).sqrt();
     close("rho_1", f.rho_1, first, 0.1 * first);
     close("tri_ok", f.tri_ok, 1.0, 0.01);
@@ -329,17 +329,17 @@ fn hole_is_measured_as_a_hole() {
     let radius = 2.5 * whole.d_hex as f32;
     points.retain(|p| p.distance(centre) > radius);
     let f = measure(&points, &[], &mut sphere(), None, &Options::default()).figures;
-    // The largest empty disc is at least the one that was cut, and at most one spacing larger.
+    // The largest empty disc is at least as large as the hole, and at most one spacing larger.
     let gap = f.cover * f.d_hex / 3.0_f64.sqrt();
     assert!(gap >= f64::from(radius) && gap < f64::from(radius) + whole.d_hex, "{gap} for {radius}");
-    // Cells round the hole are large but closed: it is bridged, and the sphere stays whole.
+    // The triangulation bridges the hole, so the sphere stays closed.
     assert_eq!((f.euler, f.open), (2, 0));
     assert!(f.gt90 > whole.gt90);
 }
 
 #[test]
 fn missed_component_and_missed_half_are_holes_too() {
-    // Two unit spheres, the second one without particles; its far pole is 5 from the first sphere.
+    // The second of two unit spheres has no particles. Its far pole is at the distance 5 from the first sphere.
     let mut pair = Analytic(|p| {
         let other = p - DVec3::X * 4.0;
         let centre = if p.x < 2.0 { p } else { other };
@@ -351,10 +351,10 @@ fn missed_component_and_missed_half_are_holes_too() {
     let f = measure(&points, &[], &mut pair, Some(&bounds), &options).figures;
     let hole = f.cover * f.d_hex / 3.0_f64.sqrt();
     close("hole", hole, 4.0, 0.05);
-    // Half of the area is missing: the mean over it of the squared distance to the first sphere.
+    // Half of the area has the mean squared distance to the first sphere.
     let mean_sq = f.quant * 5.0 / (18.0 * 3.0_f64.sqrt()) * f.area / 2000.0;
     assert!(mean_sq > 0.5 * 4.0 && mean_sq < 0.5 * 16.0, "mean square {mean_sq}");
-    // Half a sphere: the far pole is √2 from the equator.
+    // On half a sphere, the far pole is at the distance √2 from the equator.
     let half: Vec<Vec3> = points.into_iter().filter(|p| p.z > 0.0).collect();
     let bounds = Bounds::cube(1.25);
     let f = measure(&half, &[], &mut sphere(), Some(&bounds), &Options::default()).figures;
@@ -363,7 +363,7 @@ fn missed_component_and_missed_half_are_holes_too() {
 
 #[test]
 fn two_sheets_are_triangulated_apart_but_spaced_together() {
-    // Two hexagonal patches, half a spacing apart, with opposite normals.
+    // Two hexagonal patches with opposite normals are half a spacing apart.
     let scale = 1.0 / 16.0;
     let gap = 0.25 * scale;
     let (sheet, bounds) = lattice(HEXAGONAL, scale, 1.0);
@@ -397,7 +397,7 @@ fn known_displacement_is_the_residual_and_tilted_normals_are_seen() {
     close("err_max", f.err_max, 0.01, 1e-8);
     close("err_mean", f.err_mean, 0.005, 1e-5);
     close("residual", f64::from(report.residual[1]), 0.01 * scale, 1e-9);
-    // Either sign of the normal.
+    // The sign of the normal does not matter.
     close("nrm_mean", f.nrm_mean, 5.0, 1e-4);
     close("nrm_max", f.nrm_max, 5.0, 1e-4);
 }
@@ -411,12 +411,12 @@ fn touching_the_box_from_inside_is_no_border_and_crossing_it_is() {
 
     let cut = Bounds { min: [-2.0, -2.0, -2.0], max: [2.0, 2.0, 0.5] };
     let points: Vec<Vec3> = points.into_iter().filter(|&p| cut.contains(p)).collect();
-    // The sphere below z = 1/2 has the area 2π · 3/2.
+    // The part of the sphere below z = 1/2 has the area 2π · 3/2.
     let area = 3.0 * core::f64::consts::PI;
     let options = Options { area: Some(area), ..Options::default() };
     let f = measure(&points, &[], &mut sphere(), Some(&cut), &options).figures;
     println!("{f:#?}");
-    // The zone between the border at 60° from the pole and where the chord to it is 4 d_hex.
+    // The zone extends from the border, 60° from the pole, to where the chord to the border is 4 d_hex.
     let arc = 2.0 * (2.0 * f.d_hex).asin();
     let zone = core::f64::consts::TAU * (0.5 - (60.0_f64.to_radians() + arc).cos());
     let wanted = zone / area * points.len() as f64;
@@ -439,10 +439,10 @@ fn edges_are_compared_with_the_wanted_radii() {
     close("equal radii", measured(Sizes::Given(&equal)), 0.0, 1e-4);
     close("local radii", measured(Sizes::Local), 0.0, 1e-4);
     assert!(measured(Sizes::None).is_nan());
-    // Sums of radii are 6 in one half and 2 in the other: |P − Q| / sum has the values s/6 and s/2.
+    // The sum of radii is 6 in one half and 2 in the other, so |P − Q| / sum has the values s/6 and s/2.
     let unequal: Vec<f32> = points.iter().map(|p| if p.x > 0.0 { 3.0 } else { 1.0 }).collect();
     close("two sizes", measured(Sizes::Given(&unequal)), 0.5, 0.03);
-    // Constant curvature: the variation of the edges themselves.
+    // With constant curvature, the variation is that of the edges themselves.
     let points = fibonacci(2000);
     let curvature = Sizes::Curvature { lowest: 0.1, highest: 10.0 };
     let options = Options { sizes: curvature, ..Options::default() };
@@ -450,8 +450,9 @@ fn edges_are_compared_with_the_wanted_radii() {
     close("size_cv", f.size_cv, f.edge_cv, 1e-6);
 }
 
-/// A hexagonal lattice in the logarithm: sizes grow in proportion to the distance from the origin, six neighbours each.
-/// Points in the square from 0.55 to 1.35, and half the distance of neighbours at each, to first order in `step`.
+/// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance from the origin, and each
+/// point has six neighbours. Returns the points in the square from 0.55 to 1.35 and their radii, which are half the distance
+/// of neighbours to first order in `step`.
 fn growing_lattice(step: f64) -> (Vec<Vec3>, Vec<f32>) {
     let (mut points, mut radii) = (Vec::new(), Vec::new());
     let reach = (1.0 / step) as i64 + 2;
@@ -488,7 +489,7 @@ fn smoothly_growing_particles_are_measured_against_their_own_size() {
     let variation = (ratios.iter().map(|r| (r - mean) * (r - mean)).sum::<f64>() / 3.0).sqrt() / mean;
     close("size_cv", f.size_cv, variation, 1e-5);
     close("overlap_min", f.overlap_min, ratios.into_iter().fold(1.0, f64::min), 1e-4);
-    // The cells fill the square but for the cut ones at its edge.
+    // The cells fill the square, except for those that its edge cuts.
     close("cover_local", f.cover_local, 1.0, 0.03);
     assert!(f.edge_cv > 0.1 && f.cover > 1.2, "the sizes differ: {} {}", f.edge_cv, f.cover);
     assert_eq!(f.six, 1.0);
@@ -511,7 +512,8 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let options = Options { area: Some(0.64), sizes: Sizes::Given(&radius), ..Options::default() };
         measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
     };
-    // Without a point the six around it are a spacing away from its place: √3 times as far as from an ideal hole.
+    // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of an
+    // ideal triangle.
     let root_3 = 3.0_f64.sqrt();
     let small = hole_at(Vec3::new(0.72, 0.72, 0.0));
     close("cover_local, small", small.cover_local, root_3, 0.05);
@@ -568,7 +570,7 @@ fn degenerate_input_gives_undefined_figures_and_no_panic() {
     assert_eq!(same.figures.dup, 4999);
     let bad = degenerate(&[Vec3::X, Vec3::NAN, Vec3::Y, Vec3::INFINITY, Vec3::MAX, Vec3::Z], &[]);
     assert_eq!(bad.figures.not_finite, 2);
-    // A row, a plane through the sphere, a solid cube: nothing that samples the surface.
+    // A row, a plane through the sphere and a solid cube do not sample the surface.
     degenerate(&(0..300).map(|i| Vec3::X * (i as f32 * 1e-3)).collect::<Vec<_>>(), &[]);
     let (flat, _) = lattice([0.0, 1.0], 0.125, 1.0);
     degenerate(&flat, &vec![Vec3::NAN; flat.len()]);

@@ -1,4 +1,4 @@
-//! Fields from points: the fit, its failures, and the evaluation against the sum in double precision.
+//! Tests of fields from points: the fit, its errors, and the evaluation against the sum in double precision.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::Field;
@@ -18,7 +18,7 @@ fn of_model(id: &str) -> Fit {
     models::begin(model).finish().unwrap_or_else(|error| panic!("{id}: {error}"))
 }
 
-/// Points of an ellipsoid, evenly spread along a spiral.
+/// Points of an ellipsoid along a spiral, evenly spread.
 fn ellipsoid(count: usize) -> Cloud {
     let axes = DVec3::new(1.0, 0.7, 0.5);
     let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
@@ -46,7 +46,7 @@ fn sampled(fit: Fit, settings: &Settings) -> (Session, Report) {
     (session, report)
 }
 
-/// Numbers of −1 … 1.
+/// Pseudo-random numbers between −1 and 1.
 struct Random(Pcg64Mcg);
 
 impl Random {
@@ -82,7 +82,7 @@ fn the_field_vanishes_at_the_points_and_has_their_normals_as_gradients() {
 }
 
 #[test]
-fn points_between_the_centres_are_met_within_a_few_thousandths() {
+fn points_between_the_centres_are_within_a_few_thousandths_of_the_surface() {
     let (few, many) = (ellipsoid(100), ellipsoid(4000));
     let fitter = Fitter::new(&few, many.position, ModelInfo::default()).expect("good points");
     let info = fitter.finish().expect("a field").info;
@@ -92,7 +92,7 @@ fn points_between_the_centres_are_met_within_a_few_thousandths() {
 }
 
 #[test]
-fn derivatives_are_those_of_differences() {
+fn derivatives_agree_with_differences() {
     let data = of_model("bunny").data;
     let mut random = Random::new(7);
     let h = 1e-5;
@@ -106,7 +106,7 @@ fn derivatives_are_those_of_differences() {
             let (ahead, behind) = (data.jet(p + step), data.jet(p - step));
             let slope = (ahead.value - behind.value) / (2.0 * h);
             assert!((slope - jet.gradient[axis]).abs() < 1e-5, "∂{axis} at {p}: {slope} {}", jet.gradient);
-            // Near a centre the third derivative is large, and a difference errs by it.
+            // Near a centre the third derivative, and with it the error of a difference, is large.
             let bend = (ahead.gradient - behind.gradient) / (2.0 * h);
             let nearest = data.centres.iter().map(|&c| p.distance(DVec3::from_array(c))).fold(1.0, f64::min);
             let allowed = 1e-4 + 1e-7 / nearest;
@@ -115,7 +115,7 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
-/// Places on the surface and off it, near a centre, on the faces of the octree's cells, and far away.
+/// Points on the surface and off it, near a centre, on the faces of the octree's cells, and far away.
 fn places(fit: &Fit) -> Vec<Vec3> {
     let mut random = Random::new(11);
     let mut places = Vec::new();
@@ -155,7 +155,7 @@ fn batches_agree_with_the_sum_in_double_precision() {
         for (i, &p) in places.iter().enumerate() {
             let jet = fit.data.jet(p.as_dvec3());
             let size = jet.gradient.length().max(1.0);
-            // The coordinates are of the order of 1. Away from the surface cells are larger and coarser.
+            // The coordinates are of the order of 1. Away from the surface the cells are larger and less accurate.
             let off = (f64::from(value[i]) - jet.value).abs();
             let allowed = if jet.value.abs() < 1e-3 { 3e-5 } else { 2e-4 * (1.0 + jet.value.abs()) };
             assert!(off < allowed * size, "{id}: {} for {} at {p}", value[i], jet.value);
@@ -177,7 +177,7 @@ fn batches_agree_with_the_sum_in_double_precision() {
                 distances.push(off / jet.gradient.length());
             }
         }
-        // On the surface: a tenth of the tolerance of particles of the default radius, three times in four.
+        // On the surface, three quarters of the errors are within a tenth of the tolerance of particles of the default radius.
         distances.sort_by(f64::total_cmp);
         let quartile = distances[distances.len() * 3 / 4] / fit.bounds.diagonal();
         assert!(quartile < 6e-7, "{id}: {quartile:e} of the diagonal");
@@ -189,7 +189,7 @@ fn exact_gradients_are_those_of_the_jet() {
     let fit = of_model("bunny");
     let mut field = RbfField::new(fit.data.clone()).expect("a field");
     let mut places = places(&fit);
-    // A centre, too, where single precision can name one.
+    // The points include a centre that single precision represents exactly, if there is one.
     let mut data = fit.data.clone();
     data.centres[7] = [0.5, -0.25, 0.125];
     places.push(Vec3::new(0.5, -0.25, 0.125));
@@ -200,7 +200,7 @@ fn exact_gradients_are_those_of_the_jet() {
         field.exact_gradients(&places, &mut value, &mut gradient);
         for (i, &p) in places.iter().enumerate() {
             let jet = data.jet(p.as_dvec3());
-            // Hundreds of terms cancel.
+            // The tolerance allows for the cancellation of hundreds of terms.
             let size = 1e-11 * (1.0 + jet.value.abs() + jet.gradient.length());
             assert!((value[i] - jet.value).abs() < size, "{} for {} at {p}", value[i], jet.value);
             assert!(gradient[i].distance(jet.gradient) < size, "{} for {} at {p}", gradient[i], jet.gradient);
@@ -209,7 +209,7 @@ fn exact_gradients_are_those_of_the_jet() {
 }
 
 #[test]
-fn a_points_result_depends_on_nothing_but_the_point() {
+fn the_result_at_a_point_depends_on_the_point_alone() {
     let fit = of_model("rabbit");
     let places = places(&fit);
     let n = places.len();
@@ -217,7 +217,7 @@ fn a_points_result_depends_on_nothing_but_the_point() {
     let mut value = vec![0.0; n];
     let mut gradient = vec![Vec3::ZERO; n];
     field.gradients(&places, &mut value, &mut gradient);
-    // Alone, in another order, with cells made by other points, and without or with more derivatives.
+    // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more derivatives.
     let mut other = RbfField::new(fit.data).expect("a field");
     let mut hessian = [Sym3::<f32>::default()];
     for i in (0..n).rev() {
@@ -246,11 +246,11 @@ fn a_centre_is_an_ordinary_point() {
 }
 
 #[test]
-fn other_units_and_places_give_the_same_field() {
+fn the_field_is_invariant_under_scaling_and_translation() {
     let cloud = models::cloud("bunny").expect("points");
     let plain = fitted(&cloud).expect("a field");
     let (_, expected) = sampled(plain.clone(), &Settings { radius_share: 0.01, ..Settings::default() });
-    // By a power of two every bit is the same.
+    // Scaling by a power of two keeps every bit.
     let scale = 2.0_f64.powi(-20);
     let small =
         fitted(&Cloud { position: cloud.position.iter().map(|&p| p * scale).collect(), ..cloud.clone() })
@@ -267,7 +267,7 @@ fn other_units_and_places_give_the_same_field() {
     a.values(&scaled, &mut of_a);
     b.values(&places, &mut of_b);
     assert_eq!(of_a, of_b.iter().map(|value| value * scale as f32).collect::<Vec<_>>());
-    // A hundred model sizes away single precision has two digits less.
+    // A hundred model sizes from the origin, single precision has two digits less.
     let away = DVec3::new(200.0, -150.0, 90.0);
     let far = Cloud { position: cloud.position.iter().map(|&p| p * 0.3 + away).collect(), ..cloud };
     let (_, report) =
@@ -278,7 +278,7 @@ fn other_units_and_places_give_the_same_field() {
 }
 
 #[test]
-fn the_models_have_one_closed_piece_and_the_joined_ears_a_handle() {
+fn the_models_have_one_closed_component_and_the_joined_ears_a_handle() {
     for (id, euler) in [("bunny", 2), ("bunny-joined", 0), ("rabbit", 2), ("sack-and-hat", 2)] {
         let (_, report) = sampled(of_model(id), &Settings { radius_share: 0.003, ..Settings::default() });
         let quality = report.quality.expect("there are particles");
@@ -291,7 +291,7 @@ fn the_models_have_one_closed_piece_and_the_joined_ears_a_handle() {
 
 #[test]
 fn the_models_have_nothing_outside_of_their_box() {
-    // A dense search: a grid whose cells are smaller than the thinnest part of any model.
+    // The search is dense: the cells of its grid are smaller than the thinnest part of any model.
     const NODES: usize = 61;
     for model in MODELS {
         let fit = of_model(model.id);
@@ -318,7 +318,7 @@ fn the_models_have_nothing_outside_of_their_box() {
 }
 
 #[test]
-fn cut_into_single_steps_the_fit_is_the_same() {
+fn the_fit_does_not_depend_on_the_budget_per_step() {
     let cloud = ellipsoid(60);
     let whole = fitted(&cloud).expect("a field");
     let mut fitter = Fitter::new(&cloud, cloud.position.clone(), ModelInfo::default()).expect("good points");
@@ -336,7 +336,7 @@ fn cut_into_single_steps_the_fit_is_the_same() {
 }
 
 #[test]
-fn hopeless_points_are_refused_with_the_reason() {
+fn unusable_points_are_refused_with_the_reason() {
     let good = ellipsoid(30);
     let with = |change: &dyn Fn(&mut Cloud)| {
         let mut cloud = good.clone();
@@ -355,7 +355,8 @@ fn hopeless_points_are_refused_with_the_reason() {
     let plane = with(&|c| c.position.iter_mut().for_each(|p| p.z = 0.25));
     assert_eq!(plane, FitError::Cloud(CloudError::Plane));
     assert!(near.to_string().contains("points 4 and 20 are the same"), "{near}");
-    // Two points as near as they may be, with normals that point at each other: solved, and said to be doubtful or not.
+    // Two points are as near as allowed, with normals that point at each other. The system is solved, with or without a
+    // warning.
     let mut cloud = good;
     cloud.position[20] = cloud.position[4] + DVec3::X * 3e-6;
     cloud.normal[20] = -cloud.normal[4];
@@ -368,7 +369,7 @@ fn hopeless_points_are_refused_with_the_reason() {
 }
 
 #[test]
-fn bytes_hold_a_field_and_nothing_else_is_taken_for_one() {
+fn bytes_hold_a_field_and_other_bytes_are_refused() {
     let data = fitted(&ellipsoid(20)).expect("a field").data;
     let bytes = data.to_bytes();
     assert_eq!(bytes.len(), 8 + 20 * 56);

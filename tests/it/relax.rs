@@ -1,5 +1,5 @@
-//! The relaxation of paper §4.5: the energy falls at every step, holes and crowded pairs shrink, nothing leaves the
-//! surface.
+//! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and particles stay
+//! on the surface.
 
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -33,12 +33,12 @@ fn before_and_after(surface: &gallery::Surface, settings: &Settings) -> (Particl
     (before, sampler)
 }
 
-/// Share in which particles repel each other whose normals have this cosine: all up to 60°, nothing from 120°.
+/// Weight of the repulsion of two particles whose normals have this cosine: 1 up to 60°, 0 from 120°.
 fn same_sheet_weight(cosine: f32) -> f64 {
     (0.5 + f64::from(cosine)).clamp(0.0, 1.0)
 }
 
-/// Energy per particle by its definition, over all pairs: along one axis, so that most are known to be too far apart.
+/// Energy per particle by its definition, over all pairs. A sweep along one axis excludes most of the pairs.
 fn energy(particles: &Particles, radius: f64) -> f64 {
     let Particles { position, normal, .. } = particles;
     let mut order: Vec<usize> = (0..particles.len()).collect();
@@ -57,14 +57,14 @@ fn energy(particles: &Particles, radius: f64) -> f64 {
     sum / particles.len() as f64
 }
 
-/// The energy by its definition before the first relaxation step and after each, and what the sampler reports.
+/// Energies by the definition before the first relaxation step and after each step, and those that the sampler reports.
 fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f64>) {
     let mut field = surface.field();
     let mut sampler = Sampler::new();
     sampler.start(&mut field, &surface.bounds, settings).expect("valid settings");
     while sampler.step(&mut field, 100_000).phase != Phase::Relaxation {}
     let mut defined = Vec::new();
-    // A unit at a time: the particles of a step that has been accepted, before the next one moves any.
+    // Steps of one unit of work catch the particles of an accepted step before the next one moves any.
     while sampler.step(&mut field, 1).stop_reason.is_none() {
         if sampler.energy().len() > defined.len() {
             defined.push(energy(sampler.particles(), sampler.radius()));
@@ -75,8 +75,8 @@ fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f
 
 #[test]
 fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
-    // Where nearly every particle has a neighbour across a bend that the radius does not resolve, the forces of the
-    // distances lower the energy no further, and the relaxation ends before its tenth step.
+    // If nearly every particle has a neighbour across a bend that the radius does not resolve, the forces do not lower the
+    // energy any further, and the relaxation ends before its tenth step.
     let end_early = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_share in [0.006, 0.01, 0.015, 0.02, 0.03, 0.05] {
@@ -95,7 +95,7 @@ fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
 }
 
 #[test]
-fn how_a_relaxation_is_cut_into_steps_does_not_change_it_where_steps_are_taken_back() {
+fn cutting_a_relaxation_into_steps_changes_nothing_even_if_moves_are_taken_back() {
     let surface = gallery::find("double-torus").expect("a gallery surface");
     let settings = Settings { radius_share: 0.03, seed: 1, ..Settings::default() };
     let run = |budget: u32| {
@@ -106,7 +106,7 @@ fn how_a_relaxation_is_cut_into_steps_does_not_change_it_where_steps_are_taken_b
         sampler
     };
     let whole = run(u32::MAX);
-    // Two evaluations per particle and step, and two at the end; the rest are those of steps taken back.
+    // There are two evaluations per particle and step, and two at the end. The others are those of rejected steps.
     let evaluations = whole.counts().relaxation_evaluations;
     assert!(evaluations > 22 * whole.particles().len() as u64, "no step was taken back: {evaluations}");
     for budget in [1, 7, 100] {
@@ -181,7 +181,7 @@ fn relaxed_particles_stay_on_the_surface_and_in_the_box() {
             residual.push(jet.value.abs() / jet.gradient.length() / sampler.radius());
         }
         residual.sort_by(f64::total_cmp);
-        // Near a singular point the first-order distance means nothing; one particle in a hundred may sit there.
+        // Near a singular point the first-order distance is meaningless. One particle in a hundred may be there.
         let share = if surface.smooth { 1.0 } else { 0.99 };
         let most = residual[((residual.len() - 1) as f64 * share) as usize];
         assert!(most < 2e-4, "{}: residual {most} r", surface.id);

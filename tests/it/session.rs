@@ -1,4 +1,4 @@
-//! What a user of the whole core sees: a field, a run, a report.
+//! Tests of the session: fields, runs and reports.
 
 use marching_particles::json;
 use marching_particles::math::Bounds;
@@ -45,13 +45,13 @@ fn the_figures_of_the_front_do_not_depend_on_the_steps() {
     };
     let whole = before(u32::MAX);
     assert!(whole.six > 0.5);
-    // As text, because an undefined figure is not equal to itself.
+    // Compared as text, because an undefined figure is not equal to itself.
     assert_eq!(format!("{:?}", before(1)), format!("{whole:?}"));
     assert_eq!(format!("{:?}", before(1_234)), format!("{whole:?}"));
 }
 
 #[test]
-fn a_report_cut_into_single_pieces_is_the_same_report() {
+fn a_report_cut_into_single_slices_is_the_same_report() {
     let text = |report| serde_json::to_string(&report).expect("a report can be written");
     let mut session = Session::new();
     run(&mut session, &sized(900), u32::MAX);
@@ -69,13 +69,13 @@ fn a_report_cut_into_single_pieces_is_the_same_report() {
         };
         assert!(calls * budget > 100 && (calls > 2 || budget > 100), "{calls} calls of {budget}");
         assert_eq!(text(report), whole);
-        // As text, because an undefined figure is not equal to itself.
+        // Compared as text, because an undefined figure is not equal to itself.
         assert_eq!(format!("{:?}", cut.measured()), format!("{columns:?}"));
     }
 }
 
 #[test]
-fn a_report_that_something_comes_between_is_begun_anew() {
+fn a_report_is_begun_anew_after_a_change() {
     let mut session = Session::new();
     run(&mut session, &sized(900), u32::MAX);
     assert!(session.measure(300).is_none());
@@ -91,7 +91,7 @@ fn a_report_that_something_comes_between_is_begun_anew() {
         report.quality_before.is_some(),
         "the front is measured though the first measurement was given up"
     );
-    // On another field they are measured anew too.
+    // On another field the particles are measured anew too.
     let ball = request(r#"{"formula":"x^2+y^2+z^2-1"}"#);
     assert!(session.measure(300).is_none());
     session.set_field(&ball).unwrap();
@@ -133,7 +133,7 @@ fn the_count_is_met_within_three_percent() {
 }
 
 #[test]
-fn a_count_that_cannot_be_met_is_said_to_be_missed() {
+fn a_count_that_cannot_be_met_gives_a_warning() {
     let said = |field: &str, count: u32| {
         let mut session = Session::new();
         session.set_field(&request(field)).expect("a field");
@@ -151,7 +151,7 @@ fn a_count_that_cannot_be_met_is_said_to_be_missed() {
         );
         is_said
     };
-    // A strip narrower than its particles, and bars thinner than theirs.
+    // The surfaces are a strip narrower than its particles and bars thinner than theirs.
     assert!(said(r#"{"formula":"x","bounds":{"min":[-1,-1,-1e-4],"max":[1,1,1e-4]}}"#, 500));
     assert!(said(r#"{"surface":"decocube"}"#, 10));
     assert!(!said(r#"{"surface":"decocube"}"#, 1000));
@@ -159,7 +159,7 @@ fn a_count_that_cannot_be_met_is_said_to_be_missed() {
 }
 
 #[test]
-fn cancelling_keeps_what_is_there() {
+fn cancelling_keeps_the_particles() {
     for budget in [100, 2_000, 6_000, 20_000] {
         let mut session = Session::new();
         session.start(&sized(2_000)).unwrap();
@@ -185,7 +185,7 @@ fn cancelling_keeps_what_is_there() {
 }
 
 #[test]
-fn another_field_ends_the_run_and_its_particles_stay() {
+fn another_field_ends_the_run_and_keeps_its_particles() {
     let changes = [
         r#"{"formula":"x y z"}"#,
         r#"{"bounds":{"min":[-2,-2,-2],"max":[2,2,2]}}"#,
@@ -261,7 +261,7 @@ fn parameters_can_be_declared_and_set() {
 }
 
 #[test]
-fn surfaces_that_are_not_there_are_said_so() {
+fn a_surface_without_zeros_is_reported() {
     let cases = [
         ("x^2+y^2+z^2+1", StopReason::NoSurface),
         ("0*x+3", StopReason::Constant),
@@ -364,7 +364,7 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     use marching_particles::field::rbf::RbfData;
     use marching_particles::session::FieldKind;
 
-    // r³ − 1, a sphere: one centre with α = 1 falls to 0 at the centre, and a far one with a small share adds a constant.
+    // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small coefficient adds a constant.
     let data = RbfData {
         centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
         alpha: vec![1.0, -1e-9],
@@ -385,7 +385,7 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     assert_eq!(report.quality.expect("particles").euler, 2);
     assert!(session.particles().position.iter().all(|p| (p.length() - 1.0).abs() < 1e-2));
 
-    // Only the box of such a field can be changed; a bad one changes nothing.
+    // Only the box of such a field can be changed. An invalid box changes nothing.
     let smaller = FieldRequest { bounds: Some(Bounds::cube(1.2)), ..FieldRequest::default() };
     let answer = session.set_field(&smaller).expect("a box");
     assert_eq!((answer.kind, answer.bounds), (FieldKind::Points, Bounds::cube(1.2)));
@@ -432,7 +432,7 @@ fn a_field_that_stays_is_surveyed_once_and_sampled_alike() {
     fresh.start(&fine).expect("valid settings");
     assert_eq!(finish(&mut fresh).0, seen[1].0);
 
-    // What changes the field or the box brings the survey back.
+    // A change of the field or of the box discards the survey.
     let parameter = FieldRequest { parameters: [("a".into(), 0.9)].into(), ..FieldRequest::default() };
     let boxed = FieldRequest { bounds: Some(Bounds::cube(1.5)), ..FieldRequest::default() };
     for request in [parameter, boxed] {

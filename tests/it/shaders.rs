@@ -1,5 +1,5 @@
-//! Every shader, without a GPU: it is valid WGSL, translates to GLSL ES 3.00 as wgpu's WebGL2 back end
-//! translates it, and reads the bytes where the Rust side writes them.
+//! Tests of the shaders without a GPU: each is valid WGSL, translates to GLSL ES 3.00 as in wgpu's WebGL2 back end, and has the
+//! layout of the data that the Rust side writes.
 
 use marching_particles::render::layout::{COLOUR_ATTRIBUTES, Frame, RECORD_ATTRIBUTES};
 use marching_particles::render::shaders::{SHADERS, Shader};
@@ -8,7 +8,7 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ScalarKind, ShaderStage, TypeInner, VectorSize};
 use std::path::Path;
 
-/// Parses and validates one shader; WebGL2 and WebGPU without optional features grant no capability.
+/// Parses and validates a shader, without the capabilities of optional features.
 fn validated(name: &str, source: &str) -> (Module, ModuleInfo) {
     let module = naga::front::wgsl::parse_str(source)
         .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(source, name)));
@@ -28,7 +28,7 @@ fn shaders() -> Vec<(&'static str, Module, ModuleInfo)> {
         .collect()
 }
 
-/// GLSL ES 3.00 of one entry point, with the flags of wgpu's WebGL2 back end, and the number of uniform blocks in it.
+/// GLSL ES 3.00 of an entry point, translated with the flags of wgpu's WebGL2 back end, and its number of uniform blocks.
 fn glsl(name: &str, module: &Module, info: &ModuleInfo, entry: &naga::EntryPoint) -> (String, usize) {
     let options = glsl::Options {
         version: glsl::Version::Embedded { version: 300, is_webgl: true },
@@ -83,7 +83,7 @@ fn every_entry_point_translates_to_glsl_es_300() {
     assert!(translated >= 2 * SHADERS.len(), "{translated} entry points");
 }
 
-/// The stripped text means the same as the file.
+/// The stripped text has the meaning of the file.
 #[test]
 fn lean_shaders_translate_like_their_files() {
     for shader in SHADERS {
@@ -104,7 +104,7 @@ fn lean_shaders_translate_like_their_files() {
 }
 
 #[test]
-fn uniform_blocks_have_the_layout_of_their_rust_twins() {
+fn uniform_blocks_have_the_layout_of_the_rust_structs() {
     for (name, module, _) in shaders() {
         let frame = module
             .global_variables
@@ -123,7 +123,7 @@ fn uniform_blocks_have_the_layout_of_their_rust_twins() {
     }
 }
 
-/// What the disc shader declares for its attributes is what the pipeline feeds it.
+/// The disc shader declares the attributes that the pipeline provides.
 #[test]
 fn vertex_inputs_match_the_attribute_tables() {
     let mut checked = 0;
@@ -173,7 +173,7 @@ fn components(inner: &TypeInner) -> usize {
     }
 }
 
-/// Words that WGSL reserves and naga nevertheless takes as names; browsers refuse them.
+/// naga accepts words that WGSL reserves as names, but browsers refuse them.
 #[test]
 fn no_name_is_a_reserved_word() {
     for Shader { name, source, .. } in SHADERS {
@@ -341,7 +341,7 @@ const RESERVED: &[&str] = &[
     "yield",
 ];
 
-/// Vertex and fragment stages of one file agree on what passes between them.
+/// The vertex and fragment stages of a file agree on the data that passes between them.
 #[test]
 fn stages_pass_on_the_same_struct() {
     for (name, module, _) in shaders() {

@@ -1,5 +1,5 @@
-//! The sizes of adaptive particles (paper §5): they follow the law, grow no faster than the slope, and the relaxation
-//! evens them out.
+//! Tests of the radius field in adaptive sampling (paper §5): radii follow the radius law, respect the grading, and the
+//! relaxation evens them out.
 
 use marching_particles::differential::{Curvature, curvatures};
 use marching_particles::field::gallery::{self, SURFACES, Surface};
@@ -34,7 +34,7 @@ fn figures(surface: &Surface, particles: &Particles) -> Figures {
     quality::measure(position, normal, &mut surface.field(), Some(&surface.bounds), &options).figures
 }
 
-/// Pairs of one sheet nearer than `reach` times the sum of their radii.
+/// Pairs of particles of a sheet that are nearer than `reach` times the sum of their radii.
 fn pairs(particles: &Particles, reach: f32) -> Vec<(usize, usize, f32)> {
     let largest = particles.radius.iter().fold(0.0_f32, |a, &b| a.max(b));
     let mut grid = CellGrid::new(largest);
@@ -43,7 +43,7 @@ fn pairs(particles: &Particles, reach: f32) -> Vec<(usize, usize, f32)> {
     }
     let (mut found, mut pairs) = (Vec::new(), Vec::new());
     for i in 0..particles.len() {
-        // Of a pair, the larger particle finds the smaller one.
+        // The larger particle of a pair finds the smaller one.
         grid.gather(particles.position[i], 2.0 * reach * particles.radius[i], &mut found);
         for near in &found {
             let j = near.index as usize;
@@ -78,7 +78,7 @@ fn neighbours_never_differ_by_more_than_the_grading_allows() {
                     surface.id,
                     (a - b).abs() / distance,
                 );
-                // What touches obeys the documented ratio.
+                // Particles that touch obey the documented ratio.
                 if distance <= a + b {
                     let most = (1.0 + grading as f32) / (1.0 - grading as f32);
                     assert!(a.max(b) / a.min(b) <= 1.000_1 * most, "{}: {a} beside {b}", surface.id);
@@ -133,7 +133,7 @@ fn the_energy_of_the_overlaps_falls_at_every_step_on_every_smooth_surface() {
 
 #[test]
 fn the_reported_energy_is_that_of_all_overlaps() {
-    // A surface whose law needs no grading: that comes last and lowers radii.
+    // The radius law of this surface needs no grading, which would lower radii afterwards.
     let surface = gallery::find("ellipsoid").expect("in the gallery");
     for steps in [1, 10] {
         let sampler = sampled(surface, &adaptive(4_000, steps));
@@ -145,7 +145,7 @@ fn the_reported_energy_is_that_of_all_overlaps() {
         }
         let exact = sum / particles.len() as f64;
         let reported = *sampler.energy().last().expect("an energy");
-        // The last radii are brought up to date after the last energy.
+        // The radii are updated once more after the last energy is computed.
         assert!((reported / exact - 1.0).abs() < 3e-3, "{reported} reported, {exact} summed");
     }
 }
@@ -169,19 +169,19 @@ fn ten_steps_fit_the_particles_to_their_sizes() {
 }
 
 #[test]
-fn more_steps_can_follow_and_a_run_cut_into_pieces_is_the_same_run() {
+fn more_steps_can_follow_and_cutting_a_run_into_slices_changes_nothing() {
     let surface = gallery::find("ellipsoid").expect("in the gallery");
     let whole = sampled(surface, &adaptive(2_000, 6));
     let mut field = surface.field();
-    let mut pieces = Sampler::new();
-    pieces.start(&mut field, &surface.bounds, &adaptive(2_000, 6)).expect("valid settings");
-    while pieces.step(&mut field, 17).stop_reason.is_none() {}
-    assert_eq!(pieces.particles().digest(), whole.particles().digest());
-    let before = *pieces.energy().last().expect("an energy");
-    pieces.relax(4);
-    while pieces.step(&mut field, 1_000).stop_reason.is_none() {}
-    assert_eq!(pieces.energy().len(), 11);
-    assert!(*pieces.energy().last().expect("an energy") < before);
+    let mut sliced = Sampler::new();
+    sliced.start(&mut field, &surface.bounds, &adaptive(2_000, 6)).expect("valid settings");
+    while sliced.step(&mut field, 17).stop_reason.is_none() {}
+    assert_eq!(sliced.particles().digest(), whole.particles().digest());
+    let before = *sliced.energy().last().expect("an energy");
+    sliced.relax(4);
+    while sliced.step(&mut field, 1_000).stop_reason.is_none() {}
+    assert_eq!(sliced.energy().len(), 11);
+    assert!(*sliced.energy().last().expect("an energy") < before);
 }
 
 #[test]
