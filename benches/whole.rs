@@ -1,10 +1,10 @@
 //! Benchmark of whole runs and their phases on the ellipsoid with semi-axes 1, 0.7 and 0.5, beside a mesher.
 //!
-//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` runs a million particles, and
-//! without an argument both run. Each ends with three measurements:
+//! `cargo bench --bench whole -- quick` runs the sizes of the paper's smaller tables, `-- full` runs a million
+//! particles, and without an argument both run. Each ends with three measurements:
 //!
-//! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices on the same field, timed
-//!   alternately so that a busy machine disturbs both alike;
+//! * the ratio of the whole run to naive surface nets (`fast-surface-nets`) with as many vertices on the same field,
+//!   timed alternately so that a busy machine disturbs both alike;
 //! * the share of the run that the search for all components takes;
 //! * the whole run on the bunny of 200 points, uniform and adaptive, alternating with the uniform one on the ellipsoid.
 #![allow(clippy::disallowed_methods, reason = "a bench measures time")]
@@ -39,8 +39,8 @@ struct Job {
 }
 
 impl Job {
-    /// Job whose radius gives about `count` particles. A run that meets the count finds the radius, so that the timed runs
-    /// do the front once.
+    /// Job whose radius gives about `count` particles. A run that meets the count finds the radius, so that the timed
+    /// runs do the front once.
     fn new(count: u32) -> Self {
         let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
         let by_count = Settings {
@@ -179,8 +179,8 @@ fn full(criterion: &mut Criterion) {
     }
 }
 
-/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the system
-/// does not report it.
+/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the
+/// system does not report it.
 fn processor_seconds(start: Instant) -> f64 {
     std::fs::read_to_string("/proc/thread-self/schedstat")
         .ok()
@@ -228,8 +228,8 @@ fn ratio(count: u32, rounds: usize) {
     );
 }
 
-/// Prints the share of a run of `count` particles that finding a first point on every component takes: the survey, the proof,
-/// and the check of every candidate.
+/// Prints the share of a run of `count` particles that finding a first point on every component takes: the survey, the
+/// proof, and the check of every candidate.
 fn search_share(id: &str, count: u32, rounds: usize) {
     let surface = gallery::find(id).expect("a gallery surface");
     let mut field = surface.field();
@@ -276,8 +276,8 @@ fn search_share(id: &str, count: u32, rounds: usize) {
     );
 }
 
-/// Prints the time per particle of a whole run on the bunny, for the first run, which makes the field's cells, and for later
-/// ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
+/// Prints the time per particle of a whole run on the bunny, for the first run, which makes the field's cells, and for
+/// later ones. They alternate with the uniform run on the ellipsoid, which shows how busy the machine is.
 fn bunny(count: u32, rounds: usize) {
     let model = model::find("bunny").expect("the bunny is a model");
     let fit = models::begin(model).finish().expect("the bunny is solved for");

@@ -56,8 +56,8 @@ struct Disc {
 // Padding of the quad beyond the rim, in pixels. Half a pixel holds the antialiased edge; the other half is a reserve,
 // because a pixel is shaded only if its centre is in the quad.
 const PAD_PX = 1.0;
-// Largest extent of a quad in the plane of the disc, in radii. A larger quad is widened on the screen at constant depth:
-// in the plane, the padding of a disc seen edge-on would cut through its neighbours.
+// Largest extent of a quad in the plane of the disc, in radii. A larger quad is widened on the screen at constant
+// depth: in the plane, the padding of a disc seen edge-on would cut through its neighbours.
 const MAX_REACH = 2.0;
 // Size of a disc at the start of its appearance, as a share of its final size.
 const BIRTH_SIZE = 0.6;
@@ -68,7 +68,8 @@ const DOME = 0.34;
 const SWELL_PX = vec2<f32>(0.8, 2.4);
 const CLOSED = 1.26;
 // Depth in radii that the core pass adds to points. Neighbours in the sheet then pass the depth test of the rim passes,
-// which blend them, and the far side of the surface does not. Every pixel thus averages the points of the nearest sheet.
+// which blend them, and the far side of the surface does not. Every pixel thus averages the points of the nearest
+// sheet.
 const POINT_DEPTH = 2.0;
 // Smaller semi-axis in pixels up to which a disc covers no pixel completely, and from which it does.
 const WIDE_PX = vec2<f32>(0.7, 1.7);
@@ -192,7 +193,8 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     return out;
 }
 
-// Coverage of the pixel, from the distance to the rim in pixels. It takes derivatives, so call it in uniform control flow.
+// Coverage of the pixel, from the distance to the rim in pixels. It takes derivatives, so call it in uniform control
+// flow.
 fn coverage(disc: Disc) -> f32 {
     let along_x = dpdx(disc.uv);
     let along_y = dpdy(disc.uv);
@@ -235,8 +237,8 @@ fn fullness(disc: Disc) -> f32 {
     return smoothstep(WIDE_PX.x, WIDE_PX.y, min(disc.axes_px.x, disc.axes_px.y));
 }
 
-// Degree from 0 to 1 to which a disc is treated as a point. It reaches 1 halfway through the enlargement, so that sheets
-// close before gaps become small.
+// Degree from 0 to 1 to which a disc is treated as a point. It reaches 1 halfway through the enlargement, so that
+// sheets close before gaps become small.
 fn as_point(disc: Disc) -> f32 {
     return smoothstep(0.0, 0.5, pointness(disc.axes_px));
 }

@@ -6,8 +6,8 @@ use std::io::{self, Write};
 /// A file format for particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 for a particle next
-    /// to a singular point.
+    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 for a particle
+    /// next to a singular point.
     Ply,
     /// Comma-separated values with a header line and the columns of [`Format::Ply`].
     Csv,
@@ -31,8 +31,8 @@ impl Format {
 
 /// Writes `particles` to `out`, which should be buffered.
 ///
-/// `valence` is the number of natural neighbours of each particle (see [`crate::quality::Report::valence`]); particles beyond
-/// its end get 0. Decimal numbers are the shortest that read back to the same bits.
+/// `valence` is the number of natural neighbours of each particle (see [`crate::quality::Report::valence`]); particles
+/// beyond its end get 0. Decimal numbers are the shortest that read back to the same bits.
 ///
 /// # Errors
 ///

@@ -1,7 +1,7 @@
 //! Event log of the adaptive front at one chosen particle, from which Figures 7 and 8 of the paper can be replayed.
 //!
-//! It records the neighbours gathered and, for each child, its start, the pushes, the comparison of its angle φ with the
-//! free angle τ, and its fate. If no particle is followed, the log costs a comparison per particle and no memory.
+//! It records the neighbours gathered and, for each child, its start, the pushes, the comparison of its angle φ with
+//! the free angle τ, and its fate. If no particle is followed, the log costs a comparison per particle and no memory.
 
 use crate::particles::{Particles, SlotFate};
 use glam::Vec3;

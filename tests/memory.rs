@@ -40,12 +40,13 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Maximum number of bytes per particle beyond the output. The front takes them for the neighbour lists, the grid and the
-/// reserve for a denser packing; the relaxation takes them for the lists, the forces, the positions before the step and a
-/// smaller grid.
+/// Maximum number of bytes per particle beyond the output. The front takes them for the neighbour lists, the grid and
+/// the reserve for a denser packing; the relaxation takes them for the lists, the forces, the positions before the step
+/// and a smaller grid.
 const MOST: f64 = 60.0;
 
-/// The same for adaptive sampling, which also keeps the radii before the step and the displacements since their last update.
+/// The same for adaptive sampling, which also keeps the radii before the step and the displacements since their last
+/// update.
 const MOST_ADAPTIVE: f64 = 64.0;
 
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
@@ -64,8 +65,8 @@ fn peak_of(settings: Settings) -> (usize, usize) {
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
 
-/// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which does not grow with the
-/// number of particles, cancels against that of the `small` run.
+/// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which does not grow with
+/// the number of particles, cancels against that of the `small` run.
 fn beyond(small: Settings, runs: &[Settings]) -> f64 {
     let (few, fixed) = peak_of(small);
     runs.iter().fold(0.0, |worst, &settings| {

@@ -35,7 +35,8 @@ pub struct Surface {
     pub bounds: Bounds,
     /// Algebraic degree; `None` for a transcendental surface.
     pub degree: Option<u32>,
-    /// Genus with the default parameters; `None` unless the surface is closed, connected and free of self-intersections.
+    /// Genus with the default parameters; `None` unless the surface is closed, connected and free of
+    /// self-intersections.
     pub genus: Option<u32>,
     /// Whether the surface with the default parameters has no singular point.
     pub smooth: bool,

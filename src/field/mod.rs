@@ -32,8 +32,8 @@ pub struct Interval {
     pub lo: f64,
     /// Upper bound, which may be +∞.
     pub hi: f64,
-    /// Whether f is certainly defined everywhere in the box, without NaN or pole. At a pole the value may be an infinity
-    /// outside the bounds.
+    /// Whether f is certainly defined everywhere in the box, without NaN or pole. At a pole the value may be an
+    /// infinity outside the bounds.
     pub defined: bool,
 }
 
@@ -75,8 +75,8 @@ impl Enclosure {
 ///
 /// A batched method reads `points` and writes the first `points.len()` entries of each output. It takes `&mut self`
 /// because an implementation keeps scratch memory, so that evaluation does not allocate once it is warm. The result at
-/// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. It is
-/// NaN where the field is undefined.
+/// a point does not depend on the other points of the batch, and it has the same bits natively and in WebAssembly. It
+/// is NaN where the field is undefined.
 ///
 /// # Panics
 ///
@@ -112,8 +112,8 @@ pub trait Field: Send {
     /// surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
 
-    /// Whether the field can bound its values over a box, however wide the bounds are. Without bounds [`Field::enclose`] is
-    /// not called: the survey samples densely, and completeness is not proven.
+    /// Whether the field can bound its values over a box, however wide the bounds are. Without bounds
+    /// [`Field::enclose`] is not called: the survey samples densely, and completeness is not proven.
     fn has_bounds(&self) -> bool {
         false
     }
@@ -125,8 +125,9 @@ pub trait Field: Send {
 
     /// Bounds of factor `part` of f and of its gradient over each box.
     ///
-    /// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`. What an enclosure says about
-    /// being defined and continuous holds for f as a whole. The default implementation gives [`Enclosure::UNKNOWN`].
+    /// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`. What an enclosure says
+    /// about being defined and continuous holds for f as a whole. The default implementation gives
+    /// [`Enclosure::UNKNOWN`].
     ///
     /// # Panics
     ///
@@ -138,7 +139,8 @@ pub trait Field: Send {
 
     /// Bounds of the second derivatives of factor `part` over each box, in the order xx, xy, xz, yy, yz, zz.
     ///
-    /// They are meaningless where f is undefined or its gradient jumps. The default implementation gives infinite bounds.
+    /// They are meaningless where f is undefined or its gradient jumps. The default implementation gives infinite
+    /// bounds.
     ///
     /// # Panics
     ///

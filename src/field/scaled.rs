@@ -1,5 +1,5 @@
-//! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in single
-//! precision, whatever units a formula is in.
+//! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in
+//! single precision, whatever units a formula is in.
 
 use super::{Enclosure, Field, Interval, Jet};
 use crate::math::{Bounds, Sym3, sort_numbers};

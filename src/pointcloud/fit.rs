@@ -1,9 +1,9 @@
 //! Interpolation of points with normals by Hermite radial basis functions.
 //!
-//! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The conditions f = 0 and ∇f = n at each of N
-//! centres are 4 N linear equations for the 4 N coefficients (I. Macêdo, J. P. Gois & L. Velho, "Hermite Radial Basis
-//! Functions Implicits", 2011). With −β as unknown the matrix is symmetric. The system is set up in local coordinates, in
-//! which the centres fill a box of about one unit, and solved in double precision.
+//! The function is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The conditions f = 0 and ∇f = n at each of
+//! N centres are 4 N linear equations for the 4 N coefficients (I. Macêdo, J. P. Gois & L. Velho, "Hermite Radial Basis
+//! Functions Implicits", 2011). With −β as unknown the matrix is symmetric. The system is set up in local coordinates,
+//! in which the centres fill a box of about one unit, and solved in double precision.
 
 use super::solve::{Elimination, Singular};
 use super::thin::check_spread;
@@ -18,8 +18,8 @@ use nalgebra::{DMatrix, DVector};
 const MIN_CENTRES: usize = 4;
 /// Maximum number of centres: the matrix of so many takes 128 MB, and solving it takes minutes in a browser.
 const MAX_CENTRES: usize = 1000;
-/// Distance below which two centres count as one, as a share of the diagonal of their box. In single precision, in which
-/// the surface is sampled, they coincide.
+/// Distance below which two centres count as one, as a share of the diagonal of their box. In single precision, in
+/// which the surface is sampled, they coincide.
 const DUPLICATE_SHARE: f64 = 1e-6;
 /// Condition number from which a solution is refused: fewer than three digits are left in double precision.
 const MAX_CONDITION: f64 = 1e13;
@@ -135,12 +135,13 @@ enum FitStage {
 }
 
 impl Fitter {
-    /// Begins the interpolation of `centres`. The residual will be taken at all points `given`. The fit's report has the
-    /// name, credit and warnings of `info`.
+    /// Begins the interpolation of `centres`. The residual will be taken at all points `given`. The fit's report has
+    /// the name, credit and warnings of `info`.
     ///
     /// # Errors
     ///
-    /// If there are too few or too many centres, if they are not finite, coincide or lie in one plane, or if memory runs out.
+    /// If there are too few or too many centres, if they are not finite, coincide or lie in one plane, or if memory
+    /// runs out.
     pub fn new(centres: &Cloud, given: Vec<DVec3>, info: ModelInfo) -> Result<Self, FitError> {
         let count = centres.len();
         match count {
@@ -260,8 +261,8 @@ impl Fitter {
         let mut data = RbfData::default();
         let scale = self.frame.scale();
         for (i, &centre) in self.centres.iter().enumerate() {
-            // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients are
-            // α s² and β s.
+            // With g the function in local coordinates, f(x) = g(s (x − o))/s has the same gradients; its coefficients
+            // are α s² and β s.
             data.centres.push(self.frame.world(centre).to_array());
             data.alpha.push(x[4 * i] * scale * scale);
             data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));

@@ -16,8 +16,8 @@ pub const CENTRES: RangeInclusive<u32> = 100..=800;
 /// Default number of centres, which is that of the paper's models (§6).
 pub const DEFAULT_CENTRES: u32 = 200;
 
-/// Rows of a file read per unit of work. This and the following numbers make a unit of work take up to about a tenth of a
-/// millisecond natively.
+/// Rows of a file read per unit of work. This and the following numbers make a unit of work take up to about a tenth of
+/// a millisecond natively.
 const ROWS: u32 = 500;
 /// Faces summed per unit of work.
 const FACES: u32 = 2000;
@@ -26,8 +26,8 @@ const POINTS: u32 = 1000;
 /// Normals estimated per unit of work.
 const PLANES: u32 = 20;
 
-/// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to the origin. Within it,
-/// single precision, in which the surface is sampled, resolves a millionth of the diagonal.
+/// Distance from the origin, in diagonals of the points' box, beyond which the points are moved to the origin. Within
+/// it, single precision, in which the surface is sampled, resolves a millionth of the diagonal.
 const FAR: f64 = 10.0;
 
 /// JobStage of a job, as the page shows it.
@@ -137,7 +137,8 @@ enum Work {
 }
 
 impl Job {
-    /// Job for a file. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated; `name` is for reports.
+    /// Job for a file. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated; `name` is for
+    /// reports.
     ///
     /// # Errors
     ///
@@ -171,8 +172,8 @@ impl Job {
     /// Current progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        // Begin and length of the stage as shares of the whole time, for a file of some megabytes. A smaller one is done at
-        // once.
+        // Begin and length of the stage as shares of the whole time, for a file of some megabytes. A smaller one is
+        // done at once.
         let (stage, label, begins, length, share) = match &self.work {
             Work::Reading(reader) => (JobStage::Reading, "Reading the file", 0.0, 0.4, reader.fraction()),
             Work::Facing(mesh) => {
@@ -200,8 +201,8 @@ impl Job {
 
     /// Does up to `budget` units of work and returns the progress.
     ///
-    /// A unit takes a millisecond at most, except between two stages of a file with millions of points, where it may take
-    /// some tens of milliseconds.
+    /// A unit takes a millisecond at most, except between two stages of a file with millions of points, where it may
+    /// take some tens of milliseconds.
     ///
     /// # Errors
     ///

@@ -2,8 +2,8 @@
 //!
 //! A file is read to a [`Cloud`] of points with normals. A few hundred of them, far from each other, become the centres
 //! of a radial basis function, whose coefficients solve a linear system. The result is an
-//! [`RbfData`](crate::field::rbf::RbfData), which is all that the sampler's core takes: the page solves in a module and a
-//! worker of their own.
+//! [`RbfData`](crate::field::rbf::RbfData), which is all that the sampler's core takes: the page solves in a module and
+//! a worker of their own.
 
 mod eigen;
 pub mod fit;

@@ -80,7 +80,8 @@ pub fn encode(cloud: &Cloud) -> Vec<u8> {
 
 /// Octahedral encoding of a direction, on the square from −1 to 1.
 ///
-/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z; the lower half is unfolded over its edges.
+/// The upper half of the octahedron |x| + |y| + |z| = 1 is projected along z; the lower half is unfolded over its
+/// edges.
 fn octahedral_encode(n: DVec3) -> DVec2 {
     let flat = n.truncate() / (n.x.abs() + n.y.abs() + n.z.abs());
     if n.z < 0.0 { unfold_lower_half(flat) } else { flat }

@@ -1,16 +1,16 @@
 //! Estimation of consistently oriented normals.
 //!
 //! The normal of a point is that of the plane through its neighbours, and its sign is propagated from point to point
-//! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points", SIGGRAPH
-//! 1992, §3.2 and 3.3).
+//! (H. Hoppe, T. DeRose, T. Duchamp, J. McDonald & W. Stuetzle, "Surface Reconstruction from Unorganized Points",
+//! SIGGRAPH 1992, §3.2 and 3.3).
 //!
 //! # Differences from the paper
 //!
-//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and the weight of the edge
-//!   is the difference of the two normals after that. Of 1,839 vertices of the bunny 7 get a normal of the wrong sign; without
-//!   the reflection 51 do.
-//! * The graph has an edge from every point to its nearest neighbours, without the edges of a Euclidean minimum spanning
-//!   tree. Each connected component of the graph is oriented by itself.
+//! * A normal that is propagated along an edge is reflected in the plane that bisects the edge, and the weight of the
+//!   edge is the difference of the two normals after that. Of 1,839 vertices of the bunny 7 get a normal of the wrong
+//!   sign; without the reflection 51 do.
+//! * The graph has an edge from every point to its nearest neighbours, without the edges of a Euclidean minimum
+//!   spanning tree. Each connected component of the graph is oriented by itself.
 //! * Outward is decided by the outermost points in six directions together, not by the highest point alone.
 
 use super::thin::{corners, covariance};
@@ -22,8 +22,8 @@ use std::collections::BinaryHeap;
 
 /// Number of neighbours that a plane is fitted to. Fewer follow the noise, more reach the far side of thin parts.
 ///
-/// With 8, 12 and 16 neighbours, the mean errors on spheres and tori of 200 to 20,000 points with noise of a tenth of the
-/// spacing are as 3 : 2 : 1.5, and of the bunny's 1,839 normals 3, 7 and 23 point inward.
+/// With 8, 12 and 16 neighbours, the mean errors on spheres and tori of 200 to 20,000 points with noise of a tenth of
+/// the spacing are as 3 : 2 : 1.5, and of the bunny's 1,839 normals 3, 7 and 23 point inward.
 const NEIGHBOURS: usize = 12;
 
 /// Cosine of 120°. Neighbours whose normals make a larger angle are on different sheets, or one has the wrong sign.
@@ -90,8 +90,8 @@ impl Estimator {
         self.normal.len() as f64 / self.local.len().max(1) as f64
     }
 
-    /// Orients the normals outward and stores them in `cloud`, whose points must be those of [`Estimator::new`]. Returns
-    /// warnings for the user.
+    /// Orients the normals outward and stores them in `cloud`, whose points must be those of [`Estimator::new`].
+    /// Returns warnings for the user.
     ///
     /// # Errors
     ///
@@ -129,7 +129,8 @@ impl Estimator {
         self.neighbours.iter().enumerate().map(move |(k, &j)| (k / per_point, j as usize))
     }
 
-    /// Adjacency lists of the undirected graph: for each point the index of its first entry, and the entries of all points.
+    /// Adjacency lists of the undirected graph: for each point the index of its first entry, and the entries of all
+    /// points.
     ///
     /// # Errors
     ///
@@ -159,8 +160,8 @@ impl Estimator {
 
     /// Orients the normals and returns the number of connected components of the graph.
     ///
-    /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's algorithm), so that it
-    /// follows the edges on which it is most certain. Each component is then turned outward.
+    /// The sign is propagated along the minimum spanning tree with weights 1 − |agreement| (Prim's algorithm), so that
+    /// it follows the edges on which it is most certain. Each component is then turned outward.
     fn orient(&mut self, (first, ends): &(Vec<u32>, Vec<u32>)) -> usize {
         let mut reached = vec![false; self.local.len()];
         let mut queue = BinaryHeap::new();
@@ -200,18 +201,19 @@ impl Estimator {
         components
     }
 
-    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the plane that bisects the
-    /// two points.
+    /// Cosine of the angle between the normal of point `j` and that of point `i`, reflected in the plane that bisects
+    /// the two points.
     ///
-    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin part it gives the opposite
-    /// one, which is right there.
+    /// On a circle the reflection gives the normal of `j` exactly, and on the far side of a thin part it gives the
+    /// opposite one, which is right there.
     fn agreement(&self, i: usize, j: usize) -> f64 {
         let along = (self.local[j] - self.local[i]).normalize_or_zero();
         let carried = self.normal[i] - 2.0 * self.normal[i].dot(along) * along;
         carried.dot(self.normal[j])
     }
 
-    /// Whether the normals of the outermost points of a component, in the six axis directions, point inward on the whole.
+    /// Whether the normals of the outermost points of a component, in the six axis directions, point inward on the
+    /// whole.
     fn points_inward(&self, component: &[u32]) -> bool {
         let mut sum = 0.0;
         for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {

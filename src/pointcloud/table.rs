@@ -23,7 +23,8 @@ fn hash(p: DVec3) -> u64 {
         // Adding 0 maps −0 to +0, which it is equal to.
         (hash.rotate_left(29) ^ (value + 0.0).to_bits()).wrapping_mul(GOLDEN_RATIO)
     });
-    // The low bits of a round number are 0, and the low bits of a product depend on no higher ones: mix in the top bits.
+    // The low bits of a round number are 0, and the low bits of a product depend on no higher ones: mix in the top
+    // bits.
     (hash ^ (hash >> 32)).wrapping_mul(GOLDEN_RATIO)
 }
 

@@ -6,16 +6,16 @@ use super::{Cloud, CloudError};
 use crate::math::Sym3;
 use glam::DVec3;
 
-/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen among
-/// them. The spacing of twenty thousand is about a hundredth of the model's size, a tenth of that of 200 centres.
+/// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen
+/// among them. The spacing of twenty thousand is about a hundredth of the model's size, a tenth of that of 200 centres.
 pub const KEPT: usize = 20_000;
 
-/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a few hundred centres loses
-/// a digit each time that the distance between two of them is halved.
+/// Minimum distance of two centres, as a share of the diagonal of the points' box. The system for a few hundred centres
+/// loses a digit each time that the distance between two of them is halved.
 const MIN_DISTANCE_SHARE: f64 = 1e-4;
 
-/// Largest standard deviation across a line or plane, as a share of that along it, at which points count as lying in it. It
-/// is above the rounding of coordinates in single precision.
+/// Largest standard deviation across a line or plane, as a share of that along it, at which points count as lying in
+/// it. It is above the rounding of coordinates in single precision.
 const FLAT_SHARE: f64 = 1e-5;
 
 /// Smallest and largest corner of the bounding box of `points`, which must not be empty.
@@ -23,8 +23,8 @@ pub(super) fn corners(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
 }
 
-/// Merges coincident points and adds their normals. A file has a point several times where faces with different attributes
-/// meet.
+/// Merges coincident points and adds their normals. A file has a point several times where faces with different
+/// attributes meet.
 #[derive(Debug)]
 pub struct Merger {
     /// The distinct points in `0..kept`, and those still to be looked at from `next` on.
@@ -92,8 +92,8 @@ impl Merger {
     }
 }
 
-/// Keeps at most [`KEPT`] points: the first one in each cell of a grid. The grid is the finest one, up to a factor, that
-/// keeps no more.
+/// Keeps at most [`KEPT`] points: the first one in each cell of a grid. The grid is the finest one, up to a factor,
+/// that keeps no more.
 #[derive(Debug)]
 pub struct Thinner {
     cloud: Cloud,
@@ -121,11 +121,11 @@ const COARSER: f64 = 1.2;
 const ENOUGH: f64 = 0.3;
 /// Maximum number of grids. After so many halvings, a cell is smaller than the resolution of single precision.
 const MAX_PASSES: u32 = 24;
-/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared diagonal of the box. It
-/// serves for the first guess of the cell size only.
+/// Estimated number of cells that a surface meets, times the ratio of a cell's face to the squared diagonal of the box.
+/// It serves for the first guess of the cell size only.
 ///
-/// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a typical ratio of the area
-/// of a surface to the squared diagonal of its box (1.05 for a sphere).
+/// It is the product of 1.5, the mean number of cells that a plane meets per face area, and 0.9, a typical ratio of the
+/// area of a surface to the squared diagonal of its box (1.05 for a sphere).
 const CELLS_PER_SQUARE: f64 = 1.35;
 
 impl Thinner {
@@ -251,8 +251,8 @@ pub(super) fn covariance(points: impl Iterator<Item = DVec3>, mean: DVec3) -> Sy
     }
 }
 
-/// Farthest-point sampling: each chosen point is the one farthest from all those chosen before (T. F. Gonzalez, "Clustering
-/// to Minimize the Maximum Intercluster Distance", 1985).
+/// Farthest-point sampling: each chosen point is the one farthest from all those chosen before (T. F. Gonzalez,
+/// "Clustering to Minimize the Maximum Intercluster Distance", 1985).
 ///
 /// The largest distance of a point from the chosen ones is at most twice that of any other choice of as many. The first
 /// choice is the point farthest from the mean. Ties go to the smaller index.

@@ -7,8 +7,8 @@ use core::mem::offset_of;
 
 /// Instance record of a particle without its colour: 28 bytes.
 ///
-/// Colours have a buffer of their own (see [`COLOUR_STRIDE`]). A change of colours then uploads 4 bytes per particle instead
-/// of 32, and no copy of the records has to be kept.
+/// Colours have a buffer of their own (see [`COLOUR_STRIDE`]). A change of colours then uploads 4 bytes per particle
+/// instead of 32, and no copy of the records has to be kept.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Record {
@@ -45,9 +45,9 @@ impl Record {
     }
 }
 
-/// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point Normal
-/// Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2),
-/// 2014).
+/// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point
+/// Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+/// JCGT 3(2), 2014).
 ///
 /// `n` need not have unit length. A zero or non-finite `n` gives the encoding of +z.
 #[must_use]
@@ -79,8 +79,8 @@ pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
 
 /// Uniform block `Frame` of all shaders: camera, light and style of a picture.
 ///
-/// The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. [`Frame::FIELDS`] lists
-/// them for a test.
+/// The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. [`Frame::FIELDS`]
+/// lists them for a test.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Frame {

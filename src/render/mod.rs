@@ -4,21 +4,22 @@
 //!
 //! # How a disc is drawn
 //!
-//! * **Geometry.** Each particle is an instanced quad, a strip of four vertices. The vertex shader spans the tangent plane by
-//!   an axis that is not foreshortened and one that is. It pads the quad by one pixel on the screen, so that the edge can be
-//!   antialiased even if the disc is seen edge-on. The particles come from instance buffers, because WebGL2 has no storage
-//!   buffers in the vertex stage.
+//! * **Geometry.** Each particle is an instanced quad, a strip of four vertices. The vertex shader spans the tangent
+//!   plane by an axis that is not foreshortened and one that is. It pads the quad by one pixel on the screen, so that
+//!   the edge can be antialiased even if the disc is seen edge-on. The particles come from instance buffers, because
+//!   WebGL2 has no storage buffers in the vertex stage.
 //! * **Antialiasing.** The fragment shader computes the coverage of a pixel from its distance to the rim.
-//! * **Order.** Coverage requires blending, and blending depends on the order of drawing, but sorting a million particles is
-//!   too slow. The discs are therefore drawn in three passes. The first draws *cores*, fully covered pixels, with depth test
-//!   and depth writes. Two more blend *rims*, partly covered pixels, over them with depth test but without depth writes: those
-//!   of discs seen from behind, then the others. Discs of one sheet do not overlap, so the order within a pass hardly matters.
-//!   There is no multisampling, no sorting and no fragment depth. The picture is the same on all devices, and an edge has 256
-//!   levels of coverage instead of the five of a 4× multisampled target.
+//! * **Order.** Coverage requires blending, and blending depends on the order of drawing, but sorting a million
+//!   particles is too slow. The discs are therefore drawn in three passes. The first draws *cores*, fully covered
+//!   pixels, with depth test and depth writes. Two more blend *rims*, partly covered pixels, over them with depth test
+//!   but without depth writes: those of discs seen from behind, then the others. Discs of one sheet do not overlap, so
+//!   the order within a pass hardly matters. There is no multisampling, no sorting and no fragment depth. The picture
+//!   is the same on all devices, and an edge has 256 levels of coverage instead of the five of a 4× multisampled
+//!   target.
 //! * **Points.** When discs shrink to a pixel or two, the gaps between them would cause moiré. The discs are therefore
-//!   enlarged until they touch. The core pass accepts pixels with little coverage and writes a slightly larger depth; the rim
-//!   passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and coverage decreases
-//!   with the size of a point, so that the picture is steady under motion.
+//!   enlarged until they touch. The core pass accepts pixels with little coverage and writes a slightly larger depth;
+//!   the rim passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and
+//!   coverage decreases with the size of a point, so that the picture is steady under motion.
 //! * **Colour.** Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
 //! The modules for layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.

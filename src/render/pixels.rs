@@ -8,8 +8,8 @@ pub const fn padded_row(width_px: u32) -> u32 {
 
 /// Rows of RGBA pixels with straight (not premultiplied) opacity, from top to bottom.
 ///
-/// `padded` holds sRGB pixels, premultiplied in linear light, in rows of [`padded_row`] bytes; if `bgra` is set, blue comes
-/// first. Colours are divided by the opacity in linear light. If `opaque` is set, every opacity is 255 instead.
+/// `padded` holds sRGB pixels, premultiplied in linear light, in rows of [`padded_row`] bytes; if `bgra` is set, blue
+/// comes first. Colours are divided by the opacity in linear light. If `opaque` is set, every opacity is 255 instead.
 ///
 /// # Panics
 ///

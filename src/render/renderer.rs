@@ -80,8 +80,8 @@ pub struct Renderer {
     count: u32,
     view: View,
     style: Style,
-    /// Time on the caller's clock at which the renderer's clock is zero, in seconds. Single precision suffices for times
-    /// relative to it.
+    /// Time on the caller's clock at which the renderer's clock is zero, in seconds. Single precision suffices for
+    /// times relative to it.
     epoch_s: Option<f64>,
 }
 
@@ -207,7 +207,8 @@ impl Renderer {
 
     /// Sets the size of the surface in pixels and returns the size in effect.
     ///
-    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is drawn until the next resize.
+    /// A size beyond the largest texture is scaled down in proportion. If a side is 0, nothing is drawn until the next
+    /// resize.
     pub fn resize(&mut self, size: [u32; 2]) -> [u32; 2] {
         let size = self.fit(size);
         if size != self.size {
@@ -243,8 +244,8 @@ impl Renderer {
 
     /// Writes particles `first..first + radii.len()`. The number of particles drawn increases to include them.
     ///
-    /// Positions and normals have three numbers per particle, colours are sRGB as 0xAABBGGRR. `birth_s` is the time at which
-    /// the particles begin to appear, in seconds on the clock of [`Renderer::draw`]; −∞ shows them at once.
+    /// Positions and normals have three numbers per particle, colours are sRGB as 0xAABBGGRR. `birth_s` is the time at
+    /// which the particles begin to appear, in seconds on the clock of [`Renderer::draw`]; −∞ shows them at once.
     ///
     /// # Panics
     ///
@@ -332,10 +333,11 @@ impl Renderer {
         if self.is_lost() { Outcome::Lost } else { Outcome::Drawn }
     }
 
-    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes readable.
+    /// Draws into a texture of [`Renderer::picture_size`] and begins to copy it to memory that [`Picture::map`] makes
+    /// readable.
     ///
-    /// A picture with another aspect ratio than the surface shows more at the sides, or at top and bottom. Returns `None` if
-    /// the device is lost.
+    /// A picture with another aspect ratio than the surface shows more at the sides, or at top and bottom. Returns
+    /// `None` if the device is lost.
     pub fn picture(&mut self, size: [u32; 2], transparent: bool, time_s: f64) -> Option<Picture> {
         if self.is_lost() {
             return None;
@@ -438,7 +440,8 @@ impl Renderer {
 }
 
 impl Picture {
-    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or with `false` if it failed.
+    /// Requests the pixels. `done` is called with `true` when [`Picture::pixels`] can be called, or with `false` if it
+    /// failed.
     pub fn map(&self, done: impl FnOnce(bool) + Send + 'static) {
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| done(result.is_ok()));
     }

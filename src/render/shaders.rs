@@ -34,8 +34,8 @@ pub const DISCS: Shader = shader!("discs.wgsl");
 /// Draws the edges of the clip box.
 pub const BOX: Shader = shader!("box.wgsl");
 
-/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns the
-/// length of the whole.
+/// Copies `source` without `//` comments, indentation and empty lines to `out`, as far as there is room, and returns
+/// the length of the whole.
 const fn strip(source: &str, out: &mut [u8]) -> usize {
     let bytes = source.as_bytes();
     let mut length = 0;

@@ -3,8 +3,8 @@
 use super::layout::{COLOUR_STRIDE, Record};
 use core::ops::Range;
 
-/// Particles per chunk: 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and takes
-/// only 4 draw calls per pass for a million particles.
+/// Particles per chunk: 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and
+/// takes only 4 draw calls per pass for a million particles.
 const CHUNK: u32 = 1 << 18;
 /// Initial capacity of the first chunk.
 const FIRST: u32 = 1 << 12;
@@ -155,8 +155,8 @@ impl Chunk {
     }
 }
 
-/// Splits particles `first..first + count` at chunk borders. Each item is a chunk, the first particle within it, and the range
-/// relative to `first`.
+/// Splits particles `first..first + count` at chunk borders. Each item is a chunk, the first particle within it, and
+/// the range relative to `first`.
 fn split_at_chunks(first: u32, count: u32) -> impl Iterator<Item = (usize, u32, Range<usize>)> {
     let end = first + count;
     let mut at = first;

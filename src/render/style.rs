@@ -10,8 +10,8 @@ use super::view::View;
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
     pub background: [f32; 4],
-    /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that make
-    /// the order visible.
+    /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
+    /// make the order visible.
     pub disc_scale: f32,
     /// Direction to the key light in view coordinates: x right, y up, z towards the viewer.
     pub key_light_view: [f32; 3],
@@ -21,8 +21,8 @@ pub struct Style {
     pub dim_backfaces: f32,
     /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
     pub fade_s: f32,
-    /// Newest generation level that is drawn. Particles of later levels are hidden, those of earlier ones fade by `mute`.
-    /// With `None` all levels are drawn alike.
+    /// Newest generation level that is drawn. Particles of later levels are hidden, those of earlier ones fade by
+    /// `mute`. With `None` all levels are drawn alike.
     pub level: Option<u32>,
     /// Fraction by which earlier levels fade to the background, 0 to 1.
     pub mute: f32,

@@ -1,5 +1,5 @@
-//! Tests of the adaptive front (paper §5): children touch their parents, both placements cover the surface, and a run does not
-//! depend on how it is cut into steps.
+//! Tests of the adaptive front (paper §5): children touch their parents, both placements cover the surface, and a run
+//! does not depend on how it is cut into steps.
 
 use marching_particles::field::Field;
 use marching_particles::field::gallery;

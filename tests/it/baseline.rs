@@ -1,5 +1,5 @@
-//! Tests of the particle systems that the paper compares its method with (§6): from one particle they cover a surface, as evenly
-//! as their sources promise, with the same result every time, and they end on any field.
+//! Tests of the particle systems that the paper compares its method with (§6): from one particle they cover a surface,
+//! as evenly as their sources promise, with the same result every time, and they end on any field.
 
 use marching_particles::baseline::{Baseline, Settings, StopReason};
 use marching_particles::field::formula::FormulaField;
@@ -57,8 +57,8 @@ fn one_particle_multiplies_until_the_surface_has_no_holes() {
 
 #[test]
 fn count_is_near_that_of_a_hexagonal_lattice_of_the_wanted_radius() {
-    // A particle of the first system divides above σ̂ and settles below it. One of the second divides only if its nearest
-    // neighbours are 2.3 radii away.
+    // A particle of the first system divides above σ̂ and settles below it. One of the second divides only if its
+    // nearest neighbours are 2.3 radii away.
     for (sampling, range) in [(Sampling::Uniform, 1.0..1.3), (Sampling::Adaptive, 0.7..0.95)] {
         for id in ["sphere", "torus"] {
             let (baseline, _) = of_gallery(id, &settings(sampling, 2_000));

@@ -1,5 +1,5 @@
-//! Tests that every component of the surface gets particles, however small or near another one, and that the report says
-//! whether this is proven.
+//! Tests that every component of the surface gets particles, however small or near another one, and that the report
+//! says whether this is proven.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::FormulaField;
@@ -174,7 +174,8 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
-    /// Surfaces that take more cells than the search may examine: thin parts of high degree, and long formulas with blends.
+    /// Surfaces that take more cells than the search may examine: thin parts of high degree, and long formulas with
+    /// blends.
     const LONG: [&str; 2] = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES {
         for share in [0.02, 0.006] {
@@ -190,8 +191,8 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             }
             let mut counts = vec![0; report.components];
             session.measured().component.iter().for_each(|&label| counts[label as usize] += 1);
-            // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which particles the triangles connect.
-            // Of ten seeds, three to five leave one or two particles unconnected, with or without relaxation.
+            // At 2 % the decocube's ridges are narrower than a spacing, and it is chance which particles the triangles
+            // connect. Of ten seeds, three to five leave one or two particles unconnected, with or without relaxation.
             let is_resolved = surface.smooth && (surface.id != "decocube" || share < 0.01);
             assert!(!is_resolved || counts.iter().all(|&count| count > 2), "{context}: {counts:?}");
         }
@@ -256,8 +257,8 @@ fn an_empty_surface_is_proven_empty() {
 
 #[test]
 fn cone_points_leave_nothing_undecided() {
-    // A cone off the centre, so that its circle in a face touches no edge, and the Cayley cubic at the level of its cone points
-    // and at levels close to it.
+    // A cone off the centre, so that its circle in a face touches no edge, and the Cayley cubic at the level of its
+    // cone points and at levels close to it.
     for formula in [
         "(x - 0.1)^2 + (y + 0.05)^2 = (z - 0.02)^2",
         "4(x^2 + y^2 + z^2) + 16x y z = 1",

@@ -119,8 +119,8 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
 
 #[test]
 fn singular_points_do_not_stop_the_front() {
-    // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where the
-    // gradient vanishes along lines. The front passes all of them, and the run ends.
+    // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where
+    // the gradient vanishes along lines. The front passes all of them, and the run ends.
     for (formula, area) in [
         ("x^2 + y^2 - z^2", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
         ("hypot(x, y) - abs(z)", 2.0 * core::f64::consts::SQRT_2 * core::f64::consts::PI),
@@ -237,7 +237,8 @@ fn powers_of_a_factor_have_the_surface_of_the_factor() {
         assert!(report.warnings.iter().any(|w| w.contains("is sampled")), "{formula}: {:?}", report.warnings);
         assert!(!report.warnings.iter().any(|w| w.contains("twice")), "{formula}: {:?}", report.warnings);
     }
-    // In a product, the domain of a root restricts the zeros of the other factors, and a pole lowers the order of a zero.
+    // In a product, the domain of a root restricts the zeros of the other factors, and a pole lowers the order of a
+    // zero.
     for formula in [
         "z sqrt(1 - x^2 - y^2)",
         "y x^0.5",

@@ -20,7 +20,8 @@ fn between(lo: f32, hi: f32, count: u32) -> Vec<f32> {
     (0..=count).map(|k| lo + (hi - lo) * (k as f32 / count as f32)).collect()
 }
 
-/// Distance from `got` to `exact` in units in the last place of `exact`, or infinity if only one of them is NaN or infinite.
+/// Distance from `got` to `exact` in units in the last place of `exact`, or infinity if only one of them is NaN or
+/// infinite.
 fn ulps(got: f32, exact: f64) -> f64 {
     let rounded = exact as f32;
     if got.is_nan() && exact.is_nan() || got == rounded {

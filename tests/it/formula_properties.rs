@@ -1,5 +1,5 @@
-//! Properties of arbitrary formulas: nothing panics, printing and parsing are inverse, all ways of evaluation agree, and the
-//! MathML is well formed.
+//! Properties of arbitrary formulas: nothing panics, printing and parsing are inverse, all ways of evaluation agree,
+//! and the MathML is well formed.
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES};
@@ -211,8 +211,8 @@ proptest! {
         let p = DVec3::from_array(point);
         let other = field.transformed_jet(p);
         let jet = field.jet(p);
-        // The effect of rounding depends on the formula. Its measure here is the change of the result when the point moves
-        // by some thousand units in the last place.
+        // The effect of rounding depends on the formula. Its measure here is the change of the result when the point
+        // moves by some thousand units in the last place.
         let near = field.jet(p * (1.0 + 1e-12));
         let (exact, moved, other) = (numbers(&jet), numbers(&near), numbers(&other));
         let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();

@@ -1,5 +1,5 @@
-//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement, though it places whole levels
-//! at once, with the sequential algorithm.
+//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement, though it places whole
+//! levels at once, with the sequential algorithm.
 #![allow(
     clippy::disallowed_methods,
     clippy::needless_range_loop,
@@ -16,10 +16,10 @@ use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopRe
 /// Surfaces of the tests, with their Euler numbers.
 const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
-/// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000 particles.
-/// The aim is 0.93 and 55.5° everywhere. The torus misses the angle, and the tanglecube misses both. Where the curvature
-/// changes its sign, the rows of the front are compressed on one side and stretched on the other. Fronts that went around
-/// a handle meet out of step. The hexagons of the paper do not adapt to either.
+/// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
+/// particles. The aim is 0.93 and 55.5° everywhere. The torus misses the angle, and the tanglecube misses both. Where
+/// the curvature changes its sign, the rows of the front are compressed on one side and stretched on the other. Fronts
+/// that went around a handle meet out of step. The hexagons of the paper do not adapt to either.
 const ORDER: [(&str, f64, f64); 4] =
     [("sphere", 0.93, 55.5), ("ellipsoid", 0.93, 55.5), ("torus", 0.93, 54.5), ("tanglecube", 0.88, 54.0)];
 
@@ -46,9 +46,9 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
         .figures
 }
 
-/// The sequential front of the paper: it treats one particle after the other, searches all particles for neighbours, and
-/// projects each child by itself as soon as it is proposed. Rules and arithmetic are those of the sampler; the order of
-/// work, the neighbour search and the batches are not.
+/// The sequential front of the paper: it treats one particle after the other, searches all particles for neighbours,
+/// and projects each child by itself as soon as it is proposed. Rules and arithmetic are those of the sampler; the
+/// order of work, the neighbour search and the batches are not.
 struct Naive {
     position: Vec<Vec3>,
     normal: Vec<Vec3>,
@@ -154,8 +154,8 @@ impl Naive {
         }
     }
 
-    /// Second fundamental form fitted to the normals around `parent` by least squares, with slight regularisation towards
-    /// isotropy.
+    /// Second fundamental form fitted to the normals around `parent` by least squares, with slight regularisation
+    /// towards isotropy.
     fn fitted(&self, parent: usize, radius: f32, u: Vec3, w: Vec3) -> [f32; 3] {
         let (p, n) = (self.position[parent], self.normal[parent]);
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
@@ -238,9 +238,9 @@ fn the_front_places_the_particles_of_the_sequential_algorithm() {
         assert_eq!(fast.level, naive.level, "{surface}");
         let slots: Vec<_> = fast.slots.iter().map(|s| [0, 1, 2, 3, 4, 5].map(|k| s.get(k))).collect();
         assert_eq!(slots, naive.slots, "{surface}");
-        // The positions differ by rounding, since the curvature fit has another order of operations. If rounding decides
-        // whether a child passes the residual of 10⁻⁴ r, the difference is of that size and grows from level to level, to
-        // 0.9 % of r on the tanglecube.
+        // The positions differ by rounding, since the curvature fit has another order of operations. If rounding
+        // decides whether a child passes the residual of 10⁻⁴ r, the difference is of that size and grows from level to
+        // level, to 0.9 % of r on the tanglecube.
         let apart =
             fast.position.iter().zip(&naive.position).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
         assert!(apart < 0.02 * sampler.radius() as f32, "{surface}: {apart} apart");

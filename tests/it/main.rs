@@ -1,5 +1,5 @@
-//! Integration tests, one module per part of the library. They are one binary, because linking each module by itself would
-//! take longer than running it. `cargo test --test it front::` runs one module.
+//! Integration tests, one module per part of the library. They are one binary, because linking each module by itself
+//! would take longer than running it. `cargo test --test it front::` runs one module.
 
 mod adaptive;
 mod baseline;

@@ -1,6 +1,6 @@
-//! Test that the same field, parameters and seed give the same particles on every platform. It compares the native core with the
-//! digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and the browser tests the
-//! page, with the same file.
+//! Test that the same field, parameters and seed give the same particles on every platform. It compares the native core
+//! with the digests in `tests/golden/digests.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and the
+//! browser tests the page, with the same file.
 //!
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 

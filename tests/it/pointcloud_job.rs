@@ -1,8 +1,9 @@
-//! Tests of jobs from a file or a model to a field: they give the same bits on every platform and for any budget per step, and
-//! errors are explained.
+//! Tests of jobs from a file or a model to a field: they give the same bits on every platform and for any budget per
+//! step, and errors are explained.
 //!
-//! `tests/golden/points.json` holds digests of the solved systems, and `tests/wasm/points.mjs` compares the WebAssembly module
-//! with the same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::`.
+//! `tests/golden/points.json` holds digests of the solved systems, and `tests/wasm/points.mjs` compares the WebAssembly
+//! module with the same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test
+//! it pointcloud_job::`.
 
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
@@ -38,7 +39,8 @@ fn file(text: &str, centres: u32) -> Result<Fit, JobError> {
     run(Job::file("points.xyz", text.into(), centres)?, 100)
 }
 
-/// Text of points on an ellipsoid: grid points on the faces of a cube, projected onto it. `tests/wasm/points.mjs` makes the same.
+/// Text of points on an ellipsoid: grid points on the faces of a cube, projected onto it. `tests/wasm/points.mjs` makes
+/// the same.
 fn ellipsoid(steps: i32, normals: bool) -> String {
     let mut text = String::new();
     for i in -steps..=steps {

@@ -162,8 +162,8 @@ fn ply_as_text_has_any_line_ends_and_faces_of_any_size() {
         let (cloud, _) = cloud("a.ply", text.replace('\n', end));
         assert_eq!(cloud.len(), 5);
         assert_eq!(cloud.normal[4], DVec3::Z);
-        // A corner of the base gets the area vector of the base, 4 downwards, and those of two sides of area √2, each with
-        // 1 upwards.
+        // A corner of the base gets the area vector of the base, 4 downwards, and those of two sides of area √2, each
+        // with 1 upwards.
         for (n, p) in cloud.normal.iter().zip(&cloud.position).take(4) {
             assert!(
                 (*n - DVec3::new(p.x, p.y, -2.0).normalize_or_zero()).length() < 1e-12,

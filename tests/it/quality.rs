@@ -67,8 +67,8 @@ fn torus() -> Analytic<impl Fn(DVec3) -> Jet + Send> {
 
 const HEXAGONAL: [f64; 2] = [0.5, 0.866_025_403_784_438_6];
 
-/// Plane lattice spanned by (1, 0) and `second`, times `scale`, in the square of half-width `half`, and that square as clip
-/// box.
+/// Plane lattice spanned by (1, 0) and `second`, times `scale`, in the square of half-width `half`, and that square as
+/// clip box.
 fn lattice(second: [f64; 2], scale: f64, half: f64) -> (Vec<Vec3>, Bounds) {
     let steps = (4.0 * half / scale) as i32;
     let mut points = Vec::new();
@@ -249,8 +249,8 @@ fn fibonacci_sphere_is_a_closed_manifold() {
     close("tri_ok", f.tri_ok, 1.0, 2e-3);
     close("agree", f.agree, 1.0, 3e-3);
     assert_eq!((f.open, f.boundary_excluded), (0, 0));
-    // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost cocircular; where both diagonals
-    // are accepted, there are two neighbours and two triangles too many.
+    // On a closed triangulation Σ (6 − valence) = 6χ. Near the poles four points are almost cocircular; where both
+    // diagonals are accepted, there are two neighbours and two triangles too many.
     let defect: i32 = report.valence.iter().map(|&v| 6 - i32::from(v)).sum();
     let surplus = (f.tri_ok - 1.0) * (2 * n - 4) as f64;
     close("defect", f64::from(defect), 12.0 - surplus, 1e-6);
@@ -450,9 +450,9 @@ fn edges_are_compared_with_the_wanted_radii() {
     close("size_cv", f.size_cv, f.edge_cv, 1e-6);
 }
 
-/// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance from the origin, and each
-/// point has six neighbours. Returns the points in the square from 0.55 to 1.35 and their radii, which are half the distance
-/// of neighbours to first order in `step`.
+/// Conformal image, under exp, of a hexagonal lattice: the spacing is proportional to the distance from the origin, and
+/// each point has six neighbours. Returns the points in the square from 0.55 to 1.35 and their radii, which are half
+/// the distance of neighbours to first order in `step`.
 fn growing_lattice(step: f64) -> (Vec<Vec3>, Vec<f32>) {
     let (mut points, mut radii) = (Vec::new(), Vec::new());
     let reach = (1.0 / step) as i64 + 2;
@@ -512,8 +512,8 @@ fn a_missing_particle_is_a_hole_of_its_own_size() {
         let options = Options { area: Some(0.64), sizes: Sizes::Given(&radius), ..Options::default() };
         measure(&position, &[], &mut plane(), Some(&bounds), &options).figures
     };
-    // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of an
-    // ideal triangle.
+    // The six points around a missing one are a spacing away from its position, √3 times as far as from the centre of
+    // an ideal triangle.
     let root_3 = 3.0_f64.sqrt();
     let small = hole_at(Vec3::new(0.72, 0.72, 0.0));
     close("cover_local, small", small.cover_local, root_3, 0.05);

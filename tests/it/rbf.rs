@@ -177,7 +177,8 @@ fn batches_agree_with_the_sum_in_double_precision() {
                 distances.push(off / jet.gradient.length());
             }
         }
-        // On the surface, three quarters of the errors are within a tenth of the tolerance of particles of the default radius.
+        // On the surface, three quarters of the errors are within a tenth of the tolerance of particles of the default
+        // radius.
         distances.sort_by(f64::total_cmp);
         let quartile = distances[distances.len() * 3 / 4] / fit.bounds.diagonal();
         assert!(quartile < 6e-7, "{id}: {quartile:e} of the diagonal");
@@ -217,7 +218,8 @@ fn the_result_at_a_point_depends_on_the_point_alone() {
     let mut value = vec![0.0; n];
     let mut gradient = vec![Vec3::ZERO; n];
     field.gradients(&places, &mut value, &mut gradient);
-    // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more derivatives.
+    // The point is evaluated alone, in another order, with cells made by other points, and with fewer and more
+    // derivatives.
     let mut other = RbfField::new(fit.data).expect("a field");
     let mut hessian = [Sym3::<f32>::default()];
     for i in (0..n).rev() {

@@ -1,5 +1,5 @@
-//! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and particles stay
-//! on the surface.
+//! Tests of the relaxation (paper §4.5): the energy decreases at every step, holes and crowded pairs shrink, and
+//! particles stay on the surface.
 
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
@@ -75,8 +75,8 @@ fn energies(surface: &gallery::Surface, settings: &Settings) -> (Vec<f64>, Vec<f
 
 #[test]
 fn the_energy_falls_at_every_step_on_every_smooth_surface_at_every_radius() {
-    // If nearly every particle has a neighbour across a bend that the radius does not resolve, the forces do not lower the
-    // energy any further, and the relaxation ends before its tenth step.
+    // If nearly every particle has a neighbour across a bend that the radius does not resolve, the forces do not lower
+    // the energy any further, and the relaxation ends before its tenth step.
     let end_early = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES.iter().filter(|surface| surface.smooth) {
         for radius_share in [0.006, 0.01, 0.015, 0.02, 0.03, 0.05] {

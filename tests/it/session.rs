@@ -364,7 +364,8 @@ fn a_field_from_points_takes_the_formulas_place_and_gives_it_back() {
     use marching_particles::field::rbf::RbfData;
     use marching_particles::session::FieldKind;
 
-    // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small coefficient adds a constant.
+    // The field is r³ − 1, a sphere: one centre with α = 1 gives r³, and a far one with a small coefficient adds a
+    // constant.
     let data = RbfData {
         centres: vec![[0.0; 3], [0.0, 0.0, 1000.0]],
         alpha: vec![1.0, -1e-9],

@@ -26,7 +26,8 @@ pub(crate) fn of_model(id: &str, bar: &ProgressBar) -> Result<Fit, Failure> {
     solve(Job::model(id), bar).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// Reads a file that is not too large. The size of a regular file is checked first; of others, no more than the limit is read.
+/// Reads a file that is not too large. The size of a regular file is checked first; of others, no more than the limit
+/// is read.
 fn read(path: &Path) -> std::io::Result<Result<Vec<u8>, JobError>> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;

@@ -3,10 +3,10 @@
 //! # Language
 //!
 //! A formula consists of the coordinates `x y z`, numbers, the constants `pi`, `e`, `tau` and `phi` (the golden ratio),
-//! named parameters, the operators `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`]. At most one `=` stands for
-//! the difference of its sides. A product may be written without `*` where there is only one reading: `2x`, `x y`, `xyz`,
-//! `3(x + 1)`. `^` is right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is two
-//! thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width
+//! named parameters, the operators `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`]. At most one `=` stands
+//! for the difference of its sides. A product may be written without `*` where there is only one reading: `2x`, `x y`,
+//! `xyz`, `3(x + 1)`. `^` is right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is
+//! two thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width
 //! characters are accepted.
 //!
 //! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling. There are at most
@@ -15,8 +15,8 @@
 //! # Evaluation
 //!
 //! The text is parsed to a syntax tree, which is translated to a graph in static single-assignment form. The graph is
-//! evaluated as a second-order jet in double precision, in interval arithmetic over many boxes at a time and, compiled to
-//! a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
+//! evaluated as a second-order jet in double precision, in interval arithmetic over many boxes at a time and, compiled
+//! to a straight-line program, in single precision over batches of points. Gradient and Hessian are graphs too, derived
 //! from that of f.
 
 mod ast;
@@ -128,8 +128,8 @@ impl FormulaField {
     ///
     /// # Errors
     ///
-    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an error
-    /// are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
+    /// Any of [`FormulaErrorKind`], with its span in bytes of `text`. The time and memory that it takes to find an
+    /// error are bounded by [`MAX_FORMULA_BYTES`], [`MAX_DEPTH`] and [`MAX_OPERATIONS`].
     pub fn parse(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
@@ -183,8 +183,8 @@ impl FormulaField {
         &self.text
     }
 
-    /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names, and
-    /// parsing it gives the same field.
+    /// Formula in normal form: with explicit products and no redundant brackets. It is ASCII except for Greek names,
+    /// and parsing it gives the same field.
     #[must_use]
     pub fn normal_form(&self) -> String {
         display::plain_equation(&self.equation)
@@ -220,8 +220,8 @@ impl FormulaField {
         self.compiled.is_constant()
     }
 
-    /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the formula
-    /// does not use is accepted and has no effect.
+    /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the
+    /// formula does not use is accepted and has no effect.
     ///
     /// # Errors
     ///

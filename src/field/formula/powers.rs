@@ -1,8 +1,8 @@
 //! Reduction of an equation to one of the same surface without multiple factors.
 //!
-//! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0. There is no normal, and
-//! |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute values are
-//! replaced by their arguments too, since their slope at 0 is infinite or jumps.
+//! The gradient of a power u^n, or of a product with such a factor, vanishes on the surface u = 0. There is no normal,
+//! and the residual |f|/|∇f| is no distance. The function u has the same zeros and a gradient there. Roots and absolute
+//! values are replaced by their arguments too, since their slope at 0 is infinite or jumps.
 
 use super::ast::{Equation, Expr, Factor, Function, Kind, Sign};
 use super::build::build;

@@ -85,7 +85,8 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Compiles the nodes `outputs` of `graph`. The uniforms have no values until [`Program::set_parameters`] is called.
+    /// Compiles the nodes `outputs` of `graph`. The uniforms have no values until [`Program::set_parameters`] is
+    /// called.
     pub(super) fn compile(graph: &Graph, outputs: &[Id]) -> Self {
         let mut low = graph.clone();
         let outputs = expand_smooth_minima(&mut low, outputs);
@@ -413,8 +414,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Emits a sine or cosine. If the graph has both of one angle, one instruction computes them: they share the argument
-    /// reduction.
+    /// Emits a sine or cosine. If the graph has both of one angle, one instruction computes them: they share the
+    /// argument reduction.
     fn emit_sine_or_cosine(&mut self, operation: Unary, a: Id) -> u32 {
         let angle = self.operand(a);
         let other = if operation == Unary::Sin { Unary::Cos } else { Unary::Sin };

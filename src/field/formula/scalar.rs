@@ -184,8 +184,8 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
     }
 }
 
-/// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the smaller
-/// of a and b.
+/// Jet of the smooth minimum: (a + b)/2 − k (1/6 + u²/2 − |u|³/6) with u = (a − b)/k where |a − b| < k, else the
+/// smaller of a and b.
 fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
     let value = smin(a.value, b.value, k.value);
     let k = if k.value > SMIN_LEAST_WIDTH { *k } else { Order2::uniform(SMIN_LEAST_WIDTH) };

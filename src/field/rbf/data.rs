@@ -1,20 +1,21 @@
-//! Centres and coefficients, their form as bytes, and the field in double precision.
+//! Centres and coefficients, their encoding as bytes, and the field in double precision.
 
 use crate::field::Jet;
 use crate::math::Sym3;
 use core::array;
 use glam::{DVec3, Vec3};
 
-/// First bytes of the byte form, with its version.
+/// First bytes of the encoding, with its version.
 const MAGIC: [u8; 8] = *b"mp-hrbf1";
-/// Numbers per centre: position, α, β.
+/// Number of doubles per centre: position, α, β.
 const NUMBERS: usize = 7;
-/// Points that are evaluated together in double precision.
+/// Number of points that are evaluated together in double precision.
 const QUAD: usize = 4;
-/// More centres than this are refused: each point of each batch visits every centre.
-const MOST_CENTRES: usize = 100_000;
+/// Maximum number of centres. An exact evaluation visits every centre at every point.
+const MAX_CENTRES: usize = 100_000;
 
-/// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ), φ(r) = r³. The three lists are equally long.
+/// Centres and coefficients of f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. The three lists have equal
+/// lengths.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RbfData {
     /// Centres cⱼ.
@@ -25,19 +26,19 @@ pub struct RbfData {
     pub beta: Vec<[f64; 3]>,
 }
 
-/// Why data describes no field.
+/// Why the data does not describe a field.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DataError {
     /// There is no centre.
     #[error("a field needs at least one centre")]
     Empty,
-    /// More centres than can be evaluated in reasonable time.
-    #[error("{count} centres are more than {MOST_CENTRES}")]
+    /// There are more centres than can be evaluated in reasonable time.
+    #[error("{count} centres are more than {MAX_CENTRES}")]
     TooMany {
         /// Number of centres.
         count: usize,
     },
-    /// The lists differ in length.
+    /// The lengths of the lists differ.
     #[error("{centres} centres with {alpha} and {beta} coefficients")]
     Lengths {
         /// Length of the list of centres.
@@ -47,23 +48,23 @@ pub enum DataError {
         /// Length of the list of β.
         beta: usize,
     },
-    /// A number is infinite or not a number.
+    /// A number is not finite.
     #[error("centre {index} or its coefficients are not finite")]
     NotFinite {
         /// Index of the centre.
         index: usize,
     },
-    /// Bytes of another kind, version or length.
+    /// The bytes are of another kind, version or length.
     #[error("these bytes are not the centres and coefficients of a field")]
     Bytes,
 }
 
 impl RbfData {
-    /// Whether the lists are equally long, not empty and finite.
+    /// Checks that the lists have equal lengths and are neither empty nor too long, and that all numbers are finite.
     ///
     /// # Errors
     ///
-    /// What is wrong, if they are not.
+    /// What is wrong with the data.
     pub fn check(&self) -> Result<(), DataError> {
         let (centres, alpha, beta) = (self.centres.len(), self.alpha.len(), self.beta.len());
         if centres != alpha || centres != beta {
@@ -71,7 +72,7 @@ impl RbfData {
         }
         match centres {
             0 => return Err(DataError::Empty),
-            count if count > MOST_CENTRES => return Err(DataError::TooMany { count }),
+            count if count > MAX_CENTRES => return Err(DataError::TooMany { count }),
             _ => {}
         }
         match (0..centres).find(|&j| !self.numbers(j).iter().all(|number| number.is_finite())) {
@@ -80,12 +81,13 @@ impl RbfData {
         }
     }
 
+    /// Numbers of centre `j`, in the order of the encoding.
     fn numbers(&self, j: usize) -> [f64; NUMBERS] {
         let ([x, y, z], a, [u, v, w]) = (self.centres[j], self.alpha[j], self.beta[j]);
         [x, y, z, a, u, v, w]
     }
 
-    /// The data as bytes: a magic of eight, then seven little-endian doubles per centre.
+    /// Encodes the data as bytes: eight magic bytes, then seven little-endian doubles per centre.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
@@ -95,11 +97,11 @@ impl RbfData {
         bytes
     }
 
-    /// Reads what [`RbfData::to_bytes`] wrote, and checks it.
+    /// Decodes and checks bytes from [`RbfData::to_bytes`].
     ///
     /// # Errors
     ///
-    /// If the bytes are not of that form or the data fails [`RbfData::check`].
+    /// If the bytes have another format, or if the data fails [`RbfData::check`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, DataError> {
         let body = bytes.strip_prefix(&MAGIC).ok_or(DataError::Bytes)?;
         let (numbers, rest) = body.as_chunks::<{ size_of::<f64>() }>();
@@ -118,7 +120,7 @@ impl RbfData {
         Ok(data)
     }
 
-    /// f, ∇f and ∇∇f at `p`. The sums run over the centres in their order.
+    /// f, ∇f and ∇∇f at `p`, summed over the centres in order. At a centre its own term counts as zero.
     #[must_use]
     pub fn jet(&self, p: DVec3) -> Jet {
         let mut value = 0.0;
@@ -148,7 +150,7 @@ impl RbfData {
         Jet { value, gradient, hessian: Sym3 { xx, xy, xz, yy, yz, zz } }
     }
 
-    /// f and ∇f at each of the `points`, as [`RbfData::jet`] has them up to rounding: four points at a time.
+    /// f and ∇f at each of `points`, four at a time, equal to those of [`RbfData::jet`] up to rounding.
     pub(super) fn gradients(&self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         for ((points, value), gradient) in
             points.chunks(QUAD).zip(value.chunks_mut(QUAD)).zip(gradient.chunks_mut(QUAD))
@@ -175,7 +177,7 @@ impl RbfData {
                 let square = dx * dx + dy * dy + dz * dz;
                 let r = square.sqrt();
                 let along = bx * dx + by * dy + bz * dz;
-                // At a centre, 0 · 10³⁰⁰ is 0, its part there.
+                // At a centre `along` is 0, so the bounded inverse gives the term 0.
                 let inverse = 1.0 / if r > 1e-300 { r } else { 1e-300 };
                 let common = alpha * r + along * inverse;
                 sums[0][k] += r * (alpha * square + 3.0 * along);

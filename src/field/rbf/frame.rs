@@ -1,12 +1,14 @@
-//! Local coordinates, in which a model fills a box of about one unit.
+//! Local coordinates, in which the centres fill a box of about one unit.
 
 use glam::DVec3;
 
-/// The origin is a multiple of this, in local units, so that rounding a few points does not move it.
+/// Grid of the origin in local units. The origin is a multiple of it, so that rounding of points does not move it.
 const GRID: f64 = 1.0 / 16.0;
 
-/// Local coordinates s (x − o): the centres' box is centred on the origin but for a sixteenth, and its longest side is
-/// between one and two units. s is a power of two and o is a number of single precision, so the change costs no digits.
+/// Local coordinates s (x − o).
+///
+/// The box of the centres is centred at the origin up to a sixteenth, and its longest side is between one and two. s is
+/// a power of two and o is representable in single precision, so the transformation loses no digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     origin: DVec3,
@@ -14,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of these points, which are finite.
+    /// Frame of `points`, which must be finite.
     #[must_use]
     pub fn of(points: impl Iterator<Item = DVec3>) -> Self {
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -23,7 +25,7 @@ impl Frame {
         let scale = if side > 0.0 && side.is_finite() { power_of_two(side).recip() } else { 1.0 };
         let step = GRID / scale;
         let origin = ((lo * 0.5 + hi * 0.5) / step).round() * step;
-        // A far model's origin may have no number of single precision so near; then the nearest will do.
+        // For a model far from the origin, single precision may be coarser than the grid.
         let origin = origin.as_vec3().as_dvec3();
         Self { origin: if origin.is_finite() { origin } else { DVec3::ZERO }, scale }
     }
@@ -40,22 +42,22 @@ impl Frame {
         self.scale
     }
 
-    /// A point in local coordinates.
+    /// Local coordinates of a point.
     #[must_use]
     pub fn local(&self, p: DVec3) -> DVec3 {
         (p - self.origin) * self.scale
     }
 
-    /// A local point in the coordinates of the model.
+    /// Coordinates of the model of a local point.
     #[must_use]
     pub fn world(&self, p: DVec3) -> DVec3 {
         p / self.scale + self.origin
     }
 }
 
-/// The largest power of two that is not above `x`, a positive number; of tiny numbers the least normal one.
+/// Largest power of two not above `x`, which must be positive, and at least the smallest normal number.
 fn power_of_two(x: f64) -> f64 {
-    /// Of the sign and the exponent.
+    /// Bits of the sign and the exponent.
     const HEAD: u64 = 0xfff << 52;
     f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & HEAD)
 }

@@ -1,8 +1,8 @@
-//! Hermite radial basis functions: a smooth field from points with normals.
+//! Hermite radial basis functions: a smooth field that interpolates points with normals.
 //!
-//! f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³, whose gradient 3 r d and second derivative 3 (r I + d dᵀ/r)
-//! vanish at d = 0. The coefficients come from `pointcloud::fit`, which asks for f = 0 and ∇f = n at every centre; the paper's
-//! models (§6) are fields of this kind.
+//! The field is f(x) = Σ αⱼ φ(|x − cⱼ|) + βⱼ · ∇φ(x − cⱼ) with φ(r) = r³. For d = x − cⱼ, the gradient ∇φ = 3 r d and
+//! the Hessian 3 (r I + d dᵀ/r) vanish at d = 0. `pointcloud::fit` computes the coefficients from the conditions f = 0
+//! and ∇f = n at every centre. The models of the paper (§6) are fields of this kind.
 
 mod data;
 mod frame;
@@ -17,12 +17,13 @@ use super::{Field, Interval, Jet};
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
 
-/// A field from centres and coefficients.
+/// A field given by centres and coefficients, defined everywhere.
 ///
-/// A point costs about as much as forty terms of the sum, however many centres there are: see `tree`. Where points fall
-/// for the first time, memory is allocated, a few kilobytes for each of some hundred places. The value is that of the sum in
-/// double precision within about 10⁻⁶ of the model's size, and jumps by as much from place to place. The field is defined
-/// everywhere. The Hessian has no limit at a centre, unless β is zero; there it is the sum over the other centres.
+/// The cost of a point is about that of forty terms of the sum, however many centres there are (see `tree`). The first
+/// point in a cell of the octree allocates a few kilobytes; a model has some hundred cells near its surface.
+///
+/// The value is that of the sum in double precision to about 10⁻⁶ of the model's size, and it jumps by as much between
+/// cells. The Hessian has no limit at a centre with β ≠ 0; at the centre itself it is the sum over the other centres.
 #[derive(Clone, Debug)]
 pub struct RbfField {
     data: RbfData,
@@ -30,7 +31,7 @@ pub struct RbfField {
 }
 
 impl RbfField {
-    /// The field with these centres and coefficients.
+    /// Field with the centres and coefficients `data`.
     ///
     /// # Errors
     ///
@@ -41,7 +42,7 @@ impl RbfField {
         Ok(Self { data, tree })
     }
 
-    /// Centres and coefficients.
+    /// Centres and coefficients of the field.
     #[must_use]
     pub fn data(&self) -> &RbfData {
         &self.data

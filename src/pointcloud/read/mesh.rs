@@ -36,7 +36,8 @@ impl Mesh {
         push(&mut self.faces, end)
     }
 
-    /// Adds the area vectors of up to `budget` more faces to those of their corners. Returns whether all faces are done.
+    /// Adds the area vectors of up to `budget` more faces to those of their corners. Returns whether all faces are
+    /// done.
     ///
     /// A polygon need not be planar: each of its corners gets the area vector of the whole.
     ///

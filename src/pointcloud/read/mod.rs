@@ -1,7 +1,8 @@
 //! Reader of files of points and meshes: PLY, OBJ, STL and XYZ, detected by content.
 //!
-//! A file is read row by row under a budget, so that the caller can show progress. Its content is not trusted: the counts
-//! in a header are compared with the size of the file before memory is allocated, and an error states its location.
+//! A file is read row by row under a budget, so that the caller can show progress. Its content is not trusted: the
+//! counts in a header are compared with the size of the file before memory is allocated, and an error states its
+//! location.
 
 mod format;
 mod input;
@@ -147,8 +148,8 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Checks the size, detects the format and reads the header. Only the extension of `name` is used, where the content is
-    /// ambiguous.
+    /// Checks the size, detects the format and reads the header. Only the extension of `name` is used, where the
+    /// content is ambiguous.
     ///
     /// # Errors
     ///

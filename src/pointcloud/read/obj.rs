@@ -1,5 +1,5 @@
-//! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn` and `f` and skips all
-//! others.
+//! Reader of OBJ files (Wavefront, "Object Files", appendix B1). It reads the statements `v`, `vn` and `f` and skips
+//! all others.
 
 use super::input::{Input, coordinate_word, quoted, words};
 use super::mesh::Mesh;

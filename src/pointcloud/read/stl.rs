@@ -60,8 +60,8 @@ impl RowReader for Text {
     }
 }
 
-/// Reader of the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three corners
-/// and two bytes of attributes.
+/// Reader of the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three
+/// corners and two bytes of attributes.
 pub(super) struct Binary {
     table: PointTable,
     row: u64,

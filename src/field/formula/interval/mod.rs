@@ -1,7 +1,7 @@
 //! Interval arithmetic over the graph: bounds of f and ∇f over boxes, many boxes at a time.
 //!
-//! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by at
-//! least one unit in the last place where IEEE arithmetic rounds correctly, by several where the value comes from a
+//! The bounds hold at every point of a box. Every operation rounds outward (R. E. Moore, "Interval Analysis", 1966): by
+//! at least one unit in the last place where IEEE arithmetic rounds correctly, by several where the value comes from a
 //! mathematical library with an error of up to two. The bounds of the gradient are those of the derivative expressions.
 //! At a kink (abs, min, max) they contain every slope between the one-sided ones (F. H. Clarke's generalised gradient,
 //! 1975), so that the mean value theorem holds there too.
@@ -211,7 +211,8 @@ impl BoxProgram {
         }
     }
 
-    /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and continuous.
+    /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and
+    /// continuous.
     pub(super) fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
     }

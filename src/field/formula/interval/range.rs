@@ -248,8 +248,8 @@ impl Range {
     fn real_power(self, exponent: Self) -> Self {
         let whole = exponent.lo == exponent.hi && exponent.lo == libm::trunc(exponent.lo);
         if self.lo < 0.0 && whole {
-            // An integer exponent whose value comes from the parameters. The power is monotone in |x|, and the parity of the
-            // exponent gives its sign.
+            // An integer exponent whose value comes from the parameters. The power is monotone in |x|, and the parity
+            // of the exponent gives its sign.
             let size = self.abs().real_power(exponent);
             let symmetric = Self { lo: -size.hi, ..size };
             return if libm::fmod(exponent.lo, 2.0) == 0.0 { size } else { symmetric };

@@ -157,9 +157,9 @@ impl Row {
         out
     }
 
-    /// Sine or cosine of arguments with midpoint m and half-width h. The bounds follow from
-    /// sin(m + t) = sin m cos t + cos m sin t with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. They are wider than the range by a
-    /// term of second order in h.
+    /// Sine or cosine of arguments with midpoint m and half-width h. The bounds follow from sin(m + t) = sin m cos t +
+    /// cos m sin t with 1 − h²/2 ≤ cos t ≤ 1 and |sin t| ≤ h. They are wider than the range by a term of second order
+    /// in h.
     pub(super) fn sine(&self, cosine: bool) -> Self {
         let flags = core::array::from_fn(|k| joined(self.flags[k], self.flags[k]));
         Self::bounds(
