@@ -1,10 +1,13 @@
-//! The field in single precision, cell by cell of an octree.
+//! Octree that evaluates the field in single precision.
 //!
-//! Summed term by term the field costs as much as it has centres, and in single precision it is noise: hundreds of terms of
-//! both signs cancel to nothing on the surface. So space is cut into cells. In each, the terms of far centres are one
-//! [Taylor polynomial](super::taylor), whose coefficients were summed in double precision; those of the few near centres are
-//! small and are summed one by one. A cell is made when the first point falls into it, and depends on nothing but the field.
-//! (Barnes and Hut's tree of 1986, read the other way round as in the fast multipole method of Greengard and Rokhlin, 1987.)
+//! A direct sum costs as many terms as there are centres, and in single precision its result on the surface is noise,
+//! because hundreds of terms of both signs cancel. The octree avoids both. In each cell, one
+//! [Taylor polynomial](super::taylor) replaces the terms of all far centres; its coefficients are summed in double
+//! precision. Only the terms of a few near centres, which are small, are summed directly. A cell is made when the first
+//! point falls into it, and depends on the field alone.
+//!
+//! The scheme is the dual of the tree code of J. Barnes & P. Hut (1986): the expansions are about the targets, as the
+//! local expansions of the fast multipole method (L. Greengard & V. Rokhlin, 1987).
 
 use super::kernel::{self, Centre, Near, Place, Places, Rows};
 use super::taylor::{DEGREE, Polynomial, TERMS, Taylor};
@@ -12,43 +15,46 @@ use super::{Frame, RbfData};
 use crate::math::{LANES, Lanes, Sym3};
 use glam::{DVec3, Vec3};
 
-/// Half-width of the first cell, in local units, in which the centres fill a box of half-width 1/2 to 1. Points outside are
-/// evaluated in double precision.
+/// Half-width of the root cell in local units, in which the centres fill a box of half-width 1/2 to 1. The field
+/// outside of the root cell is evaluated in double precision.
 const ROOT: f64 = 4.0;
 
-/// Largest part that a centre's Taylor series may leave out, before its falling factor of about 1/300: half of the series
-/// then err by less than 10⁻⁷ of the model's size on the surface of the bunny, as much as the rounding of the near terms.
-const REMAINDER: f64 = 3e-4;
-/// Far centres are at least so many radii of the cell away.
-const LEAST_DISTANCE: f64 = 1.5;
-/// Cells with up to so many near centres are not cut. Fewer make a point cheaper and the cells dearer: with 32 a model of
-/// 200 centres is paid for by some 10,000 evaluations.
-const MOST_NEAR: usize = 32;
-/// Nor are cells with no centre within so many radii: little of the surface is there.
+/// Largest bound on the remainder of a far centre's Taylor series, without its coefficient of about 1/300. On the
+/// surface of the bunny, half of the series then have an error below 10⁻⁷ of the model's size, which is that of
+/// rounding in the near terms.
+const MAX_REMAINDER: f64 = 3e-4;
+/// Minimum distance of a far centre, in radii of the cell.
+const MIN_DISTANCE: f64 = 1.5;
+/// Maximum number of near centres of a leaf, beyond which it is split. A smaller number makes evaluation cheaper and
+/// the cells costlier: with 32, the cells of a model of 200 centres pay off after about 10,000 evaluations.
+const MAX_NEAR: usize = 32;
+/// Distance of the nearest centre, in radii of the cell, beyond which a cell is not split: little of the surface is
+/// there.
 const CLOSE: f64 = 1.0;
-/// Nor are cells of this half-width, which a cluster of centres could ask for.
-const SMALLEST: f64 = 1.0 / 512.0;
+/// Half-width at which a cell is not split, even in a cluster of centres.
+const MIN_HALF_WIDTH: f64 = 1.0 / 512.0;
 
-/// Fewer points of a cell than this, one after the other, are evaluated one by one: eight together cost less than three.
-const FEW: usize = 3;
+/// Minimum number of consecutive points of a cell that are evaluated together: eight together cost less than three
+/// single ones.
+const MIN_TOGETHER: usize = 3;
 
-/// No cell yet.
+/// Index of a child that does not exist yet.
 const NONE: u32 = u32::MAX;
-/// The bit of a leaf's index among children.
+/// Bit that marks the index of a child as that of a leaf.
 const LEAF: u32 = 1 << 31;
 
-/// A cell that is cut into eight.
+/// A cell that is split into eight.
 #[derive(Clone, Debug)]
 struct Branch {
     middle: [f32; 3],
-    /// Index of each eighth, with the bit [`LEAF`] of a leaf, or [`NONE`] until a point falls into it.
-    eighths: [u32; 8],
+    /// Index of each octant, with the bit [`LEAF`] for a leaf, or [`NONE`] until a point falls into it.
+    octants: [u32; 8],
     half: f64,
     far: Box<Polynomial>,
     near: Vec<u32>,
 }
 
-/// A cell that is not.
+/// A cell that is not split.
 #[derive(Clone, Debug)]
 struct Leaf {
     middle: [f32; 3],
@@ -56,11 +62,11 @@ struct Leaf {
     inverse: f32,
     far: Rows,
     near: Vec<Near>,
-    /// How many centres are near.
+    /// Number of near centres.
     centres: usize,
 }
 
-/// The octree.
+/// Octree of the cells made so far.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     centres: Vec<Centre>,
@@ -69,7 +75,7 @@ pub(super) struct Tree {
     taylor: Taylor,
     branches: Vec<Branch>,
     leaves: Vec<Leaf>,
-    /// The first cell.
+    /// Index of the root cell, with the bit [`LEAF`] for a leaf.
     root: u32,
 }
 
@@ -77,7 +83,7 @@ impl Tree {
     pub(super) fn new(data: &RbfData) -> Self {
         let frame = Frame::of(data.centres.iter().map(|&c| DVec3::from_array(c)));
         let scale = frame.scale();
-        // f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
+        // With g the function in local coordinates, f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
         let centres: Vec<Centre> = (0..data.centres.len())
             .map(|j| Centre {
                 place: frame.local(DVec3::from_array(data.centres[j])),
@@ -99,7 +105,8 @@ impl Tree {
         tree
     }
 
-    /// Makes a cell from what its parent has for it, and gives its index, with the bit [`LEAF`] of a leaf.
+    /// Adds a cell and returns its index, with the bit [`LEAF`] for a leaf. `far` is the polynomial of its parent,
+    /// shifted to this cell, and `centres` are the near centres of its parent.
     fn add_cell(&mut self, middle: DVec3, half: f64, far: &Polynomial, centres: &[u32]) -> u32 {
         let radius = half * 3.0_f64.sqrt();
         let distance = |j: u32| self.centres[j as usize].place.distance(middle);
@@ -107,16 +114,16 @@ impl Tree {
             let (centre, distance) = (&self.centres[j as usize], distance(j));
             let slope = centre.alpha.abs() * distance + (DEGREE + 1) as f64 * centre.beta.length();
             let remainder = slope * distance * distance * eighth_power(radius / distance);
-            distance > LEAST_DISTANCE * radius && remainder <= REMAINDER
+            distance > MIN_DISTANCE * radius && remainder <= MAX_REMAINDER
         });
         let away: Vec<Centre> = away.iter().map(|&j| self.centres[j as usize]).collect();
         let close = near.iter().any(|&j| distance(j) <= CLOSE * radius);
         let mut far = Box::new(*far);
         self.taylor.expand(&mut far, middle, half, &away);
-        if near.len() > MOST_NEAR && close && half > SMALLEST {
+        if near.len() > MAX_NEAR && close && half > MIN_HALF_WIDTH {
             self.branches.push(Branch {
                 middle: middle.as_vec3().to_array(),
-                eighths: [NONE; 8],
+                octants: [NONE; 8],
                 half,
                 far,
                 near,
@@ -136,29 +143,28 @@ impl Tree {
         }
     }
 
-    /// Index of the leaf of a place in the first cell, made if it is the first of its points.
+    /// Index of the leaf that contains a point of the root cell. Missing cells are added.
     fn leaf(&mut self, [x, y, z]: [f32; 3]) -> usize {
         let mut index = self.root;
         while index & LEAF == 0 {
             let branch = &self.branches[index as usize];
             let upper = [x >= branch.middle[0], y >= branch.middle[1], z >= branch.middle[2]];
-            let eighth = upper.iter().rev().fold(0, |bits, &bit| 2 * bits + usize::from(bit));
-            let mut next = branch.eighths[eighth];
+            let octant = upper.iter().rev().fold(0, |bits, &bit| 2 * bits + usize::from(bit));
+            let mut next = branch.octants[octant];
             if next == NONE {
                 let side = upper.map(|upper| if upper { 1.0 } else { -1.0 });
                 let half = 0.5 * branch.half;
                 let middle = Vec3::from_array(branch.middle).as_dvec3() + DVec3::from_array(side) * half;
                 let (far, near) = (self.taylor.shifted(&branch.far, side), branch.near.clone());
                 next = self.add_cell(middle, half, &far, &near);
-                self.branches[index as usize].eighths[eighth] = next;
+                self.branches[index as usize].octants[octant] = next;
             }
             index = next;
         }
         (index & !LEAF) as usize
     }
 
-    /// Gives to `store` with the index of each point f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy,
-    /// yz, zz).
+    /// Calls `store` for each point with its index and f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz).
     fn sums<const N: usize>(
         &mut self,
         data: &RbfData,
@@ -169,7 +175,7 @@ impl Tree {
         let mut last = usize::MAX;
         let mut n = 0;
         while n < points.len() {
-            // The next points, as many of them as are in the cell of the first.
+            // Up to eight of the next points, of which those in the cell of the first one are evaluated together.
             let count = LANES.min(points.len() - n);
             let mut local = [Lanes::splat(0.0); 3];
             for (lane, p) in points[n..n + count].iter().enumerate() {
@@ -181,8 +187,8 @@ impl Tree {
                 *local = (*local - Lanes::splat(origin)) * Lanes::splat(scale);
             }
             let first = local.map(|lanes| lanes.0[0]);
-            if !self.leaves.get(last).is_some_and(|leaf| holds(&leaf.middle, leaf.half, &first)) {
-                if !holds(&[0.0; 3], ROOT as f32, &first) {
+            if !self.leaves.get(last).is_some_and(|leaf| contains(&leaf.middle, leaf.half, &first)) {
+                if !contains(&[0.0; 3], ROOT as f32, &first) {
                     store(n, exact(data, points[n]));
                     n += 1;
                     continue;
@@ -191,13 +197,13 @@ impl Tree {
             }
             let Leaf { middle, half, inverse, far, near, centres } = &self.leaves[last];
             let together = (1..count)
-                .find(|&lane| !holds(middle, *half, &local.map(|lanes| lanes.0[lane])))
+                .find(|&lane| !contains(middle, *half, &local.map(|lanes| lanes.0[lane])))
                 .unwrap_or(count);
             let offset: [Lanes; 3] = core::array::from_fn(|axis| {
                 (local[axis] - Lanes::splat(middle[axis])) * Lanes::splat(*inverse)
             });
-            // Gradients are those of the model; values and second derivatives have units.
-            if together < FEW {
+            // Gradients are the same in local units; values and second derivatives are not.
+            if together < MIN_TOGETHER {
                 for lane in 0..together {
                     let [local, offset] = [&local, &offset].map(|place| place.map(|lanes| lanes.0[lane]));
                     let mut sums = kernel::sums::<N>(far, near, &Place { local, offset, inverse: *inverse });
@@ -219,7 +225,7 @@ impl Tree {
     }
 
     pub(super) fn values(&mut self, data: &RbfData, points: &[Vec3], value: &mut [f32]) {
-        // Values alone are asked for now and then: no code of their own.
+        // Values alone are rarely needed, so they have no code of their own.
         self.sums(data, points, |n, [v, ..]: [f32; 4]| value[n] = v);
     }
 
@@ -248,19 +254,19 @@ impl Tree {
     }
 }
 
-/// Whether a cell, which has its lower faces, holds a place. NaN is outside of all.
-fn holds(middle: &[f32; 3], half: f32, place: &[f32; 3]) -> bool {
+/// Whether a cell, which includes its lower faces, contains a point. NaN is outside of every cell.
+fn contains(middle: &[f32; 3], half: f32, place: &[f32; 3]) -> bool {
     (0..3).all(|k| middle[k] - half <= place[k] && place[k] < middle[k] + half)
 }
 
-/// x⁸, one power more than the polynomials have.
+/// x⁸, where 8 is the degree of the polynomials plus one.
 fn eighth_power(x: f64) -> f64 {
     let square = x * x;
     let fourth = square * square;
     fourth * fourth
 }
 
-/// The first `N` of value, gradient and Hessian, from double precision.
+/// First `N` numbers of value, gradient and Hessian, computed in double precision.
 fn exact<const N: usize>(data: &RbfData, p: Vec3) -> [f32; N] {
     let jet = data.jet(p.as_dvec3());
     let (g, h) = (jet.gradient, jet.hessian);
