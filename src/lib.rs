@@ -62,17 +62,17 @@
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.
 //! * [`export`]: PLY, CSV, XYZ and NPY.
-//! * [`json`]: what crosses between the core and the page, as text.
+//! * [`answer`]: what a command of the page is answered.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
 //! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).
 //! * `web`: what JavaScript sees, on `wasm32` only.
 
+pub mod answer;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod baseline;
 pub mod differential;
 pub mod export;
 pub mod field;
-pub mod json;
 pub mod math;
 pub mod mesh;
 pub mod particles;

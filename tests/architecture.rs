@@ -16,7 +16,8 @@ const ROOMS: [Room; 3] = [
             ("math", &[]),
             // Long work in slices: of any kind.
             ("pieces", &[]),
-            ("json", &["math"]),
+            // The form of an answer, whatever is answered.
+            ("answer", &[]),
             ("field", &["math"]),
             ("differential", &["math", "field"]),
             // From a file to a field. The core that samples is built without it.
@@ -37,7 +38,6 @@ const ROOMS: [Room; 3] = [
                 &[
                     "math",
                     "pieces",
-                    "json",
                     "field",
                     "differential",
                     "spatial",
@@ -51,8 +51,9 @@ const ROOMS: [Room; 3] = [
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
-            ("web/core", &["json", "field", "sampler", "session"]),
-            ("web/points", &["json", "math", "pointcloud"]),
+            ("web/values", &["answer"]),
+            ("web/core", &["field", "session"]),
+            ("web/points", &["field", "pointcloud"]),
             ("web/render", &["render"]),
         ],
     ),

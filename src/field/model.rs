@@ -1,10 +1,11 @@
 //! What is known of models from points, beside their functions: what the built-in ones are, where points come from and how
 //! well they are met. The points themselves and the fitting are in the module `points`, which the core does without.
 
-use serde::Serialize;
+use crate::math::Bounds;
+use serde::{Deserialize, Serialize};
 
 /// Where the normals of a model's points come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NormalSource {
     /// They came with the points.
@@ -17,7 +18,7 @@ pub enum NormalSource {
 }
 
 /// A model from points, as it is reported.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelInfo {
     /// What it is called: a built-in model's name or the file's.
     pub name: String,
@@ -37,6 +38,15 @@ pub struct ModelInfo {
     pub normals: NormalSource,
     /// Things the user should know, in words.
     pub warnings: Vec<String>,
+}
+
+/// What goes with a solved system from where it was solved to where it is sampled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SolvedModel {
+    /// What is known of the model.
+    pub info: ModelInfo,
+    /// The box to sample in.
+    pub bounds: Bounds,
 }
 
 /// A built-in model.

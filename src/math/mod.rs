@@ -1,7 +1,6 @@
 //! Small numeric building blocks that every other module may use: SIMD lanes, symmetric matrices, tangent
 //! frames, boxes and the tolerances shared across the crate.
 
-pub mod decimal;
 pub mod functions;
 mod lanes;
 mod real;
@@ -10,12 +9,21 @@ pub use lanes::{LANES, Lanes};
 pub use real::Real;
 
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// The shortest text that reads back as `value`; with an exponent if it is very large or very small.
+#[must_use]
+pub fn shortest_text(value: f64) -> String {
+    let size = value.abs();
+    let plain = size == 0.0 || !size.is_finite() || (1e-5..1e15).contains(&size);
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
 
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.
 pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// An axis-aligned box, in the field's coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounds {
     /// Smallest corner.
     pub min: [f64; 3],
@@ -198,7 +206,30 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounds, sort_few, sort_numbers};
+    use super::{Bounds, shortest_text, sort_few, sort_numbers};
+
+    #[test]
+    fn a_text_of_a_number_is_short_and_reads_back() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "-0"),
+            (0.006, "0.006"),
+            (-1.5, "-1.5"),
+            (1e-5, "0.00001"),
+            (9.5e-6, "9.5e-6"),
+            (123_456_789.0, "123456789"),
+            (999_999_999_999_999.9, "999999999999999.9"),
+            (1e15, "1e15"),
+            (5e-324, "5e-324"),
+            (f64::MAX, "1.7976931348623157e308"),
+            (f64::NEG_INFINITY, "-inf"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(shortest_text(value), text);
+            assert_eq!(text.parse(), Ok(value));
+        }
+        assert_eq!(shortest_text(f64::NAN), "NaN");
+    }
 
     #[test]
     fn boxes_in_which_single_precision_fails_are_not_valid() {

@@ -107,6 +107,23 @@ impl JobError {
     }
 }
 
+/// What is wrong with a model or a file, as the page shows it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// A word for the kind of mistake.
+    pub kind: &'static str,
+    /// One sentence for a person; plain text.
+    pub message: String,
+    /// Number of the line of a text file that is wrong, from 1.
+    pub line: Option<u64>,
+}
+
+impl From<&JobError> for Fault {
+    fn from(error: &JobError) -> Self {
+        Self { kind: error.kind(), message: error.to_string(), line: error.line() }
+    }
+}
+
 /// Identifiers of the built-in models.
 fn names() -> String {
     let names: Vec<&str> = model::MODELS.iter().map(|model| model.id).collect();

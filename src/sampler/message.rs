@@ -1,7 +1,7 @@
 //! What a run that has ended tells its user.
 
 use super::{Sampler, StopReason};
-use crate::math::decimal::text;
+use crate::math::shortest_text;
 use crate::sampler::discovery::survey::Absence;
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ impl Sampler {
                 let distance = |p: &DVec3| (*p - middle).length_squared();
                 let points = self.seeds.singular().iter().map(|point| point.position);
                 let nearest = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-                let [x, y, z] = nearest.unwrap_or_default().to_array().map(|x| text(rounded(x)));
+                let [x, y, z] = nearest.unwrap_or_default().to_array().map(|x| shortest_text(rounded(x)));
                 format!(
                     "No surface that particles can cover: f comes to zero, for example near ({x}, {y}, {z}), but its gradient \
                      vanishes there. This may be a point or a curve, as for x^2 + y^2 = 0, or a surface on which f is flat, as \

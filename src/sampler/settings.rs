@@ -1,12 +1,12 @@
 //! What a caller may choose, with the paper's values as defaults.
 
 use crate::math::Bounds;
-use crate::math::decimal::text;
+use crate::math::shortest_text;
 use core::fmt;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How the particles' size is given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeMode {
     /// By [`Settings::radius_share`].
@@ -17,7 +17,7 @@ pub enum SizeMode {
 }
 
 /// What becomes of gaps between fronts that are wide enough for a particle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GapPolicy {
     /// A particle is placed in the middle.
@@ -28,7 +28,7 @@ pub enum GapPolicy {
 }
 
 /// Whether all particles have one size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// One radius everywhere (paper §4).
@@ -39,7 +39,7 @@ pub enum Sampling {
 }
 
 /// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
     /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
@@ -52,7 +52,7 @@ pub enum LawKind {
 }
 
 /// How a child of an adaptive particle is placed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Placement {
     /// The equations of tangency are solved.
@@ -63,7 +63,8 @@ pub enum Placement {
 }
 
 /// Settings of a run. `Default` gives the paper's values where it names them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Settings {
     /// Whether all particles have one size.
     pub sampling: Sampling,
@@ -137,7 +138,8 @@ pub enum SettingsError {
 }
 
 fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    write!(f, "{name} is {}, but must lie between {} and {}", text(*value), text(*min), text(*max))
+    let [value, min, max] = [*value, *min, *max].map(shortest_text);
+    write!(f, "{name} is {value}, but must lie between {min} and {max}")
 }
 
 impl Settings {

@@ -50,8 +50,6 @@ pub struct SurfaceEntry {
     pub genus: Option<u32>,
     /// Two sentences about it.
     pub story: &'static str,
-    /// The formula as MathML.
-    pub mathml: String,
 }
 
 /// A setting of a run.
@@ -201,7 +199,6 @@ fn surface(surface: &Surface) -> SurfaceEntry {
         degree: surface.degree,
         genus: surface.genus,
         story: surface.story,
-        mathml: surface.field().mathml(),
     }
 }
 

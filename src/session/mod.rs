@@ -2,16 +2,17 @@
 //! there is no clock, no GPU and no platform in here.
 
 mod describe;
-mod read;
+mod fault;
 mod warnings;
 
 pub use describe::{
     Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
 };
+pub use fault::{Fault, FaultKind};
 
 use crate::differential::{self, Curvature};
 use crate::field::Field;
-use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, Parameter};
+use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
@@ -24,7 +25,7 @@ use crate::sampler::{
     StopReason,
 };
 use glam::Vec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -36,7 +37,8 @@ const MAX_KEPT: usize = 400_000;
 const SHARE_OF_RUN: f64 = 0.27;
 
 /// What a caller asks of the field; everything is optional.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct FieldRequest {
     /// Identifier of a gallery surface to start from; without one, the present field is changed.
     pub surface: Option<String>,
@@ -60,15 +62,6 @@ pub enum FieldKind {
     Points,
 }
 
-/// What is asked of a model from points beside its function.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PointsRequest {
-    /// What is known of the model.
-    pub info: ModelInfo,
-    /// Clip box.
-    pub bounds: Bounds,
-}
-
 /// The field as it now is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FieldAnswer {
@@ -86,8 +79,8 @@ pub struct FieldAnswer {
     pub auto: Vec<String>,
     /// Clip box.
     pub bounds: Bounds,
-    /// The formula as a MathML element.
-    pub mathml: String,
+    /// The formula as MathML; none if there is no formula.
+    pub mathml: Option<MathNode>,
 }
 
 /// Why a field was refused. The field before it stays.
@@ -300,7 +293,7 @@ impl Session {
                 parameters: field.parameters().to_vec(),
                 auto: field.auto().to_vec(),
                 bounds: self.bounds,
-                mathml: field.mathml(),
+                mathml: Some(field.mathml()),
             },
             Source::Points { info, .. } => FieldAnswer {
                 kind: FieldKind::Points,
@@ -310,7 +303,7 @@ impl Session {
                 parameters: Vec::new(),
                 auto: Vec::new(),
                 bounds: self.bounds,
-                mathml: String::new(),
+                mathml: None,
             },
         }
     }

@@ -1,60 +1,22 @@
-//! The core bundle: a [`Session`] behind JSON strings and copies of the particle columns.
+//! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
-use crate::field::formula::{FormulaError, FormulaErrorKind};
+use super::values::{answer, to_js};
+use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
-use crate::json;
-use crate::sampler::Settings;
-use crate::session::{FieldError, FieldRequest, PointsRequest, Session, describe};
+use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
 use glam::Vec3;
-use serde::Serialize;
+use serde::de::DeserializeOwned;
+use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// A sampling session. Strings are JSON; columns are copies, three floats a vector.
+/// A sampling session. Requests and answers are plain objects; columns are copies, three floats a vector.
 #[wasm_bindgen]
 pub struct Core {
     session: Session,
 }
 
-fn text(value: &impl Serialize) -> String {
-    json::to_string(value).unwrap_or_else(|error| refusal("json", &error.to_string()))
-}
-
-fn refusal(kind: &str, message: &str) -> String {
-    refused(&Refusal { kind, message, start: 0, end: 0, suggestion: None, names: &[] })
-}
-
-/// What is wrong with a request.
-#[derive(Serialize)]
-struct Refusal<'a, Kind> {
-    kind: Kind,
-    message: &'a str,
-    start: usize,
-    end: usize,
-    suggestion: Option<&'a str>,
-    names: &'a [String],
-}
-
-fn refused<Kind: Serialize>(refusal: &Refusal<'_, Kind>) -> String {
-    format!(r#"{{"ok":false,"error":{}}}"#, json::to_string(refusal).unwrap_or_default())
-}
-
-/// An answer, which has fields, with `ok` among them.
-fn accepted(value: &impl Serialize) -> String {
-    let mut answer = text(value);
-    answer.insert_str(1, r#""ok":true,"#);
-    answer
-}
-
-fn formula_error(formula: &str, error: &FormulaError) -> String {
-    let span = error.utf16_span(formula);
-    refused::<FormulaErrorKind>(&Refusal {
-        kind: error.kind,
-        message: &error.message,
-        start: span.start,
-        end: span.end,
-        suggestion: error.suggestion.as_deref(),
-        names: &error.names,
-    })
+fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
+    serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
 }
 
 #[wasm_bindgen]
@@ -68,25 +30,16 @@ impl Core {
     }
 
     /// Everything there is to choose and to read: `Description`.
-    pub fn describe(&self) -> String {
-        text(&describe())
+    pub fn describe(&self) -> JsValue {
+        to_js(&describe())
     }
 
-    /// Changes the field: `FieldRequest` to `FieldAnswer`. After an error the last good field stays.
-    pub fn set_field(&mut self, request: &str) -> String {
-        let request: FieldRequest = match json::from_str(request) {
-            Ok(request) => request,
-            Err(error) => return refusal("request", &error.to_string()),
-        };
-        match self.session.set_field(&request) {
-            Ok(answer) => accepted(&answer),
-            Err(FieldError::Formula(error)) => {
-                formula_error(request.formula.as_deref().unwrap_or_default(), &error)
-            }
-            Err(error @ FieldError::UnknownSurface(_)) => refusal("unknown_surface", &error.to_string()),
-            Err(error @ FieldError::Box) => refusal("box", &error.to_string()),
-            Err(error @ FieldError::Points(_)) => refusal("points", &error.to_string()),
-        }
+    /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    pub fn set_field(&mut self, request: JsValue) -> JsValue {
+        answer(read::<FieldRequest>(request, FaultKind::Request).and_then(|request| {
+            let formula = request.formula.as_deref().unwrap_or_default();
+            self.session.set_field(&request).map_err(|error| Fault::in_field(error, formula))
+        }))
     }
 
     /// Refuses runs that need more than about `megabytes` with their report.
@@ -94,49 +47,35 @@ impl Core {
         self.session.limit_memory(megabytes << 20);
     }
 
-    /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says of
-    /// it with the clip box, `{info, bounds}`; to `FieldAnswer`. After an error the last good field stays.
-    pub fn set_points(&mut self, system: &[u8], about: &str) -> String {
-        let about: PointsRequest = match json::from_str(about) {
-            Ok(about) => about,
-            Err(error) => return refusal("request", &error.to_string()),
-        };
-        let answer = RbfData::from_bytes(system)
-            .map_err(FieldError::from)
-            .and_then(|data| self.session.set_points(data, about.info, about.bounds));
-        match answer {
-            Ok(answer) => accepted(&answer),
-            Err(error @ FieldError::Box) => refusal("box", &error.to_string()),
-            Err(error) => refusal("points", &error.to_string()),
-        }
+    /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
+    /// of it, `SolvedModel`; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+    pub fn set_points(&mut self, system: &[u8], about: JsValue) -> JsValue {
+        answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
+            let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
+            self.session.set_points(data, info, bounds).map_err(|error| Fault::in_field(error, ""))
+        }))
     }
 
-    /// Starts a run: `Settings`, of which what is missing has its default.
-    pub fn start(&mut self, settings: &str) -> String {
-        let settings: Settings = match json::from_str(settings) {
-            Ok(settings) => settings,
-            Err(error) => return refusal("settings", &error.to_string()),
-        };
-        match self.session.start(&settings) {
-            Ok(start) => accepted(&start),
-            Err(error) => refusal("settings", &error.to_string()),
-        }
+    /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.
+    pub fn start(&mut self, settings: JsValue) -> JsValue {
+        answer(read(settings, FaultKind::Settings).and_then(|settings| {
+            self.session.start(&settings).map_err(|error| Fault::new(FaultKind::Settings, &error))
+        }))
     }
 
     /// Does up to `budget` units of work: `Progress`.
-    pub fn step(&mut self, budget: u32) -> String {
-        text(&self.session.step(budget))
+    pub fn step(&mut self, budget: u32) -> JsValue {
+        to_js(&self.session.step(budget))
     }
 
     /// Queues relaxation steps on the present particles.
-    pub fn relax(&mut self, steps: u32) -> String {
+    pub fn relax(&mut self, steps: u32) {
         self.session.relax(steps);
-        r#"{"ok":true}"#.to_owned()
     }
 
     /// Ends the run and keeps the particles: `Progress`.
-    pub fn cancel(&mut self) -> String {
-        text(&self.session.cancel())
+    pub fn cancel(&mut self) -> JsValue {
+        to_js(&self.session.cancel())
     }
 
     /// Number of particles.
@@ -175,8 +114,8 @@ impl Core {
     }
 
     /// Measures the particles, up to `budget` pieces of the work: `Report` once it is complete, nothing before.
-    pub fn measure(&mut self, budget: u32) -> Option<String> {
-        self.session.measure(budget).map(|report| text(&report))
+    pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
+        self.session.measure(budget).map(|report| to_js(&report))
     }
 
     /// Natural neighbours per particle, as of the last report.

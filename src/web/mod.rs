@@ -8,6 +8,9 @@ mod core;
 #[cfg(not(any(feature = "render", feature = "points")))]
 pub use core::Core;
 
+#[cfg(not(feature = "render"))]
+mod values;
+
 #[cfg(feature = "points")]
 mod points;
 #[cfg(feature = "points")]

@@ -2,7 +2,7 @@
 //! and the MathML is well formed.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES};
+use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES, MathGroup, MathNode};
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::Sym3;
@@ -246,37 +246,31 @@ fn check_error(text: &str) {
     }
 }
 
-/// Panics unless `markup` is one balanced `math` element with the numbers of children that MathML prescribes.
-fn check_mathml(markup: &str) {
-    assert!(markup.starts_with("<math ") && markup.ends_with("</math>"), "{markup}");
-    let mut open: Vec<(String, usize)> = Vec::new();
-    let mut rest = markup;
-    while let Some(at) = rest.find('<') {
-        let (text, tag) = rest.split_at(at);
-        let leaf = matches!(open.last(), Some((name, _)) if ["mi", "mn", "mo"].contains(&name.as_str()));
-        assert_eq!(text.is_empty(), !leaf || tag.starts_with("<m"), "{markup}");
-        assert!(!text.contains(['>', '"']), "{markup}");
-        let end = tag.find('>').unwrap_or_else(|| panic!("{markup}"));
-        if let Some(name) = tag[..end].strip_prefix("</") {
-            let (opened, children) = open.pop().unwrap_or_else(|| panic!("{markup}"));
-            assert_eq!(opened, name, "{markup}");
-            let wanted = match name {
-                "mfrac" | "msup" | "msub" | "mroot" => 2..=2,
-                "math" | "msqrt" => 1..=usize::MAX,
-                "mrow" => 2..=usize::MAX,
-                _ => 0..=0,
+/// Panics unless every element has as many children as MathML prescribes, or a text.
+fn check_mathml(node: &MathNode) {
+    match node {
+        MathNode::Token { text, .. } => assert!(!text.is_empty(), "{node:?}"),
+        MathNode::Group { tag, children } => {
+            let wanted = match tag {
+                MathGroup::Mfrac | MathGroup::Msup | MathGroup::Msub | MathGroup::Mroot => 2..=2,
+                MathGroup::Msqrt => 1..=usize::MAX,
+                MathGroup::Mrow => 2..=usize::MAX,
             };
-            assert!(wanted.contains(&children), "{name} with {children} children in {markup}");
-        } else {
-            let name = tag[1..end].split(' ').next().unwrap_or_default();
-            if let Some((_, children)) = open.last_mut() {
-                *children += 1;
-            }
-            open.push((name.to_owned(), 0));
+            assert!(wanted.contains(&children.len()), "{tag:?} with {} children in {node:?}", children.len());
+            children.iter().for_each(check_mathml);
         }
-        rest = &tag[end + 1..];
     }
-    assert!(rest.is_empty() && open.is_empty(), "{markup}");
+}
+
+/// The element as `tag(children)`; a token is its text alone, with `·` for the invisible product.
+fn written(node: &MathNode) -> String {
+    match node {
+        MathNode::Token { text, .. } => text.replace('\u{2062}', "·").replace('\u{2061}', "apply"),
+        MathNode::Group { tag, children } => {
+            let children: Vec<String> = children.iter().map(written).collect();
+            format!("{}({})", format!("{tag:?}").to_lowercase(), children.join(" "))
+        }
+    }
 }
 
 #[test]
@@ -288,35 +282,38 @@ fn mathml_of_the_gallery_is_well_formed() {
 
 #[test]
 fn mathml_is_set_as_one_writes_by_hand() {
-    let body = |text: &str| {
-        let markup = FormulaField::parse(text, &[]).unwrap().mathml();
-        let inner = markup.split_once("><mrow>").unwrap().1;
-        inner.split_once("</mrow></math>").unwrap().0.replace('\u{2062}', "·").replace('\u{2061}', "")
-    };
-    let zero = "<mo>=</mo><mn>0</mn>";
     let cases = [
-        ("x = 1", "<mi>x</mi><mo>=</mo><mn>1</mn>".to_owned()),
-        ("x/2", format!("<mfrac><mi>x</mi><mn>2</mn></mfrac>{zero}")),
-        ("x^2", format!("<msup><mi>x</mi><mn>2</mn></msup>{zero}")),
-        ("(x + 1)^2", {
-            let sum = "<mrow><mi>x</mi><mo>+</mo><mn>1</mn></mrow>";
-            format!("<msup><mrow><mo>(</mo>{sum}<mo>)</mo></mrow><mn>2</mn></msup>{zero}")
-        }),
-        ("sqrt(pi)x", format!("<mrow><msqrt><mi>π</mi></msqrt><mo>·</mo><mi>x</mi></mrow>{zero}")),
-        ("2*3x", format!("<mrow><mn>2</mn><mo>⋅</mo><mn>3</mn><mo>·</mo><mi>x</mi></mrow>{zero}")),
-        ("alpha_1 x", {
-            format!("<mrow><msub><mi>α</mi><mn>1</mn></msub><mo>·</mo><mi>x</mi></mrow>{zero}")
-        }),
-        ("sin(x)^2", {
-            let power = "<msup><mi>sin</mi><mn>2</mn></msup>";
-            format!("<mrow>{power}<mo></mo><mrow><mo>(</mo><mi>x</mi><mo>)</mo></mrow></mrow>{zero}")
-        }),
-        ("exp(-x)", { format!("<msup><mi>e</mi><mrow><mo>−</mo><mi>x</mi></mrow></msup>{zero}") }),
-        ("abs(x)", format!("<mrow><mo>|</mo><mi>x</mi><mo>|</mo></mrow>{zero}")),
+        ("x = 1", "mrow(x = 1)"),
+        ("x/2", "mrow(mfrac(x 2) = 0)"),
+        ("x^2", "mrow(msup(x 2) = 0)"),
+        ("(x + 1)^2", "mrow(msup(mrow(( mrow(x + 1) )) 2) = 0)"),
+        ("sqrt(pi)x", "mrow(mrow(msqrt(π) · x) = 0)"),
+        ("cbrt(x)", "mrow(mroot(x 3) = 0)"),
+        ("2*3x", "mrow(mrow(2 ⋅ 3 · x) = 0)"),
+        ("x y/2*z", "mrow(mrow(mfrac(mrow(x · y) 2) · z) = 0)"),
+        ("x - y + z", "mrow(mrow(x − y + z) = 0)"),
+        ("1e20 x", "mrow(mrow(mrow(1 ⋅ msup(10 20)) · x) = 0)"),
+        ("alpha_1 x", "mrow(mrow(msub(α 1) · x) = 0)"),
+        ("sin(x)^2", "mrow(mrow(msup(sin 2) apply mrow(( x ))) = 0)"),
+        ("smin(x, y, 1)", "mrow(mrow(smin apply mrow(( x , y , 1 ))) = 0)"),
+        ("log10(x)", "mrow(mrow(msub(log 10) apply mrow(( x ))) = 0)"),
+        ("hypot(x, y)", "mrow(msqrt(msup(x 2) + msup(y 2)) = 0)"),
+        ("exp(-x)", "mrow(msup(e mrow(− x)) = 0)"),
+        ("abs(x)", "mrow(mrow(| x |) = 0)"),
     ];
     for (text, wanted) in cases {
-        assert_eq!(body(text), wanted, "{text}");
+        assert_eq!(written(&FormulaField::parse(text, &[]).unwrap().mathml()), wanted, "{text}");
     }
+}
+
+#[test]
+fn mathml_crosses_to_the_page_as_tags_with_texts_or_children() {
+    let node = FormulaField::parse("x = 1", &[]).unwrap().mathml();
+    let wanted = serde_json::json!({
+        "tag": "mrow",
+        "children": [{"tag": "mi", "text": "x"}, {"tag": "mo", "text": "="}, {"tag": "mn", "text": "1"}],
+    });
+    assert_eq!(serde_json::to_value(&node).unwrap(), wanted);
 }
 
 #[test]

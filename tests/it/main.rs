@@ -6,7 +6,6 @@ mod baseline;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;
-mod decimal;
 mod differential;
 mod faults;
 mod formula;
@@ -15,7 +14,6 @@ mod formula_properties;
 mod front;
 mod gallery;
 mod half_edge;
-mod json;
 mod mesh;
 #[cfg(feature = "points")]
 mod models;

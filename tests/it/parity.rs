@@ -5,7 +5,6 @@
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
 use marching_particles::field::model;
-use marching_particles::json;
 use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
@@ -39,7 +38,7 @@ const BUDGET: u32 = 100_000;
 fn run(case: &Run) -> (usize, String) {
     let mut session = Session::new();
     if let Some(field) = &case.field {
-        let field: FieldRequest = json::from_str(&field.to_string())
+        let field: FieldRequest = serde_json::from_value(field.clone())
             .unwrap_or_else(|error| panic!("{}: the field request is malformed: {error}", case.name));
         session.set_field(&field).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
@@ -50,7 +49,7 @@ fn run(case: &Run) -> (usize, String) {
             .set_points(fit.data, fit.info, fit.bounds)
             .unwrap_or_else(|error| panic!("{}: {error}", case.name));
     }
-    let settings: Settings = json::from_str(&case.settings.to_string())
+    let settings: Settings = serde_json::from_value(case.settings.clone())
         .unwrap_or_else(|error| panic!("{}: the settings are malformed: {error}", case.name));
     session.start(&settings).unwrap_or_else(|error| panic!("{}: {error}", case.name));
     while session.step(BUDGET).stop_reason.is_none() {}

@@ -1,12 +1,62 @@
 //! Tests of the session: fields, runs and reports.
 
-use marching_particles::json;
+use marching_particles::field::formula::Parameter;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Phase, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{GapPolicy, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldError, FieldRequest, Session, describe};
 
 fn request(text: &str) -> FieldRequest {
-    json::from_str(text).expect("a field request")
+    serde_json::from_str(text).expect("a field request")
+}
+
+#[test]
+fn requests_and_settings_are_read_to_the_last_bit() {
+    let request = request(
+        r#" { "surface" : "torus", "formula":null,
+        "parameters":{"a":1,"b":-2.5e-3,"\u00e9\ud83d\ude00\n\"":0.1},
+        "declare":[{"name":"k","label":"K","value":1.0,"min":0,"max":2,"step":0.1}],
+        "bounds":{"min":[-1,-1.5,-2],"max":[1,2,3e0]}, "unknown":[{},[],"",true,false,null,{"x":[1,2]}] } "#,
+    );
+    assert_eq!((request.surface.as_deref(), request.formula.as_deref()), (Some("torus"), None));
+    assert_eq!(request.parameters.get("é😀\n\""), Some(&0.1));
+    let declared =
+        Parameter { name: "k".into(), label: "K".into(), value: 1.0, min: 0.0, max: 2.0, step: 0.1 };
+    assert_eq!(request.declare, [declared]);
+    assert_eq!(request.bounds, Some(Bounds { min: [-1.0, -1.5, -2.0], max: [1.0, 2.0, 3.0] }));
+    let settings: Settings =
+        serde_json::from_str(r#"{"seed":18446744073709551615,"count":77,"gaps":"leave"}"#).expect("settings");
+    assert_eq!((settings.seed, settings.count, settings.gaps), (u64::MAX, 77, GapPolicy::Leave));
+    assert_eq!(settings.relax_steps, Settings::default().relax_steps);
+    // A reader that rounds twice takes the next double for some of these.
+    for k in 1..1000 {
+        let settings = Settings { radius_share: f64::from(k).sqrt() * 1e-3, ..Settings::default() };
+        let written = serde_json::to_string(&settings).expect("settings can be written");
+        assert_eq!(serde_json::from_str::<Settings>(&written).expect("what was written"), settings);
+    }
+}
+
+#[test]
+fn malformed_settings_are_refused() {
+    let nested = "[".repeat(100_000);
+    for text in [
+        "",
+        "{",
+        "{}x",
+        "3",
+        "{seed:1}",
+        "{\"seed\":-1}",
+        "{\"seed\":1.5}",
+        "{\"seed\":\"1\"}",
+        "{\"seed\":null}",
+        "{\"count\":4294967296}",
+        "{\"radius_share\":1e999}",
+        "{\"radius_share\":NaN}",
+        "{\"gaps\":\"sometimes\"}",
+        "{\"seed\":1,\"seed\":2}",
+        &nested,
+    ] {
+        assert!(serde_json::from_str::<Settings>(text).is_err(), "{text}");
+    }
 }
 
 fn run(session: &mut Session, settings: &Settings, budget: u32) -> StopReason {

@@ -23,7 +23,7 @@ const worker = `
 import init, { Core } from './core.js';
 await init();
 const start = (core, settings) => {
-  const answer = JSON.parse(core.start(JSON.stringify(settings)));
+  const answer = core.start(settings);
   if (answer.ok !== true) throw new Error(JSON.stringify(answer));
 };
 // The radius that gives the count is found by a front of its own, so that the timed runs do the front once.
@@ -31,9 +31,9 @@ const share = (count, max_particles) => {
   const core = new Core();
   start(core, { size_mode: 'count', count, relax_steps: 0, max_particles });
   let progress;
-  do progress = JSON.parse(core.step(20000));
+  do progress = core.step(20000);
   while (progress.stop_reason === null);
-  const { surfaces, default_surface } = JSON.parse(core.describe());
+  const { surfaces, default_surface } = core.describe();
   const { min, max } = surfaces.find(({ id }) => id === default_surface).bounds;
   core.free();
   return progress.radius / Math.hypot(...max.map((high, axis) => high - min[axis]));
@@ -49,7 +49,7 @@ self.onmessage = ({ data: { count, runs } }) => {
     let front = 0;
     let progress;
     do {
-      progress = JSON.parse(core.step(20000));
+      progress = core.step(20000);
       if (front === 0 && (progress.phase === 'relaxation' || progress.phase === 'done')) front = performance.now() - began;
     } while (progress.stop_reason === null);
     const whole = performance.now() - began;

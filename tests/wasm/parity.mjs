@@ -19,17 +19,16 @@ const { Points } = await load('points');
 /** Units of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 977;
 
-/** @param {string} json the core's answer @param {string} name what it answers */
-function accepted(json, name) {
-  const answer = JSON.parse(json);
-  if (answer.ok !== true) throw new Error(`${name}: ${json}`);
+/** @param {{ok: boolean}} answer @param {string} name what it answers */
+function accepted(answer, name) {
+  if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
 }
 
 /** @param {Core} core @param {string} model @param {string} name */
 function solve(core, model, name) {
   const points = new Points();
   accepted(points.model(model), name);
-  for (let done = false; !done; { done } = JSON.parse(points.step(BUDGET)));
+  for (let done = false; !done; { done } = points.step(BUDGET));
   accepted(core.set_points(points.field(), points.info()), `${name}: set_points`);
   points.free();
 }
@@ -37,10 +36,10 @@ function solve(core, model, name) {
 /** @param {{ name: string, field?: object, model?: string, settings: object }} run */
 function sample({ name, field, model, settings }) {
   const core = new Core();
-  if (field) accepted(core.set_field(JSON.stringify(field)), `${name}: set_field`);
+  if (field) accepted(core.set_field(field), `${name}: set_field`);
   if (model) solve(core, model, name);
-  accepted(core.start(JSON.stringify(settings)), `${name}: start`);
-  while (JSON.parse(core.step(BUDGET)).stop_reason === null);
+  accepted(core.start(settings), `${name}: start`);
+  while (core.step(BUDGET).stop_reason === null);
   const result = { count: core.count(), digest: core.digest() };
   core.free();
   return result;
@@ -61,8 +60,8 @@ for (const run of [...runs, ...models]) {
 // With no memory left, a run that needs more is refused in words, and the instance goes on working.
 const core = new Core();
 const enough = { radius_share: 0.02, relax_steps: 2 };
-accepted(core.start(JSON.stringify(enough)), 'a run before the memory is used up');
-while (JSON.parse(core.step(BUDGET)).stop_reason === null);
+accepted(core.start(enough), 'a run before the memory is used up');
+while (core.step(BUDGET).stop_reason === null);
 const digest = core.digest();
 for (let pages = 32_768; pages >= 1; pages = Math.floor(pages / 2)) {
   try {
@@ -71,13 +70,11 @@ for (let pages = 32_768; pages >= 1; pages = Math.floor(pages / 2)) {
     // No piece of this size is left: half of it may be.
   }
 }
-const answer = JSON.parse(
-  core.start(JSON.stringify({ size_mode: 'count', count: 3_000_000, max_particles: 4_000_000 })),
-);
+const answer = core.start({ size_mode: 'count', count: 3_000_000, max_particles: 4_000_000 });
 if (answer.ok || !/not enough memory/.test(answer.error.message))
   throw new Error(`without memory: ${JSON.stringify(answer)}`);
-accepted(core.start(JSON.stringify(enough)), 'a run after one that was refused');
-while (JSON.parse(core.step(BUDGET)).stop_reason === null);
+accepted(core.start(enough), 'a run after one that was refused');
+while (core.step(BUDGET).stop_reason === null);
 if (core.digest() !== digest) throw new Error('a run after one that was refused has other particles');
 console.log('same  without memory a run is refused, and the next works');
 process.exitCode = failures > 0 ? 1 : 0;

@@ -19,10 +19,9 @@ const { Points } = await load('points');
 /** Pieces of work per step: not the native test's number, which must make no difference. */
 const BUDGET = 37;
 
-/** @param {string} json an answer @param {string} name what it answers */
-function accepted(json, name) {
-  const answer = JSON.parse(json);
-  if (answer.ok !== true) throw new Error(`${name}: ${json}`);
+/** @param {any} answer @param {string} name what it answers */
+function accepted(answer, name) {
+  if (answer.ok !== true) throw new Error(`${name}: ${JSON.stringify(answer)}`);
   return answer;
 }
 
@@ -76,9 +75,9 @@ function finish(points, name) {
 /** Samples a solved field in the core. @param {Points} points @param {object} known @param {string} name */
 function sampled(points, known, name) {
   const core = new Core();
-  accepted(core.set_points(points.field(), JSON.stringify(known)), `${name}: set_points`);
-  accepted(core.start(JSON.stringify({ radius_share: 0.02, relax_steps: 2 })), `${name}: start`);
-  while (JSON.parse(core.step(1000)).stop_reason === null);
+  accepted(core.set_points(points.field(), known), `${name}: set_points`);
+  accepted(core.start({ radius_share: 0.02, relax_steps: 2 }), `${name}: start`);
+  while (core.step(1000).stop_reason === null);
   const count = core.count();
   core.free();
   return count;
@@ -90,7 +89,7 @@ let failures = 0;
 const points = new Points();
 for (const { name, model, steps, normals, centres, digest: expected } of runs) {
   accepted(model === null ? points.file('points.xyz', ellipsoid(steps, normals), centres) : points.model(model), name);
-  claim(points.field().length === 0 && JSON.parse(points.info()).ok === false, `${name}: a field before there is one`);
+  claim(points.field().length === 0 && points.info().ok === false, `${name}: a field before there is one`);
   const { ok: _, ...known } = finish(points, name);
   const found = digest(points.field());
   const same = found === expected;
@@ -123,10 +122,12 @@ claim(known.info.normals === 'from_mesh' && known.info.centres === 4, JSON.strin
 claim(sampled(points, known, 'a tetrahedron') > 100, 'a tetrahedron has too few particles');
 console.log('same  a binary mesh is read, solved and sampled');
 
-/** @param {string} json @param {string} kind @param {RegExp} words @param {number | null} line */
-function refused(json, kind, words, line) {
-  const { ok, error } = JSON.parse(json);
-  claim(ok === false && error.kind === kind && words.test(error.message) && error.line === line, `${json} for ${kind}`);
+/** @param {any} answer @param {string} kind @param {RegExp} words @param {number | null} line */
+function refused({ ok, error }, kind, words, line) {
+  claim(
+    ok === false && error.kind === kind && words.test(error.message) && error.line === line,
+    `${JSON.stringify(error)} for ${kind}`,
+  );
 }
 const text = (/** @type {string} */ words) => new TextEncoder().encode(words);
 refused(new Points().step(1), 'nothing', /no model and no file/, null);

@@ -7,13 +7,16 @@ declare module '*/wasm/core/core.js' {
   }
   export default function init(options: { module_or_path: WebAssembly.Module }): Promise<InitOutput>;
   export class Core {
-    describe(): string;
-    set_field(json: string): string;
-    set_points(system: Uint8Array, about: string): string;
-    start(json: string): string;
-    step(budget: number): string;
-    relax(steps: number): string;
-    cancel(): string;
+    describe(): import('./engine/types.js').Description;
+    set_field(request: import('./engine/types.js').FieldRequest): import('./engine/types.js').FieldAnswer;
+    set_points(
+      system: Uint8Array,
+      about: import('./engine/types.js').SolvedModel,
+    ): import('./engine/types.js').FieldAnswer;
+    start(settings: import('./engine/types.js').Settings): import('./engine/types.js').StartAnswer;
+    step(budget: number): import('./engine/types.js').CoreProgress;
+    relax(steps: number): void;
+    cancel(): import('./engine/types.js').CoreProgress;
     count(): number;
     positions(from: number): Float32Array<ArrayBuffer>;
     normals(from: number): Float32Array<ArrayBuffer>;
@@ -22,7 +25,7 @@ declare module '*/wasm/core/core.js' {
     parents(from: number): Uint32Array<ArrayBuffer>;
     slots(from: number): Uint32Array<ArrayBuffer>;
     radii(from: number): Float32Array<ArrayBuffer>;
-    measure(budget: number): string | undefined;
+    measure(budget: number): import('./engine/types.js').CoreReport | undefined;
     valence(): Uint8Array<ArrayBuffer>;
     nearest(): Float32Array<ArrayBuffer>;
     residual(): Float32Array<ArrayBuffer>;
@@ -38,18 +41,18 @@ declare module '*/wasm/points/points.js' {
     readonly memory: WebAssembly.Memory;
   }
   export default function init(options: { module_or_path: WebAssembly.Module }): Promise<InitOutput>;
-  /** From a built-in model or a file to a field. Strings are JSON; a refusal is `{ok: false, error: {kind, message, line}}`, `line` being null for what is not in a line of a text. */
+  /** From a built-in model or a file to a field. Every call can be refused. */
   export class Points {
-    /** Begins a built-in model: `{ok: true}`. What was begun before is given up. */
-    model(id: string): string;
-    /** Begins a file, of which the name is for reports alone: `{ok: true}`. `centres` from 100 to 800; 0 is the default. */
-    file(name: string, bytes: Uint8Array, centres: number): string;
-    /** Does up to `budget` units of work: `{ok: true, stage, label, fraction, done}`, `stage` being reading, normals, thinning, solving or done. Refused once something is wrong with the file. */
-    step(budget: number): string;
+    /** Begins a built-in model. What was begun before is given up. */
+    model(id: string): import('./engine/types.js').PointsAnswer;
+    /** Begins a file, of which the name is for reports alone. `centres` from 100 to 800; 0 is the default. */
+    file(name: string, bytes: Uint8Array, centres: number): import('./engine/types.js').PointsAnswer;
+    /** Does up to `budget` units of work. Refused once something is wrong with the file. */
+    step(budget: number): import('./engine/types.js').PointsAnswer;
     /** The solved system for `Core.set_points`; empty before it is done. */
     field(): Uint8Array<ArrayBuffer>;
-    /** `{ok: true, info: ModelInfo, bounds: {min, max}}`; refused before it is done. */
-    info(): string;
+    /** What goes with the system; refused before it is done. */
+    info(): import('./engine/types.js').SolvedAnswer;
     /** Positions of the centres, three floats each; empty before they are chosen. */
     centres(): Float32Array<ArrayBuffer>;
     free(): void;

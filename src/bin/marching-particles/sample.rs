@@ -8,7 +8,7 @@ use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model::{self, ModelInfo};
-use marching_particles::math::{Bounds, decimal};
+use marching_particles::math::{Bounds, shortest_text};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode, StopReason,
@@ -294,12 +294,12 @@ pub(crate) fn refusal(error: &SettingsError) -> String {
     if name.ends_with("_share") || *name == "chord_error" {
         let percent = |share: f64| {
             let short: Option<f64> = format!("{:.3e}", 100.0 * share).parse().ok();
-            decimal::text(short.unwrap_or(share))
+            shortest_text(short.unwrap_or(share))
         };
         let [value, min, max] = [*value, *min, *max].map(percent);
         return format!("--{option} is {value}% of the box diagonal, but must lie between {min}% and {max}%");
     }
-    let [value, min, max] = [*value, *min, *max].map(decimal::text);
+    let [value, min, max] = [*value, *min, *max].map(shortest_text);
     format!("--{option} is {value}, but must lie between {min} and {max}")
 }
 

@@ -1,7 +1,7 @@
 //! Plain text of a formula, which parses back to the same tree.
 
 use super::ast::{COORDINATES, Equation, Expr, Factor, Kind, Sign};
-use crate::math::decimal;
+use crate::math::shortest_text;
 
 /// Precedence, weakest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,11 +24,6 @@ pub(super) fn level(kind: &Kind) -> Level {
             Level::Atom
         }
     }
-}
-
-/// Shortest decimal text that reads back as `value`, with an exponent if the value is very large or very small.
-pub(super) fn number(value: f64) -> String {
-    decimal::text(value)
 }
 
 /// Text of an expression.
@@ -61,7 +56,7 @@ fn write_at(out: &mut String, expr: &Expr, least: Level) {
 
 fn write(out: &mut String, expr: &Expr) {
     match &expr.kind {
-        Kind::Number(value) => out.push_str(&number(*value)),
+        Kind::Number(value) => out.push_str(&shortest_text(*value)),
         Kind::Constant(constant) => out.push_str(constant.name()),
         Kind::Coordinate(axis) => out.push_str(COORDINATES[usize::from(*axis)]),
         Kind::Parameter(name) => out.push_str(name),

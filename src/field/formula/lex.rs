@@ -4,7 +4,6 @@
 //! an error that names its code point.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use crate::math::decimal;
 use core::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -210,7 +209,7 @@ impl Lexer<'_> {
         self.next = i;
         let written = self.written(start, i);
         let second_point = self.get(i) == Some('.');
-        let value = if written == "." || second_point { None } else { decimal::read(&written) };
+        let value = if written == "." || second_point { None } else { written.parse::<f64>().ok() };
         let Some(value) = value else {
             let span = self.span(start, (i + usize::from(second_point)).max(start + 1));
             let message = format!("`{}` is not a number", slice(self.text, &span));

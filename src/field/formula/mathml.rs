@@ -1,24 +1,64 @@
 //! A formula as presentation MathML: fractions, roots, powers and Greek letters, as one would write it by hand.
-//!
-//! Text comes from the tree, whose names hold letters, digits and underscores only, and is escaped all the same.
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
-use super::display::{Level, level, number};
+use super::display::{Level, level};
+use crate::math::shortest_text;
+use serde::Serialize;
 
-/// The equation as a `math` element; a formula without `=` gets `= 0`.
-pub(super) fn equation(equation: &Equation) -> String {
-    let mut out = Writer::default();
-    out.raw("<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">");
-    out.row(|out| {
-        out.expression(&equation.left);
-        out.operator("=");
-        match &equation.right {
-            Some(right) => out.expression(right),
-            None => out.leaf("mn", "0"),
-        }
-    });
-    out.raw("</math>");
-    out.text
+/// An element of MathML Core that holds others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MathGroup {
+    /// Elements side by side, two or more.
+    Mrow,
+    /// A numerator and a denominator.
+    Mfrac,
+    /// A base and an exponent.
+    Msup,
+    /// A base and an index.
+    Msub,
+    /// What stands under a square root: one or more elements side by side.
+    Msqrt,
+    /// What stands under a root, and its index.
+    Mroot,
+}
+
+/// An element of MathML Core that holds text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MathToken {
+    /// An identifier.
+    Mi,
+    /// A number.
+    Mn,
+    /// An operator or a fence.
+    Mo,
+}
+
+/// An element of MathML and what it holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum MathNode {
+    /// Text.
+    Token {
+        /// Name of the element.
+        tag: MathToken,
+        /// The text, as a reader sees it.
+        text: String,
+    },
+    /// Other elements.
+    Group {
+        /// Name of the element.
+        tag: MathGroup,
+        /// What it holds, in order.
+        children: Vec<MathNode>,
+    },
+}
+
+/// The equation as a row; a formula without `=` gets `= 0`.
+pub(super) fn equation(equation: &Equation) -> MathNode {
+    let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
+    row([expression(&equation.left), mo("="), right])
 }
 
 /// U+2062 INVISIBLE TIMES.
@@ -26,230 +66,177 @@ const INVISIBLE_TIMES: &str = "\u{2062}";
 /// U+2061 FUNCTION APPLICATION.
 const APPLY: &str = "\u{2061}";
 
-#[derive(Default)]
-struct Writer {
-    text: String,
+fn mi(text: &str) -> MathNode {
+    MathNode::Token { tag: MathToken::Mi, text: text.to_owned() }
 }
 
-impl Writer {
-    fn raw(&mut self, markup: &str) {
-        self.text.push_str(markup);
-    }
+fn mn(text: &str) -> MathNode {
+    MathNode::Token { tag: MathToken::Mn, text: text.to_owned() }
+}
 
-    fn element(&mut self, name: &str, inner: impl FnOnce(&mut Self)) {
-        self.text.extend(["<", name, ">"]);
-        inner(self);
-        self.text.extend(["</", name, ">"]);
-    }
+fn mo(text: &str) -> MathNode {
+    MathNode::Token { tag: MathToken::Mo, text: text.to_owned() }
+}
 
-    fn row(&mut self, inner: impl FnOnce(&mut Self)) {
-        self.element("mrow", inner);
-    }
+fn group(tag: MathGroup, children: impl Into<Vec<MathNode>>) -> MathNode {
+    MathNode::Group { tag, children: children.into() }
+}
 
-    fn leaf(&mut self, name: &str, text: &str) {
-        self.element(name, |out| {
-            for c in text.chars() {
-                match c {
-                    '&' => out.raw("&amp;"),
-                    '<' => out.raw("&lt;"),
-                    '>' => out.raw("&gt;"),
-                    '"' => out.raw("&quot;"),
-                    _ => out.text.push(c),
-                }
-            }
-        });
-    }
+fn row(children: impl Into<Vec<MathNode>>) -> MathNode {
+    group(MathGroup::Mrow, children)
+}
 
-    fn operator(&mut self, text: &str) {
-        self.leaf("mo", text);
-    }
+fn msup(base: MathNode, exponent: MathNode) -> MathNode {
+    group(MathGroup::Msup, [base, exponent])
+}
 
-    /// A row between two fences.
-    fn fenced(&mut self, [open, close]: [&str; 2], inner: impl FnOnce(&mut Self)) {
-        self.row(|out| {
-            out.operator(open);
-            inner(out);
-            out.operator(close);
-        });
-    }
+/// A row of one element between two fences.
+fn fenced([open, close]: [&str; 2], inner: MathNode) -> MathNode {
+    row([mo(open), inner, mo(close)])
+}
 
-    /// `expr` as one element, in brackets if it binds weaker than `least`.
-    fn at(&mut self, expr: &Expr, least: Level) {
-        if level(&expr.kind) < least {
-            self.fenced(["(", ")"], |out| out.expression(expr));
-        } else {
-            self.expression(expr);
+fn bracketed(inner: MathNode) -> MathNode {
+    fenced(["(", ")"], inner)
+}
+
+/// `expr` as one element, in brackets if it binds weaker than `least`.
+fn at(expr: &Expr, least: Level) -> MathNode {
+    if level(&expr.kind) < least { bracketed(expression(expr)) } else { expression(expr) }
+}
+
+/// `expr` as one element.
+fn expression(expr: &Expr) -> MathNode {
+    match &expr.kind {
+        Kind::Number(value) => number(*value),
+        Kind::Constant(constant) => mi(constant_letter(*constant)),
+        Kind::Coordinate(axis) => mi(COORDINATES[usize::from(*axis)]),
+        Kind::Parameter(name) => parameter(name),
+        Kind::Negated(inner) => row([mo("−"), at(inner, Level::Product)]),
+        Kind::Sum(terms) => sum(terms),
+        Kind::Product(factors) => product(factors),
+        Kind::Power(base, exponent) => power(base, exponent),
+        Kind::Call(function, arguments) => call(*function, arguments),
+    }
+}
+
+fn number(value: f64) -> MathNode {
+    let text = shortest_text(value);
+    match text.split_once('e') {
+        None => mn(&text),
+        Some((mantissa, exponent)) => {
+            row([mn(mantissa), mo("⋅"), msup(mn("10"), mn(&exponent.replace('-', "−")))])
         }
     }
+}
 
-    /// `expr` as one element.
-    fn expression(&mut self, expr: &Expr) {
-        match &expr.kind {
-            Kind::Number(value) => self.number(*value),
-            Kind::Constant(constant) => self.leaf("mi", constant_letter(*constant)),
-            Kind::Coordinate(axis) => self.leaf("mi", COORDINATES[usize::from(*axis)]),
-            Kind::Parameter(name) => self.name(name),
-            Kind::Negated(inner) => self.row(|out| {
-                out.operator("−");
-                out.at(inner, Level::Product);
-            }),
-            Kind::Sum(terms) => self.row(|out| {
-                for (index, (sign, term)) in terms.iter().enumerate() {
-                    if index > 0 {
-                        out.operator(if *sign == Sign::Plus { "+" } else { "−" });
-                    }
-                    out.at(term, if index == 0 { Level::Sign } else { Level::Product });
-                }
-            }),
-            Kind::Product(factors) => self.product(factors),
-            Kind::Power(base, exponent) => self.power(base, exponent),
-            Kind::Call(function, arguments) => self.call(*function, arguments),
+fn sum(terms: &[(Sign, Expr)]) -> MathNode {
+    let mut out = Vec::new();
+    for (index, (sign, term)) in terms.iter().enumerate() {
+        if index > 0 {
+            out.push(mo(if *sign == Sign::Plus { "+" } else { "−" }));
         }
+        out.push(at(term, if index == 0 { Level::Sign } else { Level::Product }));
     }
+    row(out)
+}
 
-    fn number(&mut self, value: f64) {
-        let text = number(value);
-        match text.split_once('e') {
-            None => self.leaf("mn", &text),
-            Some((mantissa, exponent)) => self.row(|out| {
-                out.leaf("mn", mantissa);
-                out.operator("⋅");
-                out.element("msup", |out| {
-                    out.leaf("mn", "10");
-                    out.leaf("mn", &exponent.replace('-', "−"));
-                });
-            }),
+/// Factors from left to right; a division puts everything before it over the divisor.
+fn product(factors: &[(Factor, Expr)]) -> MathNode {
+    let Some(last) = factors.iter().rposition(|(relation, _)| *relation == Factor::Over) else {
+        return match factors {
+            [(_, only)] => expression(only),
+            _ => row(side_by_side(factors, None)),
+        };
+    };
+    let fraction = group(MathGroup::Mfrac, [product(&factors[..last]), expression(&factors[last].1)]);
+    match &factors[last + 1..] {
+        [] => fraction,
+        rest => row(side_by_side(rest, Some(fraction))),
+    }
+}
+
+/// Factors one after the other, after the one that stands `before` them.
+fn side_by_side(factors: &[(Factor, Expr)], before: Option<MathNode>) -> Vec<MathNode> {
+    let mut out: Vec<MathNode> = before.into_iter().collect();
+    for (_, factor) in factors {
+        if !out.is_empty() {
+            out.push(mo(if starts_with_digit(factor) { "⋅" } else { INVISIBLE_TIMES }));
         }
+        out.push(at(factor, Level::Product));
     }
+    out
+}
 
-    /// Factors from left to right; a division puts everything before it over the divisor.
-    fn product(&mut self, factors: &[(Factor, Expr)]) {
-        let Some(at) = factors.iter().rposition(|(relation, _)| *relation == Factor::Over) else {
-            return match factors {
-                [(_, only)] => self.expression(only),
-                _ => self.row(|out| out.factors(factors, false)),
+fn power(base: &Expr, exponent: &Expr) -> MathNode {
+    // sin²(x), as it is written by hand.
+    if let (Kind::Call(function, inputs), Kind::Number(n)) = (&base.kind, &exponent.kind)
+        && let Some(name) = plain_name(*function)
+        && *n >= 2.0
+    {
+        return row([msup(mi(name), number(*n)), mo(APPLY), arguments(inputs)]);
+    }
+    let exponential = matches!(base.kind, Kind::Call(Function::Exp | Function::Log10, _));
+    let long_number = matches!(base.kind, Kind::Number(value) if shortest_text(value).contains('e'));
+    let base = if exponential || long_number { bracketed(expression(base)) } else { at(base, Level::Atom) };
+    msup(base, expression(exponent))
+}
+
+fn call(function: Function, inputs: &[Expr]) -> MathNode {
+    let first = || expression(&inputs[0]);
+    match function {
+        Function::Sqrt => group(MathGroup::Msqrt, [first()]),
+        Function::Cbrt => group(MathGroup::Mroot, [first(), mn("3")]),
+        Function::Abs => fenced(["|", "|"], first()),
+        Function::Floor => fenced(["⌊", "⌋"], first()),
+        Function::Exp => msup(mi(constant_letter(Constant::E)), first()),
+        Function::Hypot => {
+            let squares = inputs.iter().map(|input| msup(at(input, Level::Atom), mn("2")));
+            group(MathGroup::Msqrt, separated(squares, "+"))
+        }
+        _ => {
+            let name = match plain_name(function) {
+                Some(name) => mi(name),
+                None => group(MathGroup::Msub, [mi("log"), mn("10")]),
             };
-        };
-        let fraction = |out: &mut Self| {
-            out.element("mfrac", |out| {
-                out.product(&factors[..at]);
-                out.expression(&factors[at].1);
-            });
-        };
-        match &factors[at + 1..] {
-            [] => fraction(self),
-            rest => self.row(|out| {
-                fraction(out);
-                out.factors(rest, true);
-            }),
+            row([name, mo(APPLY), arguments(inputs)])
         }
     }
+}
 
-    /// Factors one after the other; `continued` if others stand before them.
-    fn factors(&mut self, factors: &[(Factor, Expr)], continued: bool) {
-        for (index, (_, factor)) in factors.iter().enumerate() {
-            if index > 0 || continued {
-                self.operator(if starts_with_digit(factor) { "⋅" } else { INVISIBLE_TIMES });
-            }
-            self.at(factor, Level::Product);
+fn arguments(inputs: &[Expr]) -> MathNode {
+    let mut out = vec![mo("(")];
+    out.extend(separated(inputs.iter().map(expression), ","));
+    out.push(mo(")"));
+    row(out)
+}
+
+/// Elements with an operator between them.
+fn separated(elements: impl Iterator<Item = MathNode>, operator: &str) -> Vec<MathNode> {
+    let mut out = Vec::new();
+    for element in elements {
+        if !out.is_empty() {
+            out.push(mo(operator));
         }
+        out.push(element);
     }
+    out
+}
 
-    fn power(&mut self, base: &Expr, exponent: &Expr) {
-        // sin²(x), as it is written by hand.
-        if let (Kind::Call(function, arguments), Kind::Number(n)) = (&base.kind, &exponent.kind)
-            && let Some(name) = plain_name(*function)
-            && *n >= 2.0
-        {
-            return self.row(|out| {
-                out.element("msup", |out| {
-                    out.leaf("mi", name);
-                    out.number(*n);
-                });
-                out.operator(APPLY);
-                out.arguments(arguments);
-            });
-        }
-        self.element("msup", |out| {
-            let exponential = matches!(base.kind, Kind::Call(Function::Exp | Function::Log10, _));
-            let long_number = matches!(base.kind, Kind::Number(value) if number(value).contains('e'));
-            if exponential || long_number {
-                out.fenced(["(", ")"], |out| out.expression(base));
-            } else {
-                out.at(base, Level::Atom);
-            }
-            out.expression(exponent);
-        });
+/// A parameter's name: Greek letters by their names, digits at the end and what follows `_` as an index.
+fn parameter(name: &str) -> MathNode {
+    let (stem, index) = match name.split_once('_') {
+        Some((stem, index)) if !index.is_empty() => (stem, index),
+        _ => name
+            .split_at_checked(name.trim_end_matches(|c: char| c.is_ascii_digit()).len())
+            .unwrap_or((name, "")),
+    };
+    let stem = mi(greek(stem).unwrap_or(stem));
+    if index.is_empty() {
+        return stem;
     }
-
-    fn call(&mut self, function: Function, arguments: &[Expr]) {
-        let first = &arguments[0];
-        match function {
-            Function::Sqrt => self.element("msqrt", |out| out.expression(first)),
-            Function::Cbrt => self.element("mroot", |out| {
-                out.expression(first);
-                out.leaf("mn", "3");
-            }),
-            Function::Abs => self.fenced(["|", "|"], |out| out.expression(first)),
-            Function::Floor => self.fenced(["⌊", "⌋"], |out| out.expression(first)),
-            Function::Exp => self.element("msup", |out| {
-                out.leaf("mi", constant_letter(Constant::E));
-                out.expression(first);
-            }),
-            Function::Hypot => self.element("msqrt", |out| {
-                for (index, argument) in arguments.iter().enumerate() {
-                    if index > 0 {
-                        out.operator("+");
-                    }
-                    out.element("msup", |out| {
-                        out.at(argument, Level::Atom);
-                        out.leaf("mn", "2");
-                    });
-                }
-            }),
-            _ => self.row(|out| {
-                match plain_name(function) {
-                    Some(name) => out.leaf("mi", name),
-                    None => out.element("msub", |out| {
-                        out.leaf("mi", "log");
-                        out.leaf("mn", "10");
-                    }),
-                }
-                out.operator(APPLY);
-                out.arguments(arguments);
-            }),
-        }
-    }
-
-    fn arguments(&mut self, arguments: &[Expr]) {
-        self.fenced(["(", ")"], |out| {
-            for (index, argument) in arguments.iter().enumerate() {
-                if index > 0 {
-                    out.operator(",");
-                }
-                out.expression(argument);
-            }
-        });
-    }
-
-    /// A parameter's name: Greek letters by their names, digits at the end and what follows `_` as an index.
-    fn name(&mut self, name: &str) {
-        let (stem, index) = match name.split_once('_') {
-            Some((stem, index)) if !index.is_empty() => (stem, index),
-            _ => name
-                .split_at_checked(name.trim_end_matches(|c: char| c.is_ascii_digit()).len())
-                .unwrap_or((name, "")),
-        };
-        let stem = greek(stem).unwrap_or(stem);
-        if index.is_empty() {
-            return self.leaf("mi", stem);
-        }
-        self.element("msub", |out| {
-            out.leaf("mi", stem);
-            let digits = index.bytes().all(|b| b.is_ascii_digit());
-            out.leaf(if digits { "mn" } else { "mi" }, greek(index).unwrap_or(index));
-        });
-    }
+    let is_number = index.bytes().all(|b| b.is_ascii_digit());
+    let index = greek(index).unwrap_or(index);
+    group(MathGroup::Msub, [stem, if is_number { mn(index) } else { mi(index) }])
 }
 
 fn constant_letter(constant: Constant) -> &'static str {

@@ -40,12 +40,14 @@ mod tests;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
 pub use error::{FormulaError, FormulaErrorKind, utf16_offset};
+pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Enclosure, Field, Interval, Jet};
 use crate::math::Sym3;
 use ast::{COORDINATES, Constant, Equation, Function};
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Maximum length of a formula in bytes of UTF-8. Longer text is refused before it is parsed.
 pub const MAX_FORMULA_BYTES: usize = 4096;
@@ -60,7 +62,7 @@ pub const MAX_OPERATIONS: usize = 4096;
 pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
 
 /// A named number of a formula, which can be changed without parsing the formula again.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
     /// Name in the formula.
     pub name: String,
@@ -196,9 +198,9 @@ impl FormulaField {
         self.equation == other.equation
     }
 
-    /// The formula as a MathML `math` element, display style; names and numbers are escaped.
+    /// What a MathML `math` element holds for the formula.
     #[must_use]
-    pub fn mathml(&self) -> String {
+    pub fn mathml(&self) -> MathNode {
         mathml::equation(&self.equation)
     }
 

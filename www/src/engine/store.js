@@ -38,7 +38,6 @@ export function createStore() {
     description: cell(/** @type {import('./types.js').Description | null} */ (null)),
     field: cell(/** @type {import('./types.js').FieldOk | null} */ (null)),
     fieldError: cell(/** @type {import('./types.js').FieldFault | null} */ (null)),
-    fieldPreview: cell(/** @type {string | null} */ (null)),
     progress: cell(idleProgress()),
     report: cell(/** @type {import('./types.js').Report | null} */ (null)),
     timing: cell(/** @type {import('./types.js').Timing | null} */ (null)),

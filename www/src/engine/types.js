@@ -33,7 +33,6 @@
  * @property {number | null} degree
  * @property {number | null} genus
  * @property {string} story
- * @property {string} mathml
  */
 /**
  * One setting of the sampler; the interface builds its control from this.
@@ -114,6 +113,11 @@
  * @property {Bounds} [bounds]
  */
 /**
+ * An element of MathML with its text or with what it holds.
+ * @typedef {{tag: 'mi' | 'mn' | 'mo', text: string}
+ *   | {tag: 'mrow' | 'mfrac' | 'msup' | 'msub' | 'msqrt' | 'mroot', children: MathNode[]}} MathNode
+ */
+/**
  * @typedef {object} FieldOk
  * @property {true} ok
  * @property {'formula' | 'points'} kind
@@ -123,7 +127,7 @@
  * @property {Parameter[]} parameters
  * @property {string[]} auto  parameters that became sliders by themselves
  * @property {Bounds} bounds
- * @property {string} mathml
+ * @property {MathNode | null} mathml  null for points
  */
 /**
  * Offsets are UTF-16 code units into the formula, as a textarea's selection uses them.
@@ -135,8 +139,16 @@
  * @property {string | null} suggestion
  * @property {string[]} names  names that could become sliders
  */
-/** @typedef {{ok: false, error: FieldFault, mathml?: string}} FieldError */
+/** @typedef {{ok: false, error: FieldFault}} FieldError */
 /** @typedef {FieldOk | FieldError} FieldAnswer */
+
+/** What goes with a solved system to the core. @typedef {{info: ModelInfo, bounds: Bounds}} SolvedModel */
+/** @typedef {{radius: number, predicted_count: number, area: number, warnings: string[]}} Start */
+/** @typedef {({ok: true} & Start) | {ok: false, error: FieldFault}} StartAnswer */
+/** @typedef {{kind: string, message: string, line: number | null}} PointsFault */
+/** @typedef {{stage: 'reading' | 'thinning' | 'normals' | 'solving' | 'done', label: string, fraction: number, done: boolean}} PointsProgress */
+/** @typedef {({ok: true} & PointsProgress) | {ok: false, error: PointsFault}} PointsAnswer */
+/** @typedef {({ok: true} & SolvedModel) | {ok: false, error: PointsFault}} SolvedAnswer */
 
 /** @typedef {Record<string, number | string>} Settings  by the settings' names; a missing one has its default */
 /** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'search' | 'relaxation' | 'done'} CorePhase */
@@ -198,8 +210,8 @@
  */
 /** @typedef {{seeding: number, generation: number, relaxation: number, quality: number}} Seconds */
 /**
- * The figures of a finished run. `seconds` is measured in the worker; everything else is the core's.
- * @typedef {object} Report
+ * The figures of a finished run.
+ * @typedef {object} CoreReport
  * @property {number} count
  * @property {number} levels
  * @property {number} components_seeded
@@ -221,8 +233,8 @@
  * @property {Quality | null} quality
  * @property {Quality | null} quality_before  after the front, before relaxation
  * @property {{min: number, max: number, bins: number[]}} nearest_histogram
- * @property {Seconds} seconds
  */
+/** With what the worker measured. @typedef {CoreReport & {seconds: Seconds}} Report */
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
@@ -342,7 +354,6 @@
  * @property {ReadonlySignal<Description | null>} description  null until the core has arrived
  * @property {ReadonlySignal<FieldOk | null>} field  the last good field
  * @property {ReadonlySignal<FieldFault | null>} fieldError  what is wrong with the formula as it stands
- * @property {ReadonlySignal<string | null>} fieldPreview  MathML of the formula as it stands, as far as it could be read
  * @property {ReadonlySignal<Progress>} progress
  * @property {ReadonlySignal<Report | null>} report  null while stale
  * @property {ReadonlySignal<Timing | null>} timing

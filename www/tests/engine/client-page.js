@@ -36,7 +36,7 @@ export const answer = (/** @type {string} */ formula) => ({
   parameters: [],
   auto: [],
   bounds: { min: [-1, -1, -1], max: [1, 1, 1] },
-  mathml: '',
+  mathml: null,
 });
 export const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n) => ({
   type: 'columns',

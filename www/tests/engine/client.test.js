@@ -31,7 +31,7 @@ describe('a model from points', () => {
     parameters: [],
     auto: [],
     bounds: description.surfaces[0].bounds,
-    mathml: '',
+    mathml: null,
   };
 
   test('goes to the worker with every job, so that a new worker has it too', () => {

@@ -14,7 +14,6 @@ export const description = {
       degree: 2,
       genus: 0,
       story: '',
-      mathml: '',
     },
     {
       id: 'torus',
@@ -25,7 +24,6 @@ export const description = {
       degree: 4,
       genus: 1,
       story: '',
-      mathml: '',
     },
   ],
   models: [{ id: 'bunny', name: 'Bunny', story: '', credit: 'Stanford', points: 200 }],

@@ -22,20 +22,20 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
   let stop = null;
   let moves = 0;
   let measured = 0;
-  const progress = (moved = false) =>
-    JSON.stringify({
-      phase: stop ? 'done' : count < target ? 'generation' : 'relaxation',
-      particles: count,
-      level: Math.floor(Math.sqrt(count)),
-      relax_step: step,
-      relax_steps: steps,
-      evaluations: 2 * count,
-      fraction: 0,
-      stop_reason: stop,
-      message: null,
-      radius: 0.01,
-      moved,
-    });
+  /** @returns {import('../../src/engine/types.js').CoreProgress} */
+  const progress = (moved = false) => ({
+    phase: stop ? 'done' : count < target ? 'generation' : 'relaxation',
+    particles: count,
+    level: Math.floor(Math.sqrt(count)),
+    relax_step: step,
+    relax_steps: steps,
+    evaluations: 2 * count,
+    fraction: 0,
+    stop_reason: stop,
+    message: null,
+    radius: 0.01,
+    moved,
+  });
   const column = (/** @type {number} */ from, /** @type {number} */ width, /** @type {any} */ Type) =>
     Type.from(
       { length: (count - from) * width },
@@ -44,30 +44,30 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
   return {
     clock,
     calls,
-    /** @param {string} json */
-    set_field(json) {
+    /** @param {import('../../src/engine/types.js').FieldRequest} request @returns {import('../../src/engine/types.js').FieldAnswer} */
+    set_field({ formula }) {
       calls.push('set_field');
-      const { formula } = JSON.parse(json);
       if (formula === 'x^2+')
-        return JSON.stringify({
+        return {
           ok: false,
           error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] },
-        });
-      return JSON.stringify({
+        };
+      return {
         ok: true,
+        kind: 'formula',
+        model: null,
         surface: null,
-        formula,
+        formula: formula ?? '',
         parameters: [],
         auto: [],
         bounds: { min: [-1, -1, -1], max: [1, 1, 1] },
-        mathml: '',
-      });
+        mathml: null,
+      };
     },
-    /** @param {Uint8Array} bytes @param {string} about */
-    set_points(bytes, about) {
+    /** @param {Uint8Array} bytes @param {import('../../src/engine/types.js').SolvedModel} about @returns {import('../../src/engine/types.js').FieldAnswer} */
+    set_points(bytes, { info, bounds }) {
       calls.push(`set_points ${bytes.length}`);
-      const { info, bounds } = JSON.parse(about);
-      return JSON.stringify({
+      return {
         ok: true,
         kind: 'points',
         model: info,
@@ -76,20 +76,19 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
         parameters: [],
         auto: [],
         bounds,
-        mathml: '',
-      });
+        mathml: null,
+      };
     },
-    /** @param {string} json */
-    start(json) {
+    /** @param {import('../../src/engine/types.js').Settings} settings @returns {import('../../src/engine/types.js').StartAnswer} */
+    start(settings) {
       calls.push('start');
-      const settings = JSON.parse(json);
-      if (settings.count) target = settings.count;
-      steps = settings.relax_steps ?? relax_steps;
+      if (settings.count) target = Number(settings.count);
+      steps = Number(settings.relax_steps ?? relax_steps);
       count = 0;
       step = 0;
       stop = null;
       measured = 0;
-      return JSON.stringify({ ok: true, radius: 0.01, predicted_count: target, warnings: [] });
+      return { ok: true, radius: 0.01, predicted_count: target, area: 1, warnings: [] };
     },
     /** @param {number} budget */
     step(budget) {
@@ -111,7 +110,6 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
     relax(more) {
       steps = step + more;
       stop = null;
-      return '{"ok":true}';
     },
     cancel() {
       calls.push('cancel');
@@ -136,7 +134,8 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
       const n = Math.min(budget, pieces - measured);
       measured += n;
       clock.ms += (n * usPerPiece) / 1000;
-      return measured === pieces ? JSON.stringify({ count, digest: 'd' }) : undefined;
+      if (measured < pieces) return undefined;
+      return /** @type {import('../../src/engine/types.js').CoreReport} */ ({ count, digest: 'd' });
     },
     valence: () => new Uint8Array(count).fill(6),
     nearest: () => new Float32Array(count),

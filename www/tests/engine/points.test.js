@@ -29,30 +29,39 @@ const solved = () =>
   /** @type {Solved} */ ({ field: Uint8Array.of(1, 2, 3), info: { info, bounds }, centres: Float32Array.of(0, 0, 1) });
 const settle = () => new Promise((resolve) => setTimeout(resolve));
 
-/** A solver in three stages that refuses names with “broken” in them. */
+/** @type {('reading' | 'thinning' | 'solving')[]} */
+const stages = ['reading', 'thinning', 'solving'];
+const begun = { stage: stages[0], label: 'x', fraction: 0, done: false };
+
+/**
+ * A solver in three stages that refuses names with “broken” in them.
+ * @returns {import('../../src/engine/points/solve.js').PointsLike}
+ */
 function fakePoints() {
   let steps = 0;
   let broken = false;
   return {
     model: (/** @type {string} */ id) =>
-      id === 'bunny' ? '{"ok":true}' : '{"ok":false,"error":{"kind":"unknown","message":"no such model"}}',
+      id === 'bunny'
+        ? { ok: true, ...begun }
+        : { ok: false, error: { kind: 'unknown', message: 'no such model', line: null } },
     file: (/** @type {string} */ name) => {
       broken = name.includes('broken');
-      return '{"ok":true}';
+      return { ok: true, ...begun };
     },
     step: () => {
       steps += 1;
-      if (broken) return '{"ok":false,"error":{"kind":"format","message":"line 17: a number is missing","line":17}}';
-      return JSON.stringify({
+      if (broken) return { ok: false, error: { kind: 'format', message: 'line 17: a number is missing', line: 17 } };
+      return {
         ok: true,
-        stage: ['reading', 'thinning', 'solving'][steps - 1] ?? 'solving',
+        stage: stages[steps - 1] ?? 'done',
         label: 'x',
         fraction: steps / 4,
         done: steps === 4,
-      });
+      };
     },
     field: () => Uint8Array.of(1, 2, 3),
-    info: () => JSON.stringify({ ok: true, info, bounds }),
+    info: () => ({ ok: true, info, bounds }),
     centres: () => Float32Array.of(0, 0, 1),
   };
 }

@@ -29,6 +29,8 @@ describe('the report', () => {
     });
     expect(valueAt(report, 'quality.six')).toBe(0.97);
     expect(valueAt(report, 'quality.none.deeper')).toBeUndefined();
+    expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.psi6')).toBeNull();
+    expect(valueAt({ quality: { psi6: Number.NaN, rho: Infinity } }, 'quality.rho')).toBeNull();
     expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: 0.97, before: 0.93 });
     expect(figuresOf({ ...report, quality_before: null }, 'quality.six').before).toBeUndefined();
     expect(figuresOf(report, 'count')).toEqual({ paired: false, now: 5, before: undefined });

@@ -14,11 +14,11 @@ import { words } from '../bundle/load.js';
 /**
  * The bundle's class as the loop uses it.
  * @typedef {object} PointsLike
- * @property {(id: string) => string} model
- * @property {(name: string, bytes: Uint8Array, centres: number) => string} file
- * @property {(budget: number) => string} step
+ * @property {(id: string) => import('../types.js').PointsAnswer} model
+ * @property {(name: string, bytes: Uint8Array, centres: number) => import('../types.js').PointsAnswer} file
+ * @property {(budget: number) => import('../types.js').PointsAnswer} step
  * @property {() => Uint8Array} field
- * @property {() => string} info
+ * @property {() => import('../types.js').SolvedAnswer} info
  * @property {() => Float32Array} centres
  */
 
@@ -39,7 +39,7 @@ export async function solve(points, order, env) {
   env.post({ type: 'progress', stage: 'reading', label: 'Reading', fraction: 0 });
   let begun;
   if ('model' in order) {
-    begun = JSON.parse(points.model(order.model));
+    begun = points.model(order.model);
   } else {
     let bytes;
     try {
@@ -47,19 +47,19 @@ export async function solve(points, order, env) {
     } catch (error) {
       return refuse({ kind: 'unreadable', message: `the file cannot be read: ${words(error)}` });
     }
-    begun = JSON.parse(points.file(order.file.name, bytes, USUAL_CENTRES));
+    begun = points.file(order.file.name, bytes, USUAL_CENTRES);
   }
   if (!begun.ok) return refuse(begun.error);
   for (let budget = FIRST_BUDGET; ; ) {
     const before = env.nowMs();
-    const step = JSON.parse(points.step(budget));
+    const step = points.step(budget);
     if (!step.ok) return refuse(step.error);
-    if (step.done) break;
+    if (step.stage === 'done') break;
     budget = nextBudget(budget, env.nowMs() - before, STEP_MS);
-    env.post({ type: 'progress', stage: step.stage, label: step.label ?? '', fraction: step.fraction });
+    env.post({ type: 'progress', stage: step.stage, label: step.label, fraction: step.fraction });
     await env.pause();
   }
-  const info = JSON.parse(points.info());
+  const info = points.info();
   if (!info.ok) return refuse(info.error);
   const [field, centres] = [points.field(), points.centres()];
   env.post({ type: 'solved', solved: { field, centres, info: { info: info.info, bounds: info.bounds } } }, [

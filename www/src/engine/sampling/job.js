@@ -17,12 +17,12 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 /**
  * The core's class as the loop uses it.
  * @typedef {object} CoreLike
- * @property {(json: string) => string} set_field
- * @property {(bytes: Uint8Array, info: string) => string} set_points
- * @property {(json: string) => string} start
- * @property {(budget: number) => string} step
- * @property {(steps: number) => string} relax
- * @property {() => string} cancel
+ * @property {(request: import('../types.js').FieldRequest) => import('../types.js').FieldAnswer} set_field
+ * @property {(system: Uint8Array, about: import('../types.js').SolvedModel) => import('../types.js').FieldAnswer} set_points
+ * @property {(settings: import('../types.js').Settings) => import('../types.js').StartAnswer} start
+ * @property {(budget: number) => CoreProgress} step
+ * @property {(steps: number) => void} relax
+ * @property {() => CoreProgress} cancel
  * @property {() => number} count
  * @property {(from: number) => Float32Array} positions
  * @property {(from: number) => Float32Array} normals
@@ -31,7 +31,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {(from: number) => Uint32Array} parents
  * @property {(from: number) => Uint32Array} slots
  * @property {(from: number) => Float32Array} curvature  two per particle
- * @property {(budget: number) => string | undefined} measure  the report, once it is complete
+ * @property {(budget: number) => import('../types.js').CoreReport | undefined} measure  the report, once it is complete
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
@@ -120,11 +120,11 @@ export async function runJob(core, job, env, memory) {
     memory.held = 0;
     // The search for the surface begins with the start, and on a model most of it is there.
     const before = env.nowMs();
-    const start = JSON.parse(core.start(JSON.stringify(job.settings)));
+    const start = core.start(job.settings);
     seconds.seeding += (env.nowMs() - before) / 1000;
-    if (!start.ok) return done('refused', String(start.error?.message ?? start.error));
-    predicted = start.predicted_count ?? 0;
-    env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings ?? [] });
+    if (!start.ok) return done('refused', start.error.message);
+    predicted = start.predicted_count;
+    env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings });
     if (predicted > job.askAbove) {
       core.cancel();
       return done('ask');
@@ -195,13 +195,13 @@ export async function runJob(core, job, env, memory) {
       return;
     }
     if (why === 'stop') {
-      last = JSON.parse(core.cancel());
+      last = core.cancel();
       progress = last;
       break;
     }
     const budget = budgets[phase] ?? FIRST_BUDGET;
     const before = env.nowMs();
-    last = JSON.parse(core.step(budget));
+    last = core.step(budget);
     progress = last;
     const took = env.nowMs() - before;
     seconds[clockOf(phase)] += took / 1000;
@@ -253,7 +253,7 @@ export async function runJob(core, job, env, memory) {
   if (!reported) return;
 
   let pieces = FIRST_PIECES;
-  /** @type {string | undefined} */
+  /** @type {import('../types.js').CoreReport | undefined} */
   let report;
   do {
     await env.pause();
@@ -276,7 +276,7 @@ export async function runJob(core, job, env, memory) {
     component: core.component(),
   };
   env.post(
-    { type: 'report', id, report: { ...JSON.parse(report), seconds: { ...seconds } }, ...figures },
+    { type: 'report', id, report: { ...report, seconds: { ...seconds } }, ...figures },
     Object.values(figures).map((c) => c.buffer),
   );
 }

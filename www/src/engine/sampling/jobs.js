@@ -19,9 +19,9 @@
  * @returns {import('../types.js').FieldAnswer}
  */
 function setField(core, { field, points }) {
-  if (!points) return JSON.parse(core.set_field(JSON.stringify(field)));
+  if (!points) return core.set_field(field);
   const { info, bounds } = points.info;
-  return JSON.parse(core.set_points(points.field, JSON.stringify({ info, bounds: field.bounds ?? bounds })));
+  return core.set_points(points.field, { info, bounds: field.bounds ?? bounds });
 }
 
 export class Jobs {

@@ -57,13 +57,11 @@ export class Presenter {
     store.field.value = field.points !== undefined ? { ...answer, surface: field.surface ?? null } : answer;
     store.model.value = answer.model ?? null;
     store.fieldError.value = null;
-    store.fieldPreview.value = answer.mathml;
   }
 
   /** The core refused one. @param {Extract<FieldAnswer, {ok: false}>} answer */
-  fault({ error, mathml }) {
+  fault({ error }) {
     this.store.fieldError.value = error;
-    this.store.fieldPreview.value = mathml ?? null;
   }
 
   /** Dims a surface that is not the one asked for. An empty editor is no mistake: nothing is dimmed for it. @param {boolean} astray */

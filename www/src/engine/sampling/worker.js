@@ -179,7 +179,7 @@ async function boot(module) {
     raw = await init({ module_or_path: module });
     core = new Core();
     core.limit_memory(MEMORY_MB[onPhone(navigator) ? 'phone' : 'desk']);
-    post({ type: 'ready', description: JSON.parse(core.describe()) });
+    post({ type: 'ready', description: core.describe() });
   } catch (error) {
     failed('init', `The sampler did not start: ${lastWords || words(error)}`);
   }

@@ -37,7 +37,7 @@ export function createFormula(engine, description) {
   const holder = h('div', { class: 'editor', id: 'formula' });
   const shown = computed(() => engine.state.value.formula);
   const fault = computed(() => engine.fieldError.value);
-  const mathSource = computed(() => engine.fieldPreview.value ?? engine.field.value?.mathml ?? '');
+  const math = computed(() => engine.field.value?.mathml ?? null);
 
   const names = () => engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
   /** The caret is behind the beginning of a name: what was wrong before it may be mended with that. */
@@ -137,22 +137,21 @@ export function createFormula(engine, description) {
     render();
   });
   effect(() => {
-    void mathSource.value;
+    void math.value;
     fit();
     preview.classList.toggle('stale', engine.fieldError.value !== null);
   });
   /** A formula too long for one line goes on in the next, and is taken apart only then. */
   function fit() {
-    const source = mathSource.peek();
-    const math = mathElement(source);
-    math?.setAttribute('display', 'block');
+    const tree = math.peek();
     preview.classList.remove('long');
-    fill(preview, math);
+    fill(preview, tree && mathElement(tree));
+    if (!tree) return;
     if (preview.scrollWidth <= preview.clientWidth + 1) return;
     preview.classList.add('long');
     fill(
       preview,
-      mathPieces(source).flatMap((piece) => [piece, h('wbr')]),
+      mathPieces(tree).flatMap((piece) => [piece, h('wbr')]),
     );
   }
   let width = 0;

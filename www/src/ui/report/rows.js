@@ -5,7 +5,7 @@ import { formatCount, formatFixed, formatSignificant, MISSING } from '../format.
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
 
 /**
- * The value at a path such as `quality.six`.
+ * The value at a path such as `quality.six`; null for a number that is not finite, which is what an undefined figure is.
  * @param {unknown} root
  * @param {string} key
  * @returns {unknown}
@@ -17,7 +17,7 @@ export function valueAt(root, key) {
     if (value === null || typeof value !== 'object') return undefined;
     value = value[part];
   }
-  return value;
+  return typeof value === 'number' && !Number.isFinite(value) ? null : value;
 }
 
 /** Whether a relaxation step was made: there is an energy before the first step and after each. @param {Report} report */

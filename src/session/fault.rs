@@ -1,0 +1,76 @@
+//! Why a command was refused, as the page shows it.
+
+use super::FieldError;
+use crate::field::formula::{FormulaError, FormulaErrorKind};
+use core::fmt;
+use serde::Serialize;
+
+/// What a refused command was about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FaultKind {
+    /// The request is not JSON, or not of the right form.
+    Request,
+    /// A setting is out of its range, or the memory does not hold the run.
+    Settings,
+    /// No surface of that name.
+    UnknownSurface,
+    /// The clip box is not one.
+    Box,
+    /// The points make no field.
+    Points,
+    /// The formula has this mistake.
+    #[serde(untagged)]
+    Formula(FormulaErrorKind),
+}
+
+/// What is wrong with a command.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// What it is about.
+    pub kind: FaultKind,
+    /// One sentence for a person; plain text.
+    pub message: String,
+    /// Where the mistake begins in the formula, in UTF-16 code units, as the selection of a text field counts.
+    pub start: usize,
+    /// Where it ends.
+    pub end: usize,
+    /// Text that would mend the span, if there is a good guess.
+    pub suggestion: Option<String>,
+    /// Unknown names that could become sliders.
+    pub names: Vec<String>,
+}
+
+impl Fault {
+    /// What is wrong with anything but a formula.
+    #[must_use]
+    pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
+        let message = message.to_string();
+        Self { kind, message, start: 0, end: 0, suggestion: None, names: Vec::new() }
+    }
+
+    /// What is wrong with the formula `text`.
+    #[must_use]
+    pub fn in_formula(error: FormulaError, text: &str) -> Self {
+        let span = error.utf16_span(text);
+        Self {
+            kind: FaultKind::Formula(error.kind),
+            message: error.message,
+            start: span.start,
+            end: span.end,
+            suggestion: error.suggestion,
+            names: error.names,
+        }
+    }
+
+    /// Why a field was refused whose formula, if it has one, is `text`.
+    #[must_use]
+    pub fn in_field(error: FieldError, text: &str) -> Self {
+        match error {
+            FieldError::Formula(error) => Self::in_formula(error, text),
+            FieldError::UnknownSurface(_) => Self::new(FaultKind::UnknownSurface, &error),
+            FieldError::Box => Self::new(FaultKind::Box, &error),
+            FieldError::Points(_) => Self::new(FaultKind::Points, &error),
+        }
+    }
+}
