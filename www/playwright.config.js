@@ -36,12 +36,20 @@ export default defineConfig({
   testMatch: '**/*.spec.js',
   outputDir: 'test-results',
   forbidOnly: !!process.env.CI,
-  // Software rendering is slow and the machines are small: generous limits, one page at a time.
+  // Software rendering is slow and the machines are small: generous limits.
   timeout: 60_000,
   expect: { timeout: 20_000 },
-  workers: 1,
+  // Much of a test is waiting for timers and frames, so two pages share the two processors of a small machine well.
+  workers: 2,
+  fullyParallel: true,
   reporter: [['list']],
-  use: { viewport: { width: 480, height: 360 }, baseURL: `http://localhost:${port}/`, serviceWorkers: 'block' },
+  use: {
+    viewport: { width: 480, height: 360 },
+    baseURL: `http://localhost:${port}/`,
+    serviceWorkers: 'block',
+    // A picture that grows level by level takes seconds. A test of motion asks for it by `emulateMedia`.
+    contextOptions: { reducedMotion: 'reduce' },
+  },
   webServer: {
     command: `node tests/server.js ${port}`,
     url: `http://localhost:${port}/`,

@@ -369,7 +369,8 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
   await expect.poll(async () => (await status(page)).empty).toBe(true);
   expect((await status(page)).progress.message).toBeTruthy();
   expect((await status(page)).dimmed).toBe(true);
-  expect((await picture(page)).drawn).toBeGreaterThan(0.12);
+  // The camera has come to the whole box, in which the last surface is smaller than in a picture of its own.
+  expect((await picture(page)).drawn).toBeGreaterThan(0.09);
   expect(await on(page, 'p.particles().count')).toBe(0);
   expect(await on(page, 'p.engine.exportFile("csv").then(() => "written", () => "refused")')).toBe('refused');
   // Also a mistake after that, and an editor emptied.

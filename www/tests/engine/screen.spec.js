@@ -45,6 +45,7 @@ test('a hidden tab draws nothing and samples on; shown again it has the new surf
 });
 
 test('a tab hidden while the surface grows is not stuck half-way', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
   await open(page);
   await page.evaluate(() => {
     const { engine } = /** @type {any} */ (window).marchingParticles;
