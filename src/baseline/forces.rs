@@ -19,8 +19,8 @@ use super::crowd::Particle;
 use super::{Ground, Settings};
 use crate::math::Bounds;
 use crate::sampler::projection::BATCH;
+use crate::sampler::relaxation::repulsion::{LandingBatch, Overlap, Repulsion};
 use crate::sampler::relaxation::repulsion::{MAX_MOVE, TRUSTED_CORRECTION};
-use crate::sampler::relaxation::repulsion::{Overlap, Points, Repulsion};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::ops::Range;
@@ -99,27 +99,28 @@ impl Forces {
 
     /// Moves particles along their forces by one step of the relaxation.
     pub(crate) fn advance(&self, ground: &mut Ground, particles: &mut [Particle], range: Range<usize>) {
-        let mut points = Points::new();
+        let mut landing = LandingBatch::new();
         for (k, particle) in particles[range.clone()].iter().enumerate() {
             let (force, normal) = (particle.force, particle.normal);
             let along = force - normal * normal.dot(force);
             let step = (along * Overlap::STEP).clamp_length_max(MAX_MOVE * particle.radius);
-            points.position[k] = particle.position + step;
-            points.radius[k] = particle.radius;
-            points.since[k] = particle.since + step.length();
+            landing.position[k] = particle.position + step;
+            landing.radius[k] = particle.radius;
+            landing.radius_travel[k] = particle.since + step.length();
         }
-        points.count = range.len();
-        self.law().land(ground.field, ground.projector, &mut points, TRUSTED_CORRECTION);
+        landing.count = range.len();
+        landing.trust = TRUSTED_CORRECTION;
+        self.law().land(ground.field, ground.projector, &mut landing);
         for (k, particle) in particles[range].iter_mut().enumerate() {
-            let (position, normal) = (points.position[k], points.normal[k]);
+            let (position, normal) = (landing.position[k], landing.normal[k]);
             particle.way = 0.0;
             // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
-            if points.ok[k] && self.bounds.contains(position) && normal.dot(particle.normal) > 0.0 {
+            if landing.ok[k] && self.bounds.contains(position) && normal.dot(particle.normal) > 0.0 {
                 particle.way = (position - particle.position).length() / particle.radius;
                 particle.position = position;
                 particle.normal = normal;
-                particle.radius = points.radius[k];
-                particle.since = points.since[k];
+                particle.radius = landing.radius[k];
+                particle.since = landing.radius_travel[k];
             }
         }
     }
@@ -162,17 +163,18 @@ impl Forces {
         trust: f32,
     ) -> Option<[Particle; N]> {
         const { assert!(N <= BATCH) };
-        let mut points = Points::new();
-        points.count = N;
+        let mut landing = LandingBatch::new();
+        landing.count = N;
         for (k, particle) in particles.iter().enumerate() {
-            points.position[k] = particle.position;
-            points.radius[k] = particle.radius;
+            landing.position[k] = particle.position;
+            landing.radius[k] = particle.radius;
             // Its curvature is asked for.
-            points.since[k] = f32::INFINITY;
+            landing.radius_travel[k] = f32::INFINITY;
         }
-        self.law().land(ground.field, ground.projector, &mut points, trust);
-        points.ok[..N].iter().all(|&ok| ok).then(|| {
-            core::array::from_fn(|k| Particle::new(points.position[k], points.normal[k], points.radius[k]))
+        landing.trust = trust;
+        self.law().land(ground.field, ground.projector, &mut landing);
+        landing.ok[..N].iter().all(|&ok| ok).then(|| {
+            core::array::from_fn(|k| Particle::new(landing.position[k], landing.normal[k], landing.radius[k]))
         })
     }
 

@@ -149,7 +149,20 @@ impl Sym3<f32> {
     }
 }
 
-/// Adds an item, and makes room by a sixteenth where a vector would double.
+/// Fills a column with `len` times `value`, and allocates no more than that takes.
+pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
+    column.clear();
+    column.reserve_exact(len);
+    column.resize(len, value);
+}
+
+/// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes five instructions.
+#[inline(always)]
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// Appends an item; a full vector grows by a sixteenth instead of doubling.
 pub(crate) fn push_gently<T>(items: &mut Vec<T>, item: T) {
     if items.len() == items.capacity() {
         items.reserve_exact(64 + items.len() / 16);

@@ -117,7 +117,7 @@ impl Sampler {
     /// beyond 120°: ½ + cosine in between.
     #[must_use]
     pub fn energy(&self) -> &[f64] {
-        &self.relaxation.energy
+        self.relaxation.energy()
     }
 
     /// Has the adaptive front of the next run keep a log of what happens at the particle with this index, or none.

@@ -1,29 +1,30 @@
-//! Grids for particles of different radii: cells of one size per range of radii, so that a query among small particles does
-//! not read cells made for large ones.
+//! Grids for particles of different radii. Each range of radii has a layer with cells of its own size, so that a query among
+//! small particles does not read cells made for large ones.
 
 use crate::sampler::neighbours::constants::CELL_PER_REACH;
 use crate::spatial::chains::Chains;
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use glam::Vec3;
 
-/// Ratio of the radii in a range. On a tanglecube whose radii range over 1 : 16 the front takes 2.7 µs per particle with
-/// it, 2.75 with a ratio of 2, and 4.5 with one grid for all (at the same load, one after the other).
+/// Ratio of the largest to the smallest radius of a layer. On a tanglecube with radii in the ratio 1 : 16 the front takes
+/// 2.7 µs per particle with 4, 2.75 µs with 2, and 4.5 µs with one grid for all radii.
 const RATIO: f32 = 4.0;
 
-/// Most ranges; radii beyond the last belong to it.
+/// Largest number of layers; the last one holds all larger radii too.
 const MAX_LAYERS: usize = 6;
 
-/// Ranges of radii.
+/// The layers and their ranges of radii.
 #[derive(Clone, Debug)]
 struct Layers {
     count: usize,
-    /// Middle of each range, and largest radius met in it.
+    /// Geometric mean of the range of each layer.
     middle: [f32; MAX_LAYERS],
+    /// Largest radius that each layer is made for or has met.
     largest: [f32; MAX_LAYERS],
 }
 
 impl Layers {
-    /// Ranges for radii from `smallest` to `largest`.
+    /// Divides the radii from `smallest` to `largest` into layers.
     fn between(smallest: f32, largest: f32) -> Self {
         let mut layers = Self { count: 0, middle: [1.0; MAX_LAYERS], largest: [1.0; MAX_LAYERS] };
         let mut top = smallest;
@@ -40,39 +41,39 @@ impl Layers {
         layers
     }
 
-    /// Sides of the cells of each range, for queries that usually reach `reach` radii.
+    /// Returns the sides of the cells of each layer, for queries that usually reach `reach` radii.
     fn sides(&self, reach: f32) -> impl Iterator<Item = f32> {
         self.middle[..self.count].iter().map(move |middle| CELL_PER_REACH * (reach * middle))
     }
 
-    /// Range of a radius, which counts as met there.
+    /// Returns the layer of a radius, and notes that the layer has met it.
     fn admit(&mut self, radius: f32) -> usize {
         let layer = self.of(radius);
         self.grow(layer, radius);
         layer
     }
 
-    /// Range of a radius.
+    /// Returns the layer of a radius.
     fn of(&self, radius: f32) -> usize {
         let last = self.count - 1;
         (0..last).find(|&k| radius <= self.largest[k]).unwrap_or(last)
     }
 
-    /// Counts a radius as met in a range.
+    /// Notes that a layer has met a radius.
     fn grow(&mut self, layer: usize, radius: f32) {
         let largest = &mut self.largest[layer];
         *largest = if radius > *largest { radius } else { *largest };
     }
 }
 
-/// Where a particle sits.
+/// Where a particle is stored in [`RadiusGrids`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct GridHandle {
     layer: u32,
     place: CellHandle,
 }
 
-/// Grids by radius.
+/// One grid for each layer of radii.
 #[derive(Clone)]
 pub(crate) struct RadiusGrids {
     grids: Vec<CellGrid>,
@@ -84,7 +85,7 @@ impl RadiusGrids {
         Self { grids: Vec::new(), layers: Layers::between(1.0, 1.0) }
     }
 
-    /// Empties the grids for radii from `smallest` to `largest`; a usual query reaches `reach` radii.
+    /// Empties the grids for particles with radii from `smallest` to `largest`; the usual query reaches `reach` radii.
     pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32) {
         self.layers = Layers::between(smallest, largest);
         self.grids.truncate(self.layers.count);
@@ -105,13 +106,13 @@ impl RadiusGrids {
         self.grids[held.layer as usize].remove(held.place);
     }
 
-    /// Moves a particle that keeps about its radius.
+    /// Moves a particle whose radius stays about the same: it stays in its layer.
     pub(crate) fn update(&mut self, held: GridHandle, position: Vec3, radius: f32, index: u32) {
         self.layers.grow(held.layer as usize, radius);
         self.grids[held.layer as usize].update(held.place, position, index);
     }
 
-    /// Collects the particles within a distance of `centre` that may depend on the largest radius in a grid.
+    /// Replaces `found` by the particles near `centre`: in each layer those within `reach` of its largest radius.
     pub(crate) fn gather(&self, centre: Vec3, reach: impl Fn(f32) -> f32, found: &mut Vec<Neighbour>) {
         found.clear();
         for (grid, &largest) in self.grids.iter().zip(&self.layers.largest) {
@@ -124,7 +125,7 @@ impl RadiusGrids {
     }
 }
 
-/// Lists by radius and place, of particles that stand in columns.
+/// Linked lists of particles by layer and cell. They hold indices alone; the particles stay in their columns.
 #[derive(Clone)]
 pub(crate) struct RadiusChains {
     chains: Chains,
@@ -136,8 +137,8 @@ impl RadiusChains {
         Self { chains: Chains::default(), layers: Layers::between(1.0, 1.0) }
     }
 
-    /// Forgets all particles; up to `particles` of radii from `smallest` to `largest` will be added, and a usual query
-    /// reaches `reach` radii.
+    /// Empties the lists for up to `particles` particles with radii from `smallest` to `largest`; the usual query reaches
+    /// `reach` radii.
     pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32, particles: usize) {
         self.layers = Layers::between(smallest, largest);
         self.chains.reset(self.layers.sides(reach), particles);
@@ -148,7 +149,7 @@ impl RadiusChains {
         self.chains.insert(layer, position, index);
     }
 
-    /// Particles of about this radius that were put into the cell of `position` and are there, if they are `meant`.
+    /// Returns the particles in the layer of `radius` that were put into the cell of `position`, are in it now and pass `meant`.
     pub(crate) fn beside(
         &self,
         positions: &[Vec3],
@@ -158,7 +159,7 @@ impl RadiusChains {
         self.chains.beside(positions, self.layers.of(radius), position, meant)
     }
 
-    /// Visits the particles within a distance of a box that may depend on the largest radius of a range, and some beyond.
+    /// Visits the particles near a box: in each layer all within `reach` of its largest radius, and some beyond.
     pub(crate) fn visit(&mut self, bounds: [Vec3; 2], reach: impl Fn(f32) -> f32, visit: impl FnMut(u32)) {
         self.chains.visit(bounds, self.layers.largest.iter().map(|&largest| reach(largest)), visit);
     }

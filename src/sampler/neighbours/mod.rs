@@ -1,4 +1,4 @@
-//! Who is near whom: grids over the particles of a front, and the neighbour lists of the relaxation.
+//! Neighbour search among particles: grids for the fronts, and the neighbour lists of the relaxation.
 
 pub(crate) mod constants;
 pub(crate) mod grids;

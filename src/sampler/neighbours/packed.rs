@@ -1,26 +1,29 @@
-//! Neighbour lists for the relaxation: every pair once, under the larger index.
+//! Neighbour lists of the relaxation, 16 bytes for each particle: every pair is stored once, with the larger index.
 
 use crate::math::push_gently;
 use crate::sampler::projection::BATCH;
 use core::ops::Range;
 
-/// Neighbours that a list has room for. Within the reach of the relaxation a lattice has 6 to 12, half of them of a
-/// smaller index; one particle in a hundred has more than eight.
+/// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the relaxation, half
+/// of them with a smaller index; one particle in a hundred has more than eight of these.
 pub(crate) const ROOM: usize = 8;
 
-/// Particles of which it is known together whether all their pairs repel in full: a batch, which is landed together.
+/// Particles that share a mark in [`PackedNeighbours::note_weighted`]: those that land in one batch.
 const BLOCK: usize = BATCH;
 
-/// Lists by particle. A neighbour stands as its distance back in the order of the particles, which is that of the front:
-/// those around a particle are of its own level or the few before, so that 16 bits are enough.
+/// The neighbour lists of all particles.
+///
+/// A neighbour is stored as the difference of the indices. The front numbers particles level by level, so neighbours are of
+/// the same level or of one shortly before, and the difference fits into 16 bits. Other pairs are *far* pairs and are stored
+/// with both indices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PackedNeighbours {
-    /// Distances back to the neighbours; 0 after the last.
+    /// Differences of the indices to those of the neighbours; 0 after the last.
     near: Vec<[u16; ROOM]>,
-    /// Larger and smaller index of the pairs that find no room there: in crowds, and where fronts meet that are far apart
-    /// in the order.
+    /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose indices
+    /// are far apart.
     far: Vec<[u32; 2]>,
-    /// By blocks of particles, whether one may have a pair that does not repel in full.
+    /// For each block of particles, whether one may have a pair of a weight below 1.
     is_weighted: Vec<bool>,
 }
 
@@ -31,12 +34,12 @@ impl PackedNeighbours {
         self.is_weighted.clear();
     }
 
-    /// Makes room for exactly `particles` lists.
+    /// Allocates exactly what `particles` lists take.
     pub(crate) fn reserve(&mut self, particles: usize) {
         self.near.reserve_exact(particles.saturating_sub(self.near.len()));
     }
 
-    /// Notes that particle `i` may have a pair that does not repel in full.
+    /// Notes that particle `i` may have a pair of a weight below 1: its normal may differ from a neighbour's by more than 60°.
     #[cold]
     pub(crate) fn note_weighted(&mut self, i: usize) {
         let block = i / BLOCK;
@@ -46,19 +49,19 @@ impl PackedNeighbours {
         self.is_weighted[block] = true;
     }
 
-    /// Whether one of these particles may have a pair that does not repel in full.
+    /// Returns whether a particle in the blocks of `range` may have a pair of a weight below 1.
     pub(crate) fn any_weighted(&self, range: &Range<usize>) -> bool {
         (range.start / BLOCK..range.end.div_ceil(BLOCK))
             .any(|block| self.is_weighted.get(block) == Some(&true))
     }
 
-    /// Gives back the room beyond the lists there are.
+    /// Frees the memory that the lists do not use.
     pub(crate) fn shrink(&mut self) {
         self.near.shrink_to_fit();
         self.far.shrink_to_fit();
     }
 
-    /// Number of lists.
+    /// Returns the number of lists.
     pub(crate) fn len(&self) -> usize {
         self.near.len()
     }
@@ -68,21 +71,20 @@ impl PackedNeighbours {
         self.far.retain(|pair| (pair[0] as usize) < len);
     }
 
-    /// Adds empty lists up to `len`.
+    /// Appends empty lists until there are `len`.
     pub(crate) fn extend_to(&mut self, len: usize) {
         self.near.resize(len.max(self.near.len()), [0; ROOM]);
     }
 
-    /// Adds the list of the next particle: those of the `candidates`, of a smaller index, that are said to belong to it.
-    #[inline]
+    /// Appends the list of the next particle: the `candidates`, all of a smaller index, that are paired with `true`.
     pub(crate) fn push(&mut self, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let i = self.near.len();
         self.near.push([0; ROOM]);
         self.fill(i, candidates);
     }
 
-    /// Replaces the list of particle `i`, of which no pair is [far](Self::far).
-    #[inline]
+    /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are paired with
+    /// `true`.
     pub(crate) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let mut list = [0; ROOM + 1];
         let mut len = 0;
@@ -92,7 +94,7 @@ impl PackedNeighbours {
                 push_gently(&mut self.far, [i as u32, j]);
                 continue;
             }
-            // Written in any case: a branch would be mispredicted for every other candidate.
+            // The entry is written in any case: a branch is mispredicted for every other candidate.
             list[len] = back as u16;
             len += usize::from(belongs);
         }
@@ -100,7 +102,8 @@ impl PackedNeighbours {
         self.near[i].copy_from_slice(&list[..ROOM]);
     }
 
-    /// Adds `j` to the list of particle `i` if it is not there. No pair of `j` is [far](Self::far).
+    /// Adds `j` to the list of particle `i`, unless it is in it. The two must not be a [far](Self::far) pair: a renewal drops
+    /// those of `j` first.
     pub(crate) fn insert(&mut self, i: usize, j: u32) {
         let back = i as u32 - j;
         if let Ok(back) = u16::try_from(back) {
@@ -113,17 +116,17 @@ impl PackedNeighbours {
         push_gently(&mut self.far, [i as u32, j]);
     }
 
-    /// Drops the far pairs of the particles of which `is_renewed` says so.
+    /// Drops the far pairs of the particles that pass `is_renewed`.
     pub(crate) fn drop_far(&mut self, is_renewed: impl Fn(usize) -> bool) {
         self.far.retain(|pair| !pair.iter().any(|&i| is_renewed(i as usize)));
     }
 
-    /// Neighbours of particle `i` with a smaller index, but for those of far pairs.
+    /// Returns the neighbours of particle `i` that have a smaller index, without those of far pairs.
     pub(crate) fn near(&self, i: usize) -> impl Iterator<Item = usize> {
         self.near[i].iter().take_while(|&&back| back != 0).map(move |&back| i - usize::from(back))
     }
 
-    /// The other pairs: larger and smaller index.
+    /// Returns the far pairs, as larger and smaller index.
     pub(crate) fn far(&self) -> &[[u32; 2]] {
         &self.far
     }

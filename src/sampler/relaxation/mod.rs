@@ -1,67 +1,104 @@
 //! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane and is brought back onto
 //! the surface, a given number of times (paper §4.5 and the end of §5).
 //!
-//! What repels is a law of pairs ([`Repulsion`]): a Gaussian for particles of one size, the overlap for particles of many.
-//! Steps, neighbour lists and the way back onto the surface are the same.
+//! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one size, the overlap of discs
+//! for particles of many. Steps, neighbour lists and the return to the surface are the same for both.
+//!
+//! ```text
+//!            ┌────────────── next pass ─┐
+//! FillGrid → RenewLists → Grade ────────┴─→ SumForces → Move ────┐   (after the last step) → Polish → Done
+//!    ↑            ↑         ↑                ↑      └→ TakeBack ─┤
+//!    └────────────┴─────────┴────────────────┴──────────────────┘
+//! ```
+//!
+//! Lists are renewed only where they are stale, and only adaptive particles are graded. After the polish adaptive particles
+//! go through the grid, the lists and the grading once more.
 //!
 //! # Differs from the paper
 //!
-//! * The step is not fixed but as large as stays stable: a step that does not lower the energy is taken back and halved,
-//!   so the energy falls at every step. That holds because the energy is one function of places and normals: no pair within
-//!   range is missing from the lists, and each takes part as its normals say now ([`same_sheet_weight`]). Where nearly every particle
-//!   has a neighbour across a bend that the radius does not resolve, no step along these forces may lower it further; the
-//!   relaxation then ends before its last step.
+//! * The step size is not fixed but as large as stays stable. A step that does not lower the energy is taken back and the step
+//!   size is halved, so the energy falls at every step that stands. This holds because the energy is one function of positions
+//!   and normals: no pair within range is missing from the lists, and each counts with the weight of its present normals
+//!   ([`repulsion::same_sheet_weight`]). Where nearly every particle has a neighbour across a bend that the radius does not
+//!   resolve, no step along these forces may lower the energy further; the relaxation then ends before its last step.
 
+mod forces;
+mod grading;
 pub(crate) mod repulsion;
+mod stepper;
 
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::sampler::neighbours::constants::MAX_TURN;
-use crate::sampler::neighbours::lists::{NeighbourLists, is_stale};
-use crate::sampler::neighbours::packed::{PackedNeighbours, ROOM};
-use crate::sampler::projection::{BATCH, Projector, Tolerance};
-use crate::sampler::relaxation::repulsion::{
-    Gaussian, MAX_MOVE, Overlap, Points, Repulsion, TRUSTED_CORRECTION, same_sheet_weight,
-};
+use crate::sampler::neighbours::lists::NeighbourLists;
+use crate::sampler::neighbours::packed::PackedNeighbours;
+use crate::sampler::projection::{Projector, Tolerance};
+use crate::sampler::relaxation::forces::BATCH_PARTICLES;
+use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
+use crate::sampler::relaxation::stepper::{Stepper, batches};
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
-use glam::{Mat4, Vec3, Vec4};
 
-/// Step sizes halve after a failure and grow back by this factor after a success.
-const GROWTH: f32 = 1.05;
-/// Failures in a row after which the configuration counts as being at its minimum.
-const MAX_FAILURES: u32 = 6;
+/// No correction is trusted: near a bend the energy depends on the normal, so the normal is evaluated again at the final
+/// position.
+const TRUST_NONE: f32 = f32::MIN_POSITIVE;
 
-/// So short is no correction: where the energy depends on the normals, they have to be those of the very places.
-const CHECKED: f32 = f32::MIN_POSITIVE;
+/// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
+const RENEWAL_UNITS: u32 = 10;
 
-/// Units that a new list counts for: it takes ten times as long as a particle's forces.
-const REFRESH_UNITS: u32 = 10;
-
-/// What a relaxation does next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+/// What a relaxation does next, particle by particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
     /// Put all particles into the grid.
-    Grid,
-    /// Make the lists of those who have gone far anew.
-    Refresh,
-    Forces,
+    FillGrid,
+    /// Renew the stale neighbour lists.
+    RenewLists,
+    /// Lower radii that are too large beside a neighbour's. This takes as many passes as lower one.
+    Grade { has_lowered: bool },
+    /// Sum the forces, and the energy of all particles.
+    SumForces { energy: f64 },
+    /// Move the particles along the forces.
     Move,
-    Restore,
+    /// Put the particles back where they were before the last move.
+    TakeBack,
+    /// Bring the particles onto the surface as close as single precision allows.
     Polish,
-    /// Lower the radii that a neighbour's does not allow: before a step and after the last.
-    Grade,
+    /// Nothing: the relaxation has ended.
     Done,
 }
 
-/// What repels, and what it takes to be on the surface.
+/// What follows once the lists are renewed and the radii graded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Purpose {
+    /// A step: the particles have not moved, or were put back.
+    Step,
+    /// The judgement of the step just made, and the next one.
+    Judge,
+    /// The end.
+    End,
+}
+
+/// A law of repulsion with what it takes to be on the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RepulsionLaw {
-    /// Particles of this radius.
+    /// For particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
-    /// Particles of many radii, on a surface that single precision resolves to `resolution`.
+    /// For particles of many radii, on a surface that single precision resolves to `resolution`.
     Overlap { resolution: f32, min_gradient: f32 },
+}
+
+impl RepulsionLaw {
+    fn resizes(self) -> bool {
+        matches!(self, Self::Overlap { .. })
+    }
+
+    /// Size of the first step, and the largest.
+    fn first_step(self) -> f32 {
+        match self {
+            Self::Gaussian { .. } => Gaussian::STEP,
+            Self::Overlap { .. } => Overlap::STEP,
+        }
+    }
 }
 
 /// The surface that the particles stay on.
@@ -72,109 +109,43 @@ pub(crate) struct SurfaceContext<'a> {
     pub(crate) sizing: Option<&'a Sizing>,
 }
 
-/// Particles whose pairs are worked out together, and the most pairs they have.
-const BUNDLE: usize = 32;
-const MOST_PAIRS: usize = BUNDLE * ROOM;
-
-/// The pairs of some particles, one after the other, to be worked out in lanes: with no branch that depends on a distance,
-/// which would be mispredicted for every other pair.
-#[derive(Clone, Debug)]
-struct Bundle {
-    offset: [Vec4; MOST_PAIRS],
-    /// Mean radius, where radii differ.
-    mean: [f32; MOST_PAIRS],
-    weight: [f32; MOST_PAIRS],
-    energy: [f32; MOST_PAIRS],
-    /// Smaller index.
-    other: [u32; MOST_PAIRS],
-}
-
-impl Bundle {
-    fn new() -> Self {
-        Self {
-            offset: [Vec4::ZERO; MOST_PAIRS],
-            mean: [1.0; MOST_PAIRS],
-            weight: [0.0; MOST_PAIRS],
-            energy: [0.0; MOST_PAIRS],
-            other: [0; MOST_PAIRS],
-        }
-    }
-}
-
 /// A relaxation under way.
 #[derive(Clone)]
 pub(crate) struct Relaxation {
     law: RepulsionLaw,
-    bounds: Bounds,
+    /// Steps to be done in all.
     target: u32,
-    done: u32,
-    stage: Stage,
+    phase: Phase,
+    purpose: Purpose,
+    /// The next particle in this phase.
     next: usize,
-    lists: NeighbourLists,
-    /// The farthest that a particle has gone in this move.
-    farthest: f32,
     /// Units done beyond the budgets so far, to be paid from the next ones.
     debt: u32,
-    /// Whether a list is to be made anew.
-    is_stale: bool,
-    /// Force on each particle, the sum of `offset * weight` over its pairs, zero when the summation begins; and in `w` the
-    /// length of its way since its list was made. That is infinite if the list is to be made anew, and minus infinity from
-    /// when it was until the particle moves.
-    force: Vec<Vec4>,
-    bundle: Box<Bundle>,
-    /// Positions before the step under judgement; empty before the first.
-    previous: Vec<Vec3>,
-    has_previous: bool,
-    /// Radii before that step, where they change.
-    previous_radius: Vec<f32>,
-    /// Length of each particle's way since its radius was brought up to date, where radii change.
-    since: Vec<f32>,
-    /// Whether this pass over the radii has lowered one, and whether any has.
-    lowered: bool,
-    steep: bool,
-    /// Whether only the grading is left to do.
-    ending: bool,
-    step_size: f32,
-    failures: u32,
-    /// Energy of the positions whose forces are being computed.
-    sum: f64,
-    pub(crate) energy: Vec<f64>,
+    /// Whether a grading has lowered a radius, so that radii are graded before every step.
+    is_steep: bool,
+    lists: NeighbourLists,
+    stepper: Stepper,
 }
 
 impl Relaxation {
     pub(crate) fn new() -> Self {
         Self {
             law: RepulsionLaw::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
-            bounds: Bounds::cube(1.0),
             target: 0,
-            done: 0,
-            stage: Stage::Done,
+            phase: Phase::Done,
+            purpose: Purpose::End,
             next: 0,
-            lists: NeighbourLists::new(),
-            farthest: 0.0,
             debt: 0,
-            is_stale: false,
-            force: Vec::new(),
-            bundle: Box::new(Bundle::new()),
-            previous: Vec::new(),
-            has_previous: false,
-            previous_radius: Vec::new(),
-            since: Vec::new(),
-            lowered: false,
-            steep: false,
-            ending: false,
-            step_size: 0.0,
-            failures: 0,
-            sum: 0.0,
-            energy: Vec::new(),
+            is_steep: false,
+            lists: NeighbourLists::new(),
+            stepper: Stepper::new(),
         }
     }
 
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.done = 0;
-        self.stage = Stage::Done;
-        self.energy.clear();
+        self.phase = Phase::Done;
+        self.stepper.clear();
     }
 
     /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short.
@@ -187,69 +158,57 @@ impl Relaxation {
         pairs: &mut PackedNeighbours,
     ) {
         self.law = law;
-        self.bounds = *bounds;
         self.target = target;
-        self.has_previous = false;
-        self.failures = 0;
-        if self.done == 0 {
-            self.step_size = match law {
-                RepulsionLaw::Gaussian { .. } => Gaussian::STEP,
-                RepulsionLaw::Overlap { .. } => Overlap::STEP,
-            };
-        }
-        // A first step that was cancelled has moved particles, and the lists of the front no longer hold.
-        let is_first = self.energy.is_empty();
-        // After a stop the particles may stand where nothing has judged them, and after a run they have been polished.
-        self.energy.truncate(self.done as usize);
-        fill(&mut self.force, particles, Vec4::ZERO);
-        fill(&mut self.previous, particles, Vec3::ZERO);
-        self.farthest = 0.0;
-        self.lists.travelled = f32::INFINITY;
-        self.sum = 0.0;
+        self.purpose = if target == 0 && law.resizes() { Purpose::End } else { Purpose::Step };
+        self.next = 0;
         self.debt = 0;
-        self.is_stale = false;
-        self.steep = false;
-        let resized = if matches!(law, RepulsionLaw::Overlap { .. }) { particles } else { 0 };
-        fill(&mut self.since, resized, 0.0);
-        fill(&mut self.previous_radius, resized, 0.0);
-        self.ending = target == 0 && matches!(law, RepulsionLaw::Overlap { .. });
-        if pairs.len() == particles && is_first && !self.ending {
-            self.after_lists();
+        self.is_steep = false;
+        // A first step that was cancelled has moved particles, so the lists of the front no longer hold.
+        let is_first = self.stepper.energy().is_empty();
+        self.stepper.begin(bounds, particles, law.first_step(), law.resizes());
+        self.lists.reset(particles);
+        self.phase = if pairs.len() == particles && is_first && self.purpose != Purpose::End {
+            self.after_lists()
         } else {
             pairs.extend_to(particles);
-            self.make_lists();
-        }
+            self.lists.make_all_stale();
+            Phase::FillGrid
+        };
     }
 
     pub(crate) fn is_done(&self) -> bool {
-        self.stage == Stage::Done
+        self.phase == Phase::Done
     }
 
     pub(crate) fn steps_done(&self) -> u32 {
-        self.done
+        self.stepper.done()
     }
 
-    /// Takes back a step that is only half made. Returns whether positions changed.
+    /// Energy per particle before the first step and after each.
+    pub(crate) fn energy(&self) -> &[f64] {
+        self.stepper.energy()
+    }
+
+    /// Takes back a step that is only half made, and ends. Returns whether positions changed.
     pub(crate) fn abandon(&mut self, particles: &mut Particles) -> bool {
-        let moved = match self.stage {
-            Stage::Move => 0..self.next,
-            Stage::Restore => self.next..self.previous.len(),
+        let moved = match self.phase {
+            Phase::Move => 0..self.next,
+            Phase::TakeBack => self.next..particles.len(),
             _ => 0..0,
         };
         for i in moved.clone() {
-            self.restore(particles, i);
+            self.stepper.restore(particles, i);
         }
-        self.stage = Stage::Done;
+        self.phase = Phase::Done;
         !moved.is_empty()
     }
 
-    fn enter(&mut self, stage: Stage) {
-        self.stage = stage;
-        self.next = 0;
-    }
-
-    /// Does up to `budget` units (one particle in one stage, a dear one for several); returns whether particles moved. `sizing` is
-    /// the radius field of an adaptive run.
+    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase; costly ones
+    /// count for several.
+    ///
+    /// # Panics
+    ///
+    /// If particles of many radii come without the radius field of their run.
     pub(crate) fn step(
         &mut self,
         surface: &mut SurfaceContext,
@@ -278,139 +237,47 @@ impl Relaxation {
         mut budget: u32,
     ) -> bool {
         let n = particles.len();
-        let mut moved = false;
+        let mut has_moved = false;
         let paid = self.debt.min(budget);
         self.debt -= paid;
         budget -= paid;
-        while budget > 0 && self.stage != Stage::Done {
+        while budget > 0 && self.phase != Phase::Done {
             let (last, units) = self.affordable::<L>(budget, n);
             let range = self.next..last;
             self.debt = units.saturating_sub(budget);
             budget = budget.saturating_sub(units);
             self.next = last;
-            match self.stage {
-                Stage::Grid => {
-                    if range.start == 0 {
-                        self.lists.reset(law.extent(particles), (L::RANGE + L::SKIN, L::SLACK), n);
-                    }
-                    for i in range {
-                        self.lists.insert(particles, i);
-                    }
-                    if last == n {
-                        self.enter(Stage::Refresh);
+            match &mut self.phase {
+                Phase::FillGrid => self.fill_grid(law, particles, range),
+                Phase::RenewLists => self.renew_lists(pairs, particles, range),
+                Phase::Grade { has_lowered } => {
+                    *has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
+                }
+                Phase::SumForces { energy } => {
+                    for first in range.step_by(BATCH_PARTICLES) {
+                        let few = first..last.min(first + BATCH_PARTICLES);
+                        self.stepper.forces.add_near(law, pairs, particles, few, energy);
                     }
                 }
-                Stage::Refresh => {
-                    if range.start == 0 {
-                        pairs.drop_far(|i| is_stale(self.force[i]));
-                    }
-                    for i in range {
-                        if is_stale(self.force[i]) {
-                            let made = self.lists.make(pairs, particles, &mut self.force, i);
-                            let beyond = made.iter().filter(|&&j| j as usize >= last).count() as u32;
-                            self.debt += beyond * REFRESH_UNITS;
-                        }
-                    }
-                    if last == n {
-                        self.is_stale = false;
-                        self.after_lists();
-                    }
+                Phase::Move | Phase::TakeBack | Phase::Polish => {
+                    has_moved |= !range.is_empty();
+                    self.displace(law, surface, pairs, particles, range);
                 }
-                Stage::Forces => {
-                    for first in (range.start..last).step_by(BUNDLE) {
-                        self.repel(law, pairs, particles, first..last.min(first + BUNDLE));
-                    }
-                    if last == n {
-                        self.repel_far(law, pairs, particles);
-                        self.judge::<L>(n);
-                    }
-                }
-                Stage::Move => {
-                    let mut points = Points::new();
-                    for range in parts(range.clone()) {
-                        self.advance(law, particles, range.clone(), &mut points);
-                        let trust = if pairs.any_weighted(&range) { CHECKED } else { TRUSTED_CORRECTION };
-                        self.land(law, surface, particles, range, &mut points, trust);
-                    }
-                    moved |= !range.is_empty();
-                    if last == n {
-                        self.after_moving(law, particles);
-                    }
-                }
-                Stage::Restore => {
-                    let mut points = Points::new();
-                    for range in parts(range.clone()) {
-                        for (point, i) in points.position.iter_mut().zip(range.clone()) {
-                            let back = (particles.position[i] - self.previous[i]).length();
-                            let shrunk = particles.radius[i];
-                            self.restore(particles, i);
-                            self.take_force(i);
-                            if L::RESIZES {
-                                self.since[i] = (self.since[i] - back).max(0.0);
-                            }
-                            self.add_travel(law, particles, i, back, particles.radius[i] - shrunk);
-                            *point = particles.position[i];
-                        }
-                        // The normal is that of the place left.
-                        let trust = if pairs.any_weighted(&range) { CHECKED } else { TRUSTED_CORRECTION };
-                        self.land(law, surface, particles, range, &mut points, trust);
-                    }
-                    moved = true;
-                    if last == n {
-                        self.has_previous = false;
-                        self.after_moving(law, particles);
-                    }
-                }
-                Stage::Polish => {
-                    let mut points = Points::new();
-                    for range in parts(range.clone()) {
-                        points.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
-                        self.land(law, surface, particles, range, &mut points, 0.0);
-                    }
-                    moved |= !range.is_empty();
-                    if last == n {
-                        if L::RESIZES {
-                            // The grading is a promise about all pairs: none may be missing that the front or a change of
-                            // radii has left out.
-                            self.ending = true;
-                            self.make_lists();
-                        } else {
-                            self.enter(Stage::Done);
-                        }
-                    }
-                }
-                Stage::Grade => {
-                    for i in range {
-                        for j in pairs.near(i) {
-                            self.lowered |= grade(law.slope(), particles, i, j);
-                        }
-                    }
-                    if last == n {
-                        for &[i, j] in pairs.far() {
-                            self.lowered |= grade(law.slope(), particles, i as usize, j as usize);
-                        }
-                        let lowered = core::mem::take(&mut self.lowered);
-                        self.steep |= lowered;
-                        if lowered {
-                            self.enter(Stage::Grade);
-                        } else if self.ending {
-                            self.enter(Stage::Done);
-                        } else {
-                            self.enter(Stage::Forces);
-                        }
-                    }
-                }
-                Stage::Done => {}
+                Phase::Done => {}
+            }
+            if last == n {
+                self.next = 0;
+                self.phase = self.following(law, pairs, particles);
             }
         }
-        moved
+        has_moved
     }
 
-    /// Where the stage comes to with a budget, and the units that takes: the last particle may go beyond it.
+    /// Returns how far this phase comes with a budget, and the units that takes: the last particle may go beyond the budget.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
-        let cost = |i: usize| match self.stage {
-            Stage::Refresh if is_stale(self.force[i]) => REFRESH_UNITS,
-            Stage::Polish => L::POLISH_UNITS,
+        let cost = |i: usize| match self.phase {
+            Phase::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
+            Phase::Polish => L::POLISH_UNITS,
             _ => 1,
         };
         let (mut last, mut units) = (self.next, 0);
@@ -421,275 +288,130 @@ impl Relaxation {
         (last, units)
     }
 
-    /// Makes all lists anew.
-    fn make_lists(&mut self) {
-        self.is_stale = true;
-        self.force.iter_mut().for_each(|force| force.w = f32::INFINITY);
-        self.enter(Stage::Grid);
-    }
-
-    /// Whether the forces of the particles as they were given have been computed.
-    fn has_begun(&self) -> bool {
-        self.energy.len() > self.done as usize
-    }
-
-    /// Goes on from complete lists: to the forces or, where the radii may differ too much, by way of their grading.
-    fn after_lists(&mut self) {
-        let differ = match self.law {
-            RepulsionLaw::Gaussian { .. } => false,
-            RepulsionLaw::Overlap { .. } => self.steep || self.ending || !self.has_begun(),
-        };
-        if differ {
-            self.enter(Stage::Grade);
-        } else {
-            self.enter(Stage::Forces);
+    fn fill_grid<L: Repulsion>(&mut self, law: &L, particles: &Particles, range: Range<usize>) {
+        if range.start == 0 {
+            let reach = (L::RANGE + L::SKIN, L::SLACK);
+            self.lists.empty_grid(law.extent(particles), reach, particles.len());
+        }
+        for i in range {
+            self.lists.insert(particles, i);
         }
     }
 
-    /// Goes on from new places, by way of new lists where the old ones may miss a pair.
-    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) {
-        self.lists.travelled += core::mem::take(&mut self.farthest);
-        if !self.is_stale {
-            self.after_lists();
-        } else if self.lists.travelled < L::SLACK * law.radius(particles, 0) {
-            self.enter(Stage::Refresh);
-        } else {
-            self.enter(Stage::Grid);
+    fn renew_lists(&mut self, pairs: &mut PackedNeighbours, particles: &Particles, range: Range<usize>) {
+        if range.start == 0 {
+            self.lists.begin_renewal(pairs);
         }
-    }
-
-    /// Notes that particle `i` has gone some way and grown: two particles of which each has used up half of its skin may
-    /// have come within range without being listed. A turn of the normal counts as some way.
-    #[inline]
-    fn add_travel<L: Repulsion>(
-        &mut self,
-        law: &L,
-        particles: &Particles,
-        i: usize,
-        distance: f32,
-        grown: f32,
-    ) {
-        self.farthest = larger(self.farthest, distance);
-        let mut way = self.force[i].w + distance;
-        if L::RESIZES {
-            way += 0.5 * L::RANGE * grown.max(0.0);
-        }
-        if way > 0.5 * L::SKIN * law.radius(particles, i) {
-            self.is_stale = true;
-            way = f32::INFINITY;
-        }
-        self.force[i].w = way;
-    }
-
-    /// Adds the repulsion between each particle of a bundle and its listed neighbours to the forces on both, and to the
-    /// energy.
-    fn repel<L: Repulsion>(
-        &mut self,
-        law: &L,
-        pairs: &PackedNeighbours,
-        particles: &Particles,
-        range: Range<usize>,
-    ) {
-        let Bundle { offset, mean, weight, energy, other } = &mut *self.bundle;
-        // A list has at most the room it has: the remainders only tell the compiler that.
-        let mut count = 0;
-        let mut end = [0; BUNDLE];
-        for (end, i) in end.iter_mut().zip(range.clone()) {
-            let p = particles.position[i].extend(0.0);
-            for j in pairs.near(i) {
-                let k = count % MOST_PAIRS;
-                offset[k] = p - particles.position[j].extend(0.0);
-                other[k] = j as u32;
-                if L::RESIZES {
-                    mean[k] = 0.5 * (particles.radius[i] + particles.radius[j]);
-                }
-                count += 1;
-            }
-            *end = count;
-        }
-        for first in (0..MOST_PAIRS).step_by(4).take_while(|&first| first < count) {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| offset[first + k]);
-            let lanes = Mat4::from_cols(a, b, c, d).transpose();
-            let (x, y, z) = (lanes.x_axis, lanes.y_axis, lanes.z_axis);
-            let mean = Vec4::from_slice(&mean[first..first + 4]);
-            let (of_weight, of_energy) = law.pairs(x * x + y * y + z * z, mean);
-            of_weight.write_to_slice(&mut weight[first..first + 4]);
-            of_energy.write_to_slice(&mut energy[first..first + 4]);
-        }
-        if pairs.any_weighted(&range) {
-            let mut first = 0;
-            for (&end, i) in end.iter().zip(range.clone()) {
-                for k in first..end {
-                    let other = particles.normal[other[k] as usize];
-                    let share = same_sheet_weight(particles.normal[i].dot(other));
-                    weight[k] *= share;
-                    energy[k] *= share;
-                }
-                first = end;
+        let last = range.end;
+        for i in range {
+            if self.lists.is_stale(i) {
+                let renewed = self.lists.renew(pairs, particles, i);
+                let beyond = renewed.iter().filter(|&&j| j as usize >= last).count() as u32;
+                self.debt += beyond * RENEWAL_UNITS;
             }
         }
-        let mut count = 0;
-        for (&end, i) in end.iter().zip(range) {
-            let mut force = Vec4::ZERO;
-            let mut sum = 0.0;
-            for k in count..end {
-                let k = k % MOST_PAIRS;
-                let push = offset[k] * weight[k];
-                force += push;
-                self.force[other[k] as usize] -= push;
-                sum += energy[k];
-            }
-            self.force[i] += force;
-            self.sum += f64::from(sum);
-            count = end;
-        }
     }
 
-    /// The same for the far pairs.
-    fn repel_far<L: Repulsion>(&mut self, law: &L, pairs: &PackedNeighbours, particles: &Particles) {
-        for &[i, j] in pairs.far() {
-            let (i, j) = (i as usize, j as usize);
-            let offset = particles.position[i] - particles.position[j];
-            let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
-            let (weight, energy) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
-            let share = same_sheet_weight(particles.normal[i].dot(particles.normal[j]));
-            let push = offset.extend(0.0) * (weight.x * share);
-            self.force[i] += push;
-            self.force[j] -= push;
-            self.sum += f64::from(energy.x * share);
-        }
-    }
-
-    /// Accepts the last step or has it taken back. After that the energy stands as it was: the places are those it was of.
-    fn judge<L: Repulsion>(&mut self, particles: usize) {
-        let energy = core::mem::take(&mut self.sum) / particles as f64;
-        if !self.has_begun() {
-            self.energy.push(energy);
-        } else if self.has_previous {
-            if self.energy.last().is_some_and(|&before| energy >= before) {
-                self.step_size *= 0.5;
-                self.failures += 1;
-                return self.enter(Stage::Restore);
-            }
-            self.step_size = (self.step_size * GROWTH).min(L::STEP);
-            self.failures = 0;
-            self.done += 1;
-            self.energy.push(energy);
-        }
-        if self.done >= self.target || self.failures > MAX_FAILURES {
-            self.has_previous = false;
-            return self.enter(Stage::Polish);
-        }
-        self.has_previous = true;
-        self.enter(Stage::Move);
-    }
-
-    /// Moves a batch of particles along their forces: into `points`, in the tangent planes.
-    fn advance<L: Repulsion>(
-        &mut self,
-        law: &L,
-        particles: &Particles,
-        range: Range<usize>,
-        points: &mut Points,
-    ) {
-        for (point, i) in points.position.iter_mut().zip(range) {
-            let p = particles.position[i];
-            let normal = particles.normal[i];
-            let radius = law.radius(particles, i);
-            let force = self.take_force(i);
-            let force = force - normal * normal.dot(force);
-            self.previous[i] = p;
-            if L::RESIZES {
-                self.previous_radius[i] = radius;
-            }
-            *point = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
-        }
-    }
-
-    /// Puts a batch of particles where `points` come to the surface, with their radii there.
-    fn land<L: Repulsion>(
+    /// Moves the particles of `range` as this phase says, and lands them.
+    fn displace<L: Repulsion>(
         &mut self,
         law: &L,
         surface: &mut SurfaceContext,
+        pairs: &PackedNeighbours,
         particles: &mut Particles,
         range: Range<usize>,
-        points: &mut Points,
-        trust: f32,
     ) {
-        points.count = range.len();
-        if L::RESIZES {
-            points.radius[..range.len()].copy_from_slice(&particles.radius[range.clone()]);
-            for (k, i) in range.clone().enumerate() {
-                points.since[k] = self.since[i] + (points.position[k] - particles.position[i]).length();
-            }
-        }
-        law.land(surface.field, surface.projector, points, trust);
-        for (k, i) in range.enumerate() {
-            // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
-            let (position, normal) = (points.position[k], points.normal[k]);
-            let cosine = normal.dot(particles.normal[i]);
-            if points.ok[k] && self.bounds.contains(position) && cosine > 0.0 {
-                // The turn that has a list made anew counts as the way that does.
-                let turn_sq = 2.0 - 2.0 * cosine;
-                let per_turn = 0.5 * L::SKIN / MAX_TURN * law.radius(particles, i);
-                let distance_sq = (position - particles.position[i]).length_squared();
-                let distance = larger(distance_sq, turn_sq * (per_turn * per_turn)).sqrt();
-                let mut grown = 0.0;
-                if L::RESIZES {
-                    grown = points.radius[k] - particles.radius[i];
-                    particles.radius[i] = points.radius[k];
-                    self.since[i] = points.since[k];
+        let Self { phase, lists, stepper, .. } = self;
+        let mut landing = LandingBatch::new();
+        for range in batches(range) {
+            landing.trust = if pairs.any_weighted(&range) { TRUST_NONE } else { TRUSTED_CORRECTION };
+            match phase {
+                Phase::Move => stepper.advance(law, particles, range.clone(), &mut landing),
+                Phase::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),
+                _ => {
+                    landing.trust = 0.0;
+                    landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
                 }
-                self.add_travel(law, particles, i, distance, grown);
-                particles.position[i] = position;
-                particles.normal[i] = normal;
             }
+            stepper.land(law, surface, lists, particles, range, &mut landing);
         }
     }
 
-    /// The force on particle `i`, which is about to move; it is zero then.
-    fn take_force(&mut self, i: usize) -> Vec3 {
-        let force = self.force[i];
-        self.force[i] = Vec4::new(0.0, 0.0, 0.0, larger(force.w, 0.0));
-        force.truncate()
-    }
-
-    /// Puts particle `i` back where the step under judgement found it.
-    fn restore(&self, particles: &mut Particles, i: usize) {
-        particles.position[i] = self.previous[i];
-        if let Some(&radius) = self.previous_radius.get(i) {
-            particles.radius[i] = radius;
+    /// Returns the phase that follows, once all particles have been through the present one.
+    fn following<L: Repulsion>(
+        &mut self,
+        law: &L,
+        pairs: &PackedNeighbours,
+        particles: &mut Particles,
+    ) -> Phase {
+        match self.phase {
+            Phase::FillGrid => Phase::RenewLists,
+            Phase::RenewLists => {
+                self.lists.end_renewal();
+                self.after_lists()
+            }
+            Phase::Grade { mut has_lowered } => {
+                has_lowered |= grading::grade_far(law.slope(), pairs, particles);
+                self.is_steep |= has_lowered;
+                match self.purpose {
+                    _ if has_lowered => Phase::Grade { has_lowered: false },
+                    Purpose::End => Phase::Done,
+                    Purpose::Step | Purpose::Judge => Phase::SumForces { energy: 0.0 },
+                }
+            }
+            Phase::SumForces { mut energy } => {
+                self.stepper.forces.add_far(law, pairs, particles, &mut energy);
+                self.after_forces::<L>(energy / particles.len() as f64)
+            }
+            Phase::Move => self.after_moving(law, particles),
+            Phase::TakeBack => {
+                self.purpose = Purpose::Step;
+                self.after_moving(law, particles)
+            }
+            Phase::Polish if L::RESIZES => {
+                // The grading is a promise about all pairs: none may be missing that the front or a change of radii has
+                // left out.
+                self.purpose = Purpose::End;
+                self.lists.make_all_stale();
+                Phase::FillGrid
+            }
+            Phase::Polish | Phase::Done => Phase::Done,
         }
     }
-}
 
-/// The larger of two numbers, of which neither is a NaN: a maximum that knows NaN takes five instructions.
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The batches that a range of particles belongs to, as far as it does.
-fn parts(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    (range.start / BATCH..range.end.div_ceil(BATCH))
-        .map(move |batch| range.start.max(batch * BATCH)..range.end.min((batch + 1) * BATCH))
-}
-
-/// Makes a column of `len` times `value`, in no more memory than it takes.
-fn fill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
-    column.clear();
-    column.reserve_exact(len);
-    column.resize(len, value);
-}
-
-/// Lowers the larger of two radii to what the smaller allows it at this slope, on one sheet. Says whether it was lowered.
-fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
-    let rise = slope * (particles.position[i] - particles.position[j]).length();
-    let (a, b) = (particles.radius[i], particles.radius[j]);
-    let is_steep = (a > b + rise || b > a + rise) && particles.normal[i].dot(particles.normal[j]) > 0.0;
-    if is_steep && a > b {
-        particles.radius[i] = b + rise;
-    } else if is_steep {
-        particles.radius[j] = a + rise;
+    /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
+    fn after_lists(&self) -> Phase {
+        let is_uneven = self.is_steep || self.purpose == Purpose::End || !self.stepper.has_begun();
+        if self.law.resizes() && is_uneven {
+            Phase::Grade { has_lowered: false }
+        } else {
+            Phase::SumForces { energy: 0.0 }
+        }
     }
-    is_steep
+
+    /// Returns what follows a move: first the renewal of the stale lists, if there are any.
+    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> Phase {
+        let grid_serves = self.lists.end_move(L::SLACK * law.radius(particles, 0));
+        if !self.lists.has_stale() {
+            self.after_lists()
+        } else if grid_serves {
+            Phase::RenewLists
+        } else {
+            Phase::FillGrid
+        }
+    }
+
+    /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the energy.
+    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> Phase {
+        if self.purpose != Purpose::Judge {
+            self.stepper.record_first(energy);
+        } else if !self.stepper.judge(energy, L::STEP) {
+            return Phase::TakeBack;
+        }
+        if self.stepper.done() >= self.target || self.stepper.is_stuck() {
+            return Phase::Polish;
+        }
+        self.purpose = Purpose::Judge;
+        Phase::Move
+    }
 }

@@ -1,4 +1,4 @@
-//! What repels particles: a Gaussian for those of one size (paper §4.5), the overlap of discs for those of many (§5).
+//! Laws of repulsion: a Gaussian for particles of one size (paper §4.5), the overlap of discs for particles of many (§5).
 
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
@@ -9,92 +9,99 @@ use crate::sampler::projection::{BATCH, Descent, Descents, Projector, Tolerance,
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
-/// Evaluations to bring one particle back onto the surface.
+/// Largest number of evaluations to bring a particle back onto the surface.
 const MAX_NEWTON: u32 = 6;
 
-/// Share in which two particles repel each other whose normals have this cosine: all up to 60°, as neighbours on one sheet;
-/// nothing from 120°, as neighbours on two.
+/// Returns the weight of a pair of particles whose unit normals have this cosine: 1 up to 60°, where they are neighbours on
+/// one sheet of the surface, and 0 from 120°, where they are on two.
 ///
-/// In between it is linear in the cosine: no pair comes or goes at once, and the energy is one continuous function of the
-/// places. The force is that of the distances alone and does not count how the share changes with the place, so the ramp
-/// must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles most evenly on the
-/// surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
+/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and the energy is a continuous
+/// function of the positions. The force is the derivative with respect to the distance alone and leaves out that of the
+/// weight, so the ramp must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles
+/// most evenly on the surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
 pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
 
-/// No particle moves farther than this in one step, in radii.
+/// Largest distance that a particle moves in one step, in radii.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
-/// A Newton correction shorter than this, in radii, leaves a residual of the order of its square.
+/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves is of the
+/// order of its square.
 pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
 
-/// Some particles on their way back to the surface.
-pub(crate) struct Points {
+/// A batch of particles that return to the surface.
+pub(crate) struct LandingBatch {
+    /// Number of particles.
     pub(crate) count: usize,
+    /// A Newton correction shorter than this, in radii, is not checked by another evaluation. With 0 all radii are brought up
+    /// to date.
+    pub(crate) trust: f32,
     pub(crate) position: [Vec3; BATCH],
     pub(crate) normal: [Vec3; BATCH],
-    /// Radius, where that changes.
+    /// Radius, where radii change.
     pub(crate) radius: [f32; BATCH],
-    /// Way since the radius was brought up to date, a length.
-    pub(crate) since: [f32; BATCH],
-    /// Whether the point has come to the surface.
+    /// Distance travelled since the radius was brought up to date.
+    pub(crate) radius_travel: [f32; BATCH],
+    /// Whether the particle has come to the surface.
     pub(crate) ok: [bool; BATCH],
 }
 
-impl Points {
+impl LandingBatch {
     pub(crate) fn new() -> Self {
         Self {
             count: 0,
+            trust: 0.0,
             position: [Vec3::ZERO; BATCH],
             normal: [Vec3::ZERO; BATCH],
             radius: [0.0; BATCH],
-            since: [0.0; BATCH],
+            radius_travel: [0.0; BATCH],
             ok: [false; BATCH],
         }
     }
 }
 
-/// A law of repulsion between the two particles of a pair. Lengths are in mean radii of the pair unless said otherwise.
+/// A law of repulsion between two particles. Lengths are in mean radii of the pair unless stated otherwise.
 pub(crate) trait Repulsion {
-    /// Distance beyond which it ends.
+    /// Distance beyond which two particles do not repel each other.
     const RANGE: f32;
-    /// Verlet skin: what the neighbour lists reach farther, so that they serve while particles move.
+    /// Verlet skin: how much farther than the range the neighbour lists reach, so that they serve while particles move.
     const SKIN: f32;
-    /// How far particles may go until the grid in which neighbours are found is made anew.
+    /// Distance that particles may travel until the grid from which lists are renewed is filled again.
     const SLACK: f32;
-    /// Units that bringing a particle up to date at the end counts for.
+    /// Units of work that polishing a particle counts for.
     const POLISH_UNITS: u32;
     /// First step size, and the largest: a particle moves by it times the sum of `offset * weight` over its pairs.
     const STEP: f32;
     /// Whether the radii change as particles move.
     const RESIZES: bool;
 
-    /// Radius of particle `i`.
+    /// Returns the radius of particle `i`.
     fn radius(&self, particles: &Particles, i: usize) -> f32;
 
-    /// Lipschitz slope of the radius along the surface.
+    /// Returns the largest slope of the radius along the surface, a pure number.
     fn slope(&self) -> f32;
 
-    /// Smallest and largest radius now.
+    /// Returns the smallest and the largest radius of the particles.
     fn extent(&self, particles: &Particles) -> (f32, f32);
 
-    /// Force over offset, and energy, of four pairs with these squared distances and mean radii, of length.
+    /// Returns force over offset, and energy, of four pairs with these squared distances and mean radii, both in units of
+    /// length.
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4);
 
-    /// Brings `points` onto the surface, and up to date the radii of those that have come far since that was done or, with
-    /// no `trust`, of all. A correction below `trust` radii is not checked.
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32);
+    /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the particles
+    /// that have travelled far since that was done last or, where `landing.trust` is 0, of all.
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch);
 }
 
-/// Gaussian repulsion after Witkin and Heckbert 1994, §4: no fission, no death, one radius.
+/// Gaussian repulsion after Witkin and Heckbert 1994, §4, without fission and death, and with one radius.
 ///
-/// Each pair has the energy exp(−d²/2σ²) with σ = r; every particle moves against its gradient. The hexagonal lattice of
-/// spacing 2r is then close to equilibrium (2.017 r).
+/// A pair at distance d has the energy exp(−d²/2σ²) with σ = r, and every particle moves against the gradient of the sum. The
+/// hexagonal lattice of spacing 2r is then close to equilibrium, which is at 2.017 r.
 ///
 /// # Differs from the paper
 ///
-/// The pair energy is cut off at 3σ and shifted so that it ends at zero: the sum is continuous in the positions.
+/// The pair energy is cut off at 3σ and shifted so that it is zero there, which keeps the sum continuous in the positions.
 pub(crate) struct Gaussian {
     radius: f32,
     tolerance: Tolerance,
@@ -113,9 +120,9 @@ impl Repulsion for Gaussian {
     const SKIN: f32 = GAUSSIAN_SKIN;
     const SLACK: f32 = 0.5;
     const POLISH_UNITS: u32 = 1;
-    /// In units of σ². The stiffest wave of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
-    /// below 0.9 are stable there; where rows are squeezed to 1.7σ, below 0.7. Longer steps reach no lower energy in ten
-    /// steps and set the squeezed rows trembling.
+    /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps below
+    /// 0.9 are stable there, and steps below 0.7 where rows are squeezed to 1.7σ. Longer steps reach no lower energy in ten
+    /// steps, and the squeezed rows oscillate.
     const STEP: f32 = 0.6;
     const RESIZES: bool = false;
 
@@ -132,24 +139,24 @@ impl Repulsion for Gaussian {
     }
 
     fn pairs(&self, distance_sq: Vec4, _: Vec4) -> (Vec4, Vec4) {
-        // Squared distances are measured in σ² = r².
+        // Distances are measured in σ = r.
         let half_sq = distance_sq * self.scale;
         let near = half_sq.cmplt(Vec4::splat(0.5 * Self::RANGE * Self::RANGE));
         let weight = gaussian(half_sq);
         (Vec4::select(near, weight, Vec4::ZERO), Vec4::select(near, weight - END_ENERGY, Vec4::ZERO))
     }
 
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch) {
         let mut descent = Descent {
             residual: self.tolerance.residual,
             reach: MAX_MOVE * self.radius,
-            trust: trust * self.radius,
+            trust: landing.trust * self.radius,
         };
         projector.land_along_gradient(
             field,
-            &mut points.position[..points.count],
-            &mut points.normal,
-            &mut points.ok,
+            &mut landing.position[..landing.count],
+            &mut landing.normal,
+            &mut landing.ok,
             self.tolerance.min_gradient,
             &mut descent,
             MAX_NEWTON,
@@ -157,12 +164,12 @@ impl Repulsion for Gaussian {
     }
 }
 
-/// exp(−RANGE²/2).
+/// Energy of a pair at the cut-off, exp(−RANGE²/2).
 const END_ENERGY: f32 = 0.011_108_997;
 
-/// exp(−x) for 0 ≤ x ≤ 4.5 to 2·10⁻⁵ of its value; of no meaning elsewhere.
+/// Returns exp(−x) for 0 ≤ x ≤ 4.5, with a relative error below 2·10⁻⁵. The result has no meaning outside that range.
 ///
-/// exp(−x) = exp(−x/16)¹⁶ with the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
+/// It is exp(−x/16)¹⁶ by the Taylor polynomial of degree 5, whose error at x/16 = 0.28 is 7·10⁻⁷.
 pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     let y = x * (-1.0 / 16.0);
     let e = 1.0 + y * (1.0 + y * (0.5 + y * (1.0 / 6.0 + y * (1.0 / 24.0 + y * (1.0 / 120.0)))));
@@ -172,35 +179,36 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     e8 * e8
 }
 
-/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): each pair
-/// pushes apart by its overlap.
+/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): two particles
+/// push each other apart by the overlap of their discs.
 ///
-/// The force is the overlap, of the same stiffness for all pairs, so that discs of all sizes are compressed alike where the
-/// forces balance. The energy is that of the relative overlaps, Σ (overlap / mean radius)², whose descent the same force is
-/// to first order when the change of the radii with the place is counted: the radius falls where the neighbours are
-/// smaller, which pushes a particle as much as the unequal forces of large and small neighbours do.
+/// The stiffness is the same for all pairs, so discs of all sizes are compressed by the same length where the forces balance.
+/// The energy is that of the relative overlaps, Σ (overlap / mean radius)². To first order the same forces descend it, if the
+/// change of the radii with the position is counted: the radius falls towards smaller neighbours, which pushes a particle as
+/// much as the unequal forces of large and small neighbours do.
 ///
 /// # Differs from the paper
 ///
-/// * The paper gives no formulas. Overlap is counted against 1.15 (r_i + r_j): with discs that barely touch, gaps would push
-///   nothing. Of 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus and tanglecube.
-/// * A radius is brought up to date once its particle has gone a tenth of it, and at the end.
+/// * The paper gives no formulas. The discs count as 1.15 times as large as their radii: discs that barely touch would not push
+///   into gaps. Of factors from 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus and tanglecube.
+/// * A radius is brought up to date once its particle has travelled a tenth of it, and at the end.
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
-    /// What single precision resolves, and the least gradient that is one.
+    /// Distance that single precision resolves on this surface.
     pub(crate) resolution: f32,
+    /// Smallest length of a gradient that has a direction.
     pub(crate) min_gradient: f32,
 }
 
 impl Repulsion for Overlap<'_> {
     const RANGE: f32 = OVERLAP_RANGE;
     const SKIN: f32 = OVERLAP_SKIN;
-    /// The grid goes by radii, which change.
+    /// The grid is filled again each time: it is arranged by radii, which change.
     const SLACK: f32 = 0.0;
-    /// Every one asks for a Hessian.
+    /// Polishing evaluates a Hessian for every particle.
     const POLISH_UNITS: u32 = 8;
-    /// The stiffest wave of the hexagonal lattice has the eigenvalue 6 less six times the share by which it is compressed,
-    /// so steps below 0.36 are stable. Shorter ones mend less in ten.
+    /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the share by which the lattice is
+    /// compressed, so steps below 0.36 are stable. Shorter steps mend less in ten.
     const STEP: f32 = 0.33;
     const RESIZES: bool = true;
 
@@ -223,44 +231,44 @@ impl Repulsion for Overlap<'_> {
         let distance = distance_sq.sqrt();
         let overlap = (reach - distance).max(Vec4::ZERO);
         let share = overlap / mean;
-        // Two particles in one place have no direction to part in.
+        // Two particles at one position have no direction to move apart in.
         let parted = distance.cmpgt(Vec4::ZERO);
         (Vec4::select(parted, overlap / distance, Vec4::ZERO), share * share)
     }
 
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, points: &mut Points, trust: f32) {
-        let n = points.count;
-        // Those whose curvature is asked for come first.
-        let is_old = |k: usize| trust <= 0.0 || points.since[k] > RADIUS_LASTS * points.radius[k];
+    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch) {
+        let (n, trust) = (landing.count, landing.trust);
+        // Particles whose radius is due come first: only they need a Hessian.
+        let is_due = |k: usize| trust <= 0.0 || landing.radius_travel[k] > RADIUS_LASTS * landing.radius[k];
         let mut order = [0; BATCH];
-        let mut old = 0;
-        for k in (0..n).filter(|&k| is_old(k)) {
-            order[old] = k;
-            old += 1;
+        let mut due = 0;
+        for k in (0..n).filter(|&k| is_due(k)) {
+            order[due] = k;
+            due += 1;
         }
-        for (place, k) in order[old..].iter_mut().zip((0..n).filter(|&k| !is_old(k))) {
-            *place = k;
+        for (entry, k) in order[due..].iter_mut().zip((0..n).filter(|&k| !is_due(k))) {
+            *entry = k;
         }
         let mut position = [Vec3::ZERO; BATCH];
-        let mut bent = Bent {
+        let mut descents = CurvatureDescents {
             radius: [0.0; BATCH],
             resolution: self.resolution,
             trust,
-            bends: true,
+            needs_curvature: true,
             hessian: [Sym3::default(); BATCH],
             curvature: [Curvature::default(); BATCH],
-            met: [Curvature::default(); BATCH],
+            last: [Curvature::default(); BATCH],
         };
         let mut normal = [Vec3::ZERO; BATCH];
         let mut ok = [false; BATCH];
-        for (part, bends) in [(0..old, true), (old..n, false)] {
+        for (part, needs_curvature) in [(0..due, true), (due..n, false)] {
             let count = part.len();
             let order = &order[part];
             for (m, &k) in order.iter().enumerate() {
-                position[m] = points.position[k];
-                bent.radius[m] = points.radius[k];
+                position[m] = landing.position[k];
+                descents.radius[m] = landing.radius[k];
             }
-            bent.bends = bends;
+            descents.needs_curvature = needs_curvature;
             let min_gradient = self.min_gradient;
             let place = &mut position[..count];
             projector.land_along_gradient(
@@ -269,40 +277,40 @@ impl Repulsion for Overlap<'_> {
                 &mut normal,
                 &mut ok,
                 min_gradient,
-                &mut bent,
+                &mut descents,
                 MAX_NEWTON,
             );
             for (m, &k) in order.iter().enumerate() {
-                points.position[k] = position[m];
-                points.normal[k] = normal[m];
-                points.ok[k] = ok[m];
-                if bends {
-                    points.radius[k] = self.sizing.radius(position[m], &bent.met[m]);
-                    points.since[k] = 0.0;
+                landing.position[k] = position[m];
+                landing.normal[k] = normal[m];
+                landing.ok[k] = ok[m];
+                if needs_curvature {
+                    landing.radius[k] = self.sizing.radius(position[m], &descents.last[m]);
+                    landing.radius_travel[k] = 0.0;
                 }
             }
         }
     }
 }
 
-/// A radius stands until its particle has gone this share of it: until then the law has changed by less than a share of
-/// the slope, a few thousandths on most surfaces, and a Hessian costs two or three gradients.
+/// A radius is brought up to date once its particle has travelled this share of it. Until then the law has changed by less than
+/// this share of the slope, a few thousandths on most surfaces, and a Hessian costs two to three gradients.
 const RADIUS_LASTS: f32 = 0.1;
 
-/// Points on their way to the surface with what the field's last evaluation says of the curvature there.
-struct Bent {
+/// A batch of descents to the surface that notes the curvature at each evaluation.
+struct CurvatureDescents {
     radius: [f32; BATCH],
     resolution: f32,
     trust: f32,
-    /// Whether the curvature is asked for.
-    bends: bool,
+    /// Whether evaluations include the Hessian.
+    needs_curvature: bool,
     hessian: [Sym3<f32>; BATCH],
     curvature: [Curvature; BATCH],
-    /// The last curvature met by each point.
-    met: [Curvature; BATCH],
+    /// Curvature at the last evaluation of each particle.
+    last: [Curvature; BATCH],
 }
 
-impl Descents for Bent {
+impl Descents for CurvatureDescents {
     fn of(&self, i: usize) -> Descent {
         let radius = self.radius[i];
         Descent {
@@ -320,14 +328,14 @@ impl Descents for Bent {
         value: &mut [f32],
         gradient: &mut [Vec3],
     ) {
-        if !self.bends {
+        if !self.needs_curvature {
             return field.gradients(points, value, gradient);
         }
         let hessian = &mut self.hessian[..points.len()];
         field.hessians(points, value, gradient, hessian);
         curvatures_of(gradient, hessian, &mut self.curvature[..points.len()]);
         for (&i, &curvature) in which.iter().zip(&self.curvature) {
-            self.met[i as usize] = curvature;
+            self.last[i as usize] = curvature;
         }
     }
 }

@@ -1,0 +1,235 @@
+//! Steps of the relaxation: how long they are, whether they stand, and how particles move and return to the surface.
+
+use crate::math::{Bounds, larger, refill};
+use crate::particles::Particles;
+use crate::sampler::neighbours::constants::MAX_TURN;
+use crate::sampler::neighbours::lists::NeighbourLists;
+use crate::sampler::projection::BATCH;
+use crate::sampler::relaxation::SurfaceContext;
+use crate::sampler::relaxation::forces::Forces;
+use crate::sampler::relaxation::repulsion::{LandingBatch, MAX_MOVE, Repulsion};
+use core::ops::Range;
+use glam::Vec3;
+
+/// Factor by which the step size grows after a step that stands; it is halved after one that does not.
+const GROWTH: f32 = 1.05;
+/// The configuration counts as being at its minimum after more than this many rejected steps in a row.
+const MAX_FAILURES: u32 = 6;
+
+/// The step size and the state of every particle that a step changes.
+#[derive(Clone)]
+pub(super) struct Stepper {
+    bounds: Bounds,
+    pub(super) forces: Forces,
+    /// Positions before the step under judgement.
+    previous: Vec<Vec3>,
+    /// Radii before that step; empty where radii do not change.
+    previous_radius: Vec<f32>,
+    /// Distance that each particle has travelled since its radius was brought up to date; empty where radii do not change.
+    radius_travel: Vec<f32>,
+    step_size: f32,
+    /// Rejected steps in a row.
+    failures: u32,
+    /// Steps that stand.
+    done: u32,
+    /// Energy per particle before the first step and after each that stands.
+    energy: Vec<f64>,
+}
+
+impl Stepper {
+    pub(super) fn new() -> Self {
+        Self {
+            bounds: Bounds::cube(1.0),
+            forces: Forces::new(),
+            previous: Vec::new(),
+            previous_radius: Vec::new(),
+            radius_travel: Vec::new(),
+            step_size: 0.0,
+            failures: 0,
+            done: 0,
+            energy: Vec::new(),
+        }
+    }
+
+    /// Forgets an earlier run.
+    pub(super) fn clear(&mut self) {
+        self.done = 0;
+        self.energy.clear();
+    }
+
+    /// Prepares for more steps of particles in `bounds`; `first_size` is the size of the first step of a run.
+    pub(super) fn begin(&mut self, bounds: &Bounds, particles: usize, first_size: f32, resizes: bool) {
+        self.bounds = *bounds;
+        self.failures = 0;
+        if self.done == 0 {
+            self.step_size = first_size;
+        }
+        // After a stop the particles may be where no energy was measured, and after a run they have been polished.
+        self.energy.truncate(self.done as usize);
+        self.forces.reset(particles);
+        refill(&mut self.previous, particles, Vec3::ZERO);
+        let resized = if resizes { particles } else { 0 };
+        refill(&mut self.radius_travel, resized, 0.0);
+        refill(&mut self.previous_radius, resized, 0.0);
+    }
+
+    pub(super) fn done(&self) -> u32 {
+        self.done
+    }
+
+    pub(super) fn energy(&self) -> &[f64] {
+        &self.energy
+    }
+
+    /// Returns whether the energy has been measured where the particles were when the relaxation began.
+    pub(super) fn has_begun(&self) -> bool {
+        self.energy.len() > self.done as usize
+    }
+
+    /// Records the energy per particle before the first step, unless that is known.
+    pub(super) fn record_first(&mut self, energy: f64) {
+        if !self.has_begun() {
+            self.energy.push(energy);
+        }
+    }
+
+    /// Accepts or rejects the last step by the energy per particle after it. Returns whether it stands: whether it has lowered
+    /// the energy. The next step is a little longer then, and otherwise half as long, but never longer than `longest`.
+    pub(super) fn judge(&mut self, energy: f64, longest: f32) -> bool {
+        if self.energy.last().is_some_and(|&before| energy >= before) {
+            self.step_size *= 0.5;
+            self.failures += 1;
+            return false;
+        }
+        self.step_size = (self.step_size * GROWTH).min(longest);
+        self.failures = 0;
+        self.done += 1;
+        self.energy.push(energy);
+        true
+    }
+
+    /// Returns whether no step of any size seems to lower the energy.
+    pub(super) fn is_stuck(&self) -> bool {
+        self.failures > MAX_FAILURES
+    }
+
+    /// Writes where the forces move the particles of `range`, in their tangent planes, to `landing`.
+    pub(super) fn advance<L: Repulsion>(
+        &mut self,
+        law: &L,
+        particles: &Particles,
+        range: Range<usize>,
+        landing: &mut LandingBatch,
+    ) {
+        for (point, i) in landing.position.iter_mut().zip(range) {
+            let p = particles.position[i];
+            let normal = particles.normal[i];
+            let radius = law.radius(particles, i);
+            let force = self.forces.take(i);
+            let force = force - normal * normal.dot(force);
+            self.previous[i] = p;
+            if L::RESIZES {
+                self.previous_radius[i] = radius;
+            }
+            *point = p + (force * self.step_size).clamp_length_max(MAX_MOVE * radius);
+        }
+    }
+
+    /// Puts the particles of `range` back where they were before the step, and writes their positions to `landing`. They are
+    /// still to land: their normals are those of the positions that they have left.
+    pub(super) fn take_back<L: Repulsion>(
+        &mut self,
+        law: &L,
+        lists: &mut NeighbourLists,
+        particles: &mut Particles,
+        range: Range<usize>,
+        landing: &mut LandingBatch,
+    ) {
+        for (point, i) in landing.position.iter_mut().zip(range) {
+            let distance = (particles.position[i] - self.previous[i]).length();
+            let radius = particles.radius[i];
+            self.restore(particles, i);
+            self.forces.take(i);
+            if L::RESIZES {
+                self.radius_travel[i] = (self.radius_travel[i] - distance).max(0.0);
+            }
+            add_travel(law, lists, particles, i, distance, particles.radius[i] - radius);
+            *point = particles.position[i];
+        }
+    }
+
+    /// Restores the position and the radius that particle `i` had before the step.
+    pub(super) fn restore(&self, particles: &mut Particles, i: usize) {
+        particles.position[i] = self.previous[i];
+        if let Some(&radius) = self.previous_radius.get(i) {
+            particles.radius[i] = radius;
+        }
+    }
+
+    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the normals and
+    /// radii there.
+    ///
+    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, and at a fold, across
+    /// which its normal would turn by more than 90°.
+    pub(super) fn land<L: Repulsion>(
+        &mut self,
+        law: &L,
+        surface: &mut SurfaceContext,
+        lists: &mut NeighbourLists,
+        particles: &mut Particles,
+        range: Range<usize>,
+        landing: &mut LandingBatch,
+    ) {
+        landing.count = range.len();
+        if L::RESIZES {
+            landing.radius[..range.len()].copy_from_slice(&particles.radius[range.clone()]);
+            for (k, i) in range.clone().enumerate() {
+                let distance = (landing.position[k] - particles.position[i]).length();
+                landing.radius_travel[k] = self.radius_travel[i] + distance;
+            }
+        }
+        law.land(surface.field, surface.projector, landing);
+        for (k, i) in range.enumerate() {
+            let (position, normal) = (landing.position[k], landing.normal[k]);
+            let cosine = normal.dot(particles.normal[i]);
+            if landing.ok[k] && self.bounds.contains(position) && cosine > 0.0 {
+                // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
+                let turn_sq = 2.0 - 2.0 * cosine;
+                let per_turn = 0.5 * L::SKIN / MAX_TURN * law.radius(particles, i);
+                let distance_sq = (position - particles.position[i]).length_squared();
+                let distance = larger(distance_sq, turn_sq * (per_turn * per_turn)).sqrt();
+                let mut grown = 0.0;
+                if L::RESIZES {
+                    grown = landing.radius[k] - particles.radius[i];
+                    particles.radius[i] = landing.radius[k];
+                    self.radius_travel[i] = landing.radius_travel[k];
+                }
+                add_travel(law, lists, particles, i, distance, grown);
+                particles.position[i] = position;
+                particles.normal[i] = normal;
+            }
+        }
+    }
+}
+
+/// Notes in the `lists` that particle `i` has moved by `distance` and that its radius has grown by `grown`.
+///
+/// A list serves until its particle has used up half of the skin: two such particles may have come within range without being
+/// listed.
+fn add_travel<L: Repulsion>(
+    law: &L,
+    lists: &mut NeighbourLists,
+    particles: &Particles,
+    i: usize,
+    distance: f32,
+    grown: f32,
+) {
+    let more = if L::RESIZES { 0.5 * L::RANGE * grown.max(0.0) } else { 0.0 };
+    lists.add_travel(i, distance, more, 0.5 * L::SKIN * law.radius(particles, i));
+}
+
+/// Splits a range of particles where one batch of the projection ends and the next begins.
+pub(super) fn batches(range: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    (range.start / BATCH..range.end.div_ceil(BATCH))
+        .map(move |batch| range.start.max(batch * BATCH)..range.end.min((batch + 1) * BATCH))
+}
