@@ -1,4 +1,4 @@
-//! Which points lie near the border that a clip box cuts into the surface.
+//! The border along which a clip box cuts the surface, and the points near it.
 
 use crate::field::Field;
 use crate::math::Bounds;
@@ -6,18 +6,18 @@ use crate::pieces::piece;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
-/// Points nearer to the border than this many d_hex are left out of the per-point figures: their neighbourhood is cut.
+/// Points nearer to the border than this many d_hex are left out of the figures per point: their neighbourhood is cut.
 const MARGIN: f64 = 4.0;
-/// Step of the grid on a face, in d_hex: a border sampled that densely seems at most 0.05 % farther than it is at the
-/// margin.
+/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 % farther away than it is, at
+/// the distance of the margin.
 const STEP: f64 = 0.25;
-/// Most cells of that grid along a side, however small d_hex is: two million evaluations a face.
+/// Largest number of cells of that grid along a side, which limits the evaluations to two million for each face.
 const MOST_CELLS: f64 = 1500.0;
-/// The surface must rise this far beyond a face, in d_hex, before it counts as cut: a surface that touches its box from
-/// inside is whole.
+/// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that touches its box from inside is
+/// whole.
 const BEYOND: f64 = 0.05;
 
-/// The curves in which the surface leaves a box, as points along them.
+/// The curves along which the surface leaves a box, as points on them.
 #[derive(Debug)]
 pub(super) struct Border {
     bounds: Bounds,
@@ -26,8 +26,7 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// Finds the border on the faces of `bounds` that one of the points of `tree` is near to; the points are spaced by
-    /// about `d_hex`.
+    /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have a spacing of about `d_hex`.
     pub(super) async fn new(field: &mut dyn Field, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
@@ -52,7 +51,7 @@ impl Border {
         Self { bounds: *bounds, margin, curve: Tree::new(&curve) }
     }
 
-    /// Whether `p`, a point of the surface, is within the margin of the border, or beyond it.
+    /// Returns whether `p`, a point of the surface, is within the margin of the border or beyond the border.
     pub(super) fn is_near(&self, p: Vec3) -> bool {
         let q = p.as_dvec3();
         let inside = (q - self.bounds.lo()).min(self.bounds.hi() - q).min_element();
@@ -67,10 +66,10 @@ impl Border {
     }
 }
 
-/// A face of a box with a grid on it, of which two rows are known at a time.
+/// A face of a box with a grid of values, of which two rows are kept at a time.
 struct Face {
     axis: usize,
-    /// Outward direction along the axis.
+    /// Outward direction along the axis, 1 or −1.
     sign: f64,
     d_hex: f64,
     corner: DVec3,
@@ -79,6 +78,7 @@ struct Face {
     rows: usize,
     points: Vec<Vec3>,
     value: Vec<f32>,
+    /// Values of the row before.
     above: Vec<f32>,
 }
 
@@ -104,7 +104,8 @@ impl Face {
         }
     }
 
-    fn place(&self, column: usize, row: usize) -> DVec3 {
+    /// Returns a node of the grid.
+    fn node(&self, column: usize, row: usize) -> DVec3 {
         let (along, across) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
         let mut p = self.corner;
         p[along] += self.size[along] * (column as f64 / self.columns as f64);
@@ -112,14 +113,14 @@ impl Face {
         p
     }
 
-    /// Appends where the surface crosses the edges of the grid along a row and from the row before, by sign changes.
+    /// Appends the points where the sign changes on the edges of a row of the grid and on those from the row before.
     fn cross(&mut self, field: &mut dyn Field, row: usize, curve: &mut Vec<Vec3>) {
         for column in 0..=self.columns {
-            self.points[column] = self.place(column, row).as_vec3();
+            self.points[column] = self.node(column, row).as_vec3();
         }
         field.values(&self.points, &mut self.value);
         let mut crossing = |a: DVec3, fa: f32, b: DVec3, fb: f32| {
-            // False where either is NaN.
+            // This is false where either is NaN.
             if fa < 0.0 && fb >= 0.0 || fa >= 0.0 && fb < 0.0 {
                 let p = a.lerp(b, f64::from(fa) / (f64::from(fa) - f64::from(fb)));
                 if is_cut(field, p, (b - a).length(), self.axis, self.sign, self.d_hex) {
@@ -128,26 +129,26 @@ impl Face {
             }
         };
         for column in 0..=self.columns {
-            let p = self.place(column, row);
+            let p = self.node(column, row);
             if row > 0 {
-                crossing(self.place(column, row - 1), self.above[column], p, self.value[column]);
+                crossing(self.node(column, row - 1), self.above[column], p, self.value[column]);
             }
             if column > 0 {
-                crossing(self.place(column - 1, row), self.value[column - 1], p, self.value[column]);
+                crossing(self.node(column - 1, row), self.value[column - 1], p, self.value[column]);
             }
         }
         core::mem::swap(&mut self.above, &mut self.value);
     }
 }
 
-/// Whether the surface passes near `p`, within a cell of the length `step`, and goes on beyond the face there.
+/// Returns whether the surface passes `p` within a cell of length `step` and continues beyond the face there.
 ///
-/// The surface is followed to second order: from `p` along the unit tangent t that climbs beyond the face with outward
-/// normal e, its height is s (t·e) − s² κ (n·e)/2 with the normal curvature κ along t.
+/// The surface is approximated to second order. From `p` along the unit tangent t that rises fastest beyond the face, whose outward
+/// normal is e, the height over the face is s (t·e) − s² κ (n·e)/2, where κ is the normal curvature along t.
 fn is_cut(field: &mut dyn Field, p: DVec3, step: f64, axis: usize, sign: f64, d_hex: f64) -> bool {
     let jet = field.jet(p);
     let slope = jet.gradient.length();
-    // Not at a pole or a jump, which have sign changes too.
+    // This excludes poles and jumps, where the sign changes too.
     if jet.value.abs() <= step * slope {
         let normal = jet.gradient / slope;
         let mut outward = DVec3::ZERO;

@@ -1,29 +1,30 @@
-//! The Voronoi cell of the origin among points of a plane.
+//! The Voronoi cell of one point in a plane.
 
 use glam::DVec2;
 
-/// Most corners of a cell: the 200 nearest points can each give one, the starting square four more.
+/// Largest number of corners of a cell: the 200 nearest points can each add one, and the starting square has four.
 const CORNERS: usize = 208;
 /// Label of an edge of the starting square.
 const SQUARE: u32 = u32::MAX;
-/// A bisector that cuts off less than this share of |q| does not touch the cell: far above the rounding of the corners
-/// in double precision (they are cut from a square many times larger), far below that of positions in single
-/// precision. Four exactly cocircular points thus share one corner and no edge.
+/// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share is far above the rounding of
+/// the corners in double precision (they are cut from a square many times larger) and far below that of positions in single
+/// precision. So four exactly cocircular points share one corner and no edge.
 const TOUCH: f64 = 1e-10;
 
-/// The cell of the origin, clipped by one bisector after another; counter-clockwise.
+/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are in counter-clockwise order.
 #[derive(Debug)]
-pub(super) struct Cell {
+pub(super) struct VoronoiCell {
     corner: [DVec2; CORNERS],
     /// `label[k]` names the point whose bisector carries the edge from corner `k` to corner `k + 1`.
     label: [u32; CORNERS],
+    /// Signed distance of each corner from the bisector of the clip under way, times |q|.
     side: [f64; CORNERS],
     count: usize,
     reach_sq: f64,
 }
 
-impl Cell {
-    /// Empty; call [`Cell::start`] first.
+impl VoronoiCell {
+    /// Returns an empty cell; call [`VoronoiCell::start`] first.
     pub(super) fn new() -> Self {
         Self {
             corner: [DVec2::ZERO; CORNERS],
@@ -44,13 +45,13 @@ impl Cell {
         self.reach_sq = 2.0 * half * half;
     }
 
-    /// Squared distance of the farthest corner. A point farther than twice that cannot change the cell.
+    /// Returns the squared distance of the farthest corner. A point farther away than twice that distance cannot change the cell.
     #[inline]
     pub(super) fn reach_sq(&self) -> f64 {
         self.reach_sq
     }
 
-    /// Cuts off what is nearer to `q` than to the origin; the new edge is labelled `label`.
+    /// Cuts off the part that is nearer to `q` than to the origin, and labels the new edge `label`.
     #[inline]
     pub(super) fn clip(&mut self, q: DVec2, label: u32) {
         let n = self.count;
@@ -62,11 +63,11 @@ impl Cell {
                 worst = k;
             }
         }
-        // A cell with no room left keeps what it has; its other corners then stay uncertified or are right.
+        // A full cell stays as it is: its corners are either right or not certain.
         if self.side[worst] <= TOUCH * q.length_squared() || n + 1 >= CORNERS {
             return;
         }
-        // The corners cut off are one run of a convex polygon, from `first` to `last`.
+        // The corners that are cut off are consecutive, from `first` to `last`, because the cell is convex.
         let before = |k: usize| if k == 0 { n - 1 } else { k - 1 };
         let after = |k: usize| if k + 1 == n { 0 } else { k + 1 };
         let mut first = worst;
@@ -79,7 +80,7 @@ impl Cell {
         }
         let (outer, inner) = (before(first), after(last));
         if self.side[outer] > 0.0 || self.side[inner] > 0.0 {
-            return; // Everything is cut off: q is (numerically) the origin itself.
+            return; // Everything is cut off: numerically, q is the origin.
         }
         let cross = |inside: usize, outside: usize| {
             let (a, b) = (self.side[inside], self.side[outside]);
@@ -88,7 +89,7 @@ impl Cell {
         let enter = cross(outer, first);
         let leave = cross(inner, last);
         let leave_label = self.label[last];
-        // Rebuild as: inner … outer, enter, leave.
+        // The new corners are: inner … outer, enter, leave.
         let kept = if outer >= inner { outer - inner + 1 } else { outer + n - inner + 1 };
         if inner <= outer {
             self.corner.copy_within(inner..=outer, 0);
@@ -106,9 +107,9 @@ impl Cell {
             self.corner[..self.count].iter().fold(0.0, |reach: f64, v| reach.max(v.length_squared()));
     }
 
-    /// Every edge in counter-clockwise order: the point it belongs to, and whether the corner at its end is also a
-    /// corner of the cell among all points, when every point nearer than √`known_sq` was clipped by. Edges of the
-    /// starting square are left out, and so are the corners on them.
+    /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end is certain. A corner is
+    /// certain if it belongs to the cell among all points, provided that the cell was clipped by every point nearer than
+    /// √`known_sq`. Edges of the starting square are left out, and corners on them are not certain.
     pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
         (0..self.count).filter(|&k| self.label[k] != SQUARE).map(move |k| {
             let next = if k + 1 == self.count { 0 } else { k + 1 };
@@ -123,13 +124,13 @@ mod tests {
     use super::*;
 
     fn labels(points: &[(f64, f64)]) -> Vec<u32> {
-        let mut cell = Cell::new();
+        let mut cell = VoronoiCell::new();
         cell.start(100.0);
         for (i, &(x, y)) in points.iter().enumerate() {
             cell.clip(DVec2::new(x, y), i as u32);
         }
         let mut found: Vec<u32> = cell.edges(f64::INFINITY).map(|edge| edge.0).collect();
-        // Start the cycle at its smallest label.
+        // The cycle is made to start at its smallest label.
         let smallest = (0..found.len()).min_by_key(|&k| found[k]).unwrap_or(0);
         found.rotate_left(smallest);
         found
@@ -152,8 +153,8 @@ mod tests {
 
     #[test]
     fn neighbours_are_those_of_the_hull_of_the_inverted_points() {
-        // A fixed scatter; the hull of q/|q|² is found by brute force: a and b are consecutive hull vertices when
-        // every other inverted point lies to the left of the line through them.
+        // The points are random with a fixed seed. The hull of q/|q|² is found by brute force: a and b are consecutive
+        // vertices of it if every other inverted point lies to the left of the line through them.
         let mut state = 1_u64;
         let mut next = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);

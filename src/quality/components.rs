@@ -1,39 +1,40 @@
-//! Which connected piece of the surface each point is on, as far as the points tell.
+//! Connected components of the surface, as far as the points show them.
 
-use super::Scene;
+use super::scene::Scene;
 use super::triangles::find;
 use crate::math::sort_few;
 use crate::pieces::{piece, ranges};
 
-/// Two points that a triangle joins, or natural neighbours one of which is in no triangle, are on one piece if they are nearer
-/// than this many times the spacing at either: across the gaps that a clip box cuts, triangles join what is not.
+/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no triangle, and if
+/// their distance is at most this many times the spacing at either. The limit is for the gaps that a clip box cuts: triangles
+/// across them join points of different components.
 const NEAR: f32 = 2.0;
 
-/// Which of a point's natural neighbours, in the order of their distance, tells the spacing there, unless it is farther than
-/// [`FARTHEST`] times the first.
-const TELLING: usize = 3;
+/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times the distance of
+/// the nearest.
+const RANK: usize = 3;
 const FARTHEST: f32 = 3.0;
 
-/// Points or triangles looked at in one piece of work.
-const PIECE: usize = 512;
+/// Points or triangles that are looked at in one slice of work.
+const SLICE: usize = 512;
 
-/// Label of a point that belongs to no piece: a non-finite position.
+/// Label of a point that belongs to no component because its position is not finite.
 pub(super) const NO_LABEL: u32 = u32::MAX;
 
-/// The piece of every point, in tree order: 0 for the one with most points, ties in the order of the points given; and the
-/// number of pieces.
+/// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points; ties are in
+/// the order of the points as given.
 pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
     let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
     let mut lengths = Vec::new();
     let mut spacing = Vec::with_capacity(n);
-    for range in ranges(n, PIECE) {
+    for range in ranges(n, SLICE) {
         spacing.extend(range.map(|i| {
             lengths.clear();
-            lengths.extend(scene.fans.of(i).map(|j| distance(i, j)));
+            lengths.extend(scene.rings.of(i).map(|j| distance(i, j)));
             sort_few(&mut lengths, |a, b| a < b);
             let nearest: f32 = lengths.first().copied().unwrap_or(0.0);
-            lengths.get(TELLING - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
+            lengths.get(RANK - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
         }));
         piece().await;
     }
@@ -45,7 +46,7 @@ pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize)
             root[a.max(b) as usize] = a.min(b);
         }
     };
-    for chunk in mesh.chunks(PIECE) {
+    for chunk in mesh.chunks(SLICE) {
         for triangle in chunk {
             let [a, b, c] = triangle.map(|i| i as usize);
             for (i, j) in [(a, b), (b, c), (c, a)] {
@@ -56,18 +57,18 @@ pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize)
         piece().await;
     }
     for i in (0..n).filter(|&i| !is_used[i]) {
-        scene.fans.of(i).for_each(|j| join(i, j));
+        scene.rings.of(i).for_each(|j| join(i, j));
     }
     let root: Vec<u32> = (0..n as u32).map(|i| find(&mut root, i)).collect();
 
-    // Per piece, at its root: how many points, and the first of them in the order given.
+    // At the root of each component: the number of points, and the first of them in the order given.
     let mut count = vec![0_u32; n];
     let mut first = vec![u32::MAX; n];
     for (&r, &origin) in root.iter().zip(&scene.tree.origin) {
         count[r as usize] += 1;
         first[r as usize] = first[r as usize].min(origin);
     }
-    // Most points first: the key falls with the count.
+    // The key falls with the count, so the component with the most points is first.
     let key = |r: u32| u64::from(u32::MAX - count[r as usize]) << 32 | u64::from(first[r as usize]);
     let mut order: Vec<u64> = (0..n as u32).filter(|&r| count[r as usize] > 0).map(key).collect();
     order.sort_unstable();

@@ -1,11 +1,11 @@
-//! The points in a box, side by side in lanes: who asks about one place asks about places near it next.
+//! A cache of the points in a box, in SIMD lanes. It serves consecutive queries that are near one another.
 
 use crate::math::{LANES, Lanes};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 
-/// Half-width of the box that is gathered round a place, in units of the width of the place's own surroundings: wide enough
-/// that those of the next places lie in it too.
+/// Half-width of the box that is gathered around a query, in units of the query's own width: the queries that follow lie in it
+/// too.
 const REACH: f32 = 4.0;
 
 /// The points of a tree in a box.
@@ -13,10 +13,10 @@ const REACH: f32 = 4.0;
 pub(super) struct Nearby {
     lo: Vec3,
     hi: Vec3,
-    /// Their indices in tree order.
+    /// Indices of the points in tree order.
     pub(super) index: Vec<u32>,
-    /// Their coordinates; the last lanes are filled up with points infinitely far away.
-    place: Vec<[Lanes; 3]>,
+    /// Coordinates of the points; the last lanes are filled up with points infinitely far away.
+    position: Vec<[Lanes; 3]>,
 }
 
 impl Nearby {
@@ -25,8 +25,8 @@ impl Nearby {
         (self.lo, self.hi) = (lo, hi);
         self.index.clear();
         tree.within_box(lo, hi, &mut self.index);
-        self.place.clear();
-        self.place.extend(self.index.chunks(LANES).map(|chunk| {
+        self.position.clear();
+        self.position.extend(self.index.chunks(LANES).map(|chunk| {
             let mut lanes = [Lanes::splat(f32::INFINITY); 3];
             for (k, &i) in chunk.iter().enumerate() {
                 let p = tree.position[i as usize];
@@ -36,17 +36,17 @@ impl Nearby {
         }));
     }
 
-    /// Squared distances from `p`, in the order of the points, with some infinite ones after them.
+    /// Returns the squared distances from `p` in the order of the points, followed by some infinite ones.
     #[inline]
     pub(super) fn distances_sq(&self, p: Vec3) -> impl Iterator<Item = Lanes> {
-        self.place.iter().map(move |[x, y, z]| {
+        self.position.iter().map(move |[x, y, z]| {
             let (dx, dy, dz) = (*x - Lanes::splat(p.x), *y - Lanes::splat(p.y), *z - Lanes::splat(p.z));
             dx * dx + dy * dy + dz * dz
         })
     }
 
-    /// Squared distance from `p` to the nearest point of `tree`, if it is below `bound_sq`, else `bound_sq`; `width` is the
-    /// distance in which there are a few points. The points that are held are used where they suffice, else replaced.
+    /// Returns the squared distance from `p` to the nearest point of `tree`, at most `bound_sq`. The box is gathered anew if it does
+    /// not hold all points within that bound; `width` is the distance within which there are a few points.
     pub(super) fn nearest_sq(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> f32 {
         let bound = bound_sq.sqrt();
         if !((p - bound).cmpge(self.lo).all() && (p + bound).cmple(self.hi).all()) {

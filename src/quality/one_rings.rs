@@ -1,6 +1,6 @@
-//! The natural neighbours of every point, counter-clockwise round its normal.
+//! One-rings: the natural neighbours of every point, counter-clockwise around its normal.
 
-use super::cell::Cell;
+use super::cell::VoronoiCell;
 use super::nearby::Nearby;
 use crate::math::{LANES, tangent_frame};
 use crate::pieces::piece;
@@ -8,56 +8,58 @@ use crate::spatial::tree::{Tree, key, unkey};
 use core::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
 
-/// How many of the nearest points are tried in turn when a cell is not proven complete. The first try takes the
-/// points within a ball that holds about 24 of them; a complete cell does not depend on which try completed it.
+/// Numbers of nearest points that are tried in turn while a cell is not proven complete. The first try takes the points in a
+/// ball that holds about 24 of them. A complete cell does not depend on the try that completed it.
 const TRIES: [usize; 3] = [24, 64, 200];
-/// Radius of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to 5 d,
-/// so the ball reaches about 2.5 d: 22 points of a perfect lattice.
+/// Radius of the ball of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to
+/// 5 d, so the radius is about 2.5 d and the ball holds 22 points of a perfect lattice.
 const BALL: f32 = 0.45;
-/// Largest mean of rise and sinking, over the distance, of two points of one sheet. It is of the second order in the distance
-/// over the radius of curvature: 1/12 where the curvature changes by its own size between the two.
+/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are
+/// on one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the
+/// mean is 1/12 where the curvature changes by its own size between the points.
 const MAX_LIFT: f32 = 0.2;
-/// Marks, in [`Fans::neighbour`], that the corner between this neighbour and the next one is proven.
+/// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next one is proven.
 const PROVEN: u32 = 1 << 31;
 
-/// Natural neighbours in tree order, all fans one after the other.
+/// The one-rings of all points in tree order, one after the other.
 #[derive(Debug)]
-pub(super) struct Fans {
+pub(super) struct OneRings {
+    /// Where each ring begins in `neighbour`, and the end of the last.
     start: Vec<u32>,
     neighbour: Vec<u32>,
-    /// Whether the cell is closed and proven complete.
+    /// Whether the Voronoi cell of each point is closed and proven complete.
     pub(super) closed: Vec<bool>,
-    /// Distance to the nearest other point of any sheet; infinite when there is none.
+    /// Distance to the nearest other point, of any sheet; infinite if there is none.
     pub(super) nearest: Vec<f32>,
 }
 
-/// What is used again from leaf to leaf.
+/// Buffers that are reused from leaf to leaf.
 struct Scratch {
-    cell: Cell,
+    cell: VoronoiCell,
     nearby: Nearby,
     keys: Vec<u64>,
 }
 
-impl Fans {
-    /// The fans of the points of `tree` with the unit `normal`s (in tree order).
+impl OneRings {
+    /// Finds the one-rings of the points of `tree`, which have these unit `normal`s in tree order.
     pub(super) async fn new(tree: &Tree, normal: &[Vec3]) -> Self {
         let n = tree.len();
-        let mut fans = Self {
+        let mut rings = Self {
             start: Vec::with_capacity(n + 1),
             neighbour: Vec::with_capacity(6 * n + n / 4),
             closed: Vec::with_capacity(n),
             nearest: Vec::with_capacity(n),
         };
-        fans.start.push(0);
-        let mut scratch = Scratch { cell: Cell::new(), nearby: Nearby::default(), keys: Vec::new() };
+        rings.start.push(0);
+        let mut scratch = Scratch { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
         for leaf in tree.leaves() {
-            fans.add_leaf(tree, normal, leaf, &mut scratch);
+            rings.add_leaf(tree, normal, leaf, &mut scratch);
             piece().await;
         }
-        fans
+        rings
     }
 
-    /// Adds the fans of the points of a leaf, given by its range and its box.
+    /// Appends the one-rings of the points of a leaf, given by its range and its box.
     fn add_leaf(
         &mut self,
         tree: &Tree,
@@ -90,7 +92,7 @@ impl Fans {
             let mut known_sq = f64::from(reach_sq);
             let mut closed = fill(cell, tree, normal[i], i, keys, known_sq);
             for count in TRIES {
-                // The ball may have held more points than this try would take.
+                // The ball may have held more points than this try takes.
                 if closed || count <= keys.len() {
                     continue;
                 }
@@ -101,7 +103,7 @@ impl Fans {
                 tree.nearest_many(p, count, accept, keys);
                 known_sq = match keys.last() {
                     Some(&last) if keys.len() == count => f64::from(unkey(last).0),
-                    _ => f64::INFINITY, // Every point of the set is known.
+                    _ => f64::INFINITY, // Every point is known.
                 };
                 closed = fill(cell, tree, normal[i], i, keys, known_sq);
             }
@@ -112,7 +114,7 @@ impl Fans {
         }
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub(super) fn len(&self) -> usize {
         self.closed.len()
     }
@@ -121,17 +123,17 @@ impl Fans {
         &self.neighbour[self.start[i] as usize..self.start[i + 1] as usize]
     }
 
-    /// Number of natural neighbours of `i`.
+    /// Returns the number of natural neighbours of `i`.
     pub(super) fn valence(&self, i: usize) -> usize {
         self.entries(i).len()
     }
 
-    /// Natural neighbours of `i`.
+    /// Returns the natural neighbours of `i`.
     pub(super) fn of(&self, i: usize) -> impl Iterator<Item = usize> + Clone + '_ {
         self.entries(i).iter().map(|&entry| (entry & !PROVEN) as usize)
     }
 
-    /// Pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair are a triangle.
+    /// Returns the pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair form a triangle.
     pub(super) fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let entries = self.entries(i);
         (0..entries.len()).filter(|&k| entries[k] & PROVEN != 0).map(move |k| {
@@ -140,48 +142,47 @@ impl Fans {
         })
     }
 
-    /// Whether `i` sees the triangle of itself, `a` and `b`, in either orientation: two sheets seen from either
-    /// side may disagree about which way round it goes.
+    /// Returns whether `i` sees the triangle of itself, `a` and `b`. The orientation does not matter: points of two sheets may
+    /// see the triangle from opposite sides.
     pub(super) fn sees(&self, i: usize, a: usize, b: usize) -> bool {
         self.pairs(i).any(|pair| pair == (a, b) || pair == (b, a))
     }
 
-    /// Whether `j` is a natural neighbour of `i`.
+    /// Returns whether `j` is a natural neighbour of `i`.
     pub(super) fn adjacent(&self, i: usize, j: usize) -> bool {
         self.of(i).any(|other| other == j)
     }
 }
 
-/// Whether two points at the given distance count as being on one sheet: their normals are within 90°, and the line that joins
-/// them rises from one tangent plane about as much as it sinks below the other.
+/// Returns whether two points at this distance count as being on one sheet: their normals are within 90°, and the line between
+/// them rises from one tangent plane about as much as it falls below the other.
 #[inline]
 fn is_one_sheet(tree: &Tree, normal: &[Vec3], i: usize, j: usize, distance_sq: f32) -> bool {
     let rise = (tree.position[j] - tree.position[i]).dot(normal[i] + normal[j]);
     normal[i].dot(normal[j]) > 0.0 && rise * rise <= (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT) * distance_sq
 }
 
-/// The place of `q - p` in the tangent plane spanned by `u` and `v`, at its true distance from the origin.
+/// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one perpendicular to the plane.
 #[inline]
 pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     let flat = DVec2::new(offset.dot(u), offset.dot(v));
     let flat_sq = flat.length_squared();
-    // A point straight above has no direction.
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Cuts the cell of point `i` by the sorted `keys`, until no farther point can matter; whether it is closed and proven
-/// complete when every point nearer than √`known_sq` is among them.
-fn fill(cell: &mut Cell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64], known_sq: f64) -> bool {
+/// Clips the cell of point `i` by the points of the sorted `keys`, until no farther one can matter. Returns whether the cell is
+/// closed and proven complete, if every point nearer than √`known_sq` is among them.
+fn fill(cell: &mut VoronoiCell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64], known_sq: f64) -> bool {
     let p = tree.position[i].as_dvec3();
     let (u, v) = tangent_frame(normal);
     let (u, v) = (u.as_dvec3(), v.as_dvec3());
     let farthest_sq = keys.last().map_or(1.0, |&last| f64::from(unkey(last).0));
-    // Any square whose sides lie beyond half of what is known leaves no proven corner on itself.
+    // A square whose sides lie beyond half the known distance has no proven corner on its sides.
     let known = if known_sq.is_finite() { known_sq } else { farthest_sq * 1e6 };
     cell.start(known.sqrt().max(f64::MIN_POSITIVE));
     for &candidate in keys {
         let (distance_sq, j) = unkey(candidate);
-        // Keys are rounded to single precision; the slack only costs a few needless cuts.
+        // Keys are rounded to single precision. The slack costs a few needless cuts only.
         if f64::from(distance_sq) > 4.001 * cell.reach_sq() {
             break;
         }

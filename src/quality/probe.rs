@@ -1,10 +1,10 @@
-//! Places of the surface found without the particles: where random lines cross it.
+//! Samples of the surface that do not depend on the particles: its crossings with random lines.
 //!
-//! The triangles cannot see what the particles missed: a component without a seed, or a region where the front stopped. A
-//! line drawn uniformly among those that meet a convex box crosses a surface in it in proportion to its area
-//! (Cauchy–Crofton), so the crossings are uniform random places of the whole surface.
+//! The triangles do not show what the particles have missed: a component without a seed, or a region where the front stopped. A
+//! line that is uniform among those that meet a convex box crosses a surface in the box with a mean number of crossings in
+//! proportion to its area (Cauchy–Crofton formula), so the crossings are uniform random samples of the whole surface.
 
-use super::cover::project;
+use super::projection::project;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::pieces::piece;
@@ -12,20 +12,20 @@ use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Number of lines. They cross a closed surface that fills its box about as often, so that a piece with 0.1 % of the
-/// area is missed with a probability of 2 %.
+/// Number of lines. A closed surface that fills its box is crossed about as often, so a component with 0.1 % of the area is missed
+/// with a probability of 2 %.
 const LINES: usize = 4096;
-/// Places along a line at which the field is evaluated. Two crossings between two of them go unseen.
-const PLACES: usize = 64;
-/// Lines evaluated together, in one piece of work.
+/// Points along a line at which the field is evaluated. Two crossings between consecutive points are not seen.
+const STATIONS: usize = 64;
+/// Lines that are evaluated together, in one slice of work.
 const BATCH: usize = 8;
-/// A crossing counts when the first-order distance to the surface after projection is below this share of the step along
-/// the line: poles and jumps have sign changes too.
+/// A crossing counts if its first-order distance from the surface after projection is below this share of the step along the
+/// line: at poles and jumps the sign changes too.
 const RESIDUAL: f32 = 1e-2;
-/// Keeps these numbers apart from other uses of the seed.
+/// Separates these random numbers from others with the same seed.
 const STREAM: u64 = 0x6c69_6e65_7300_0000;
 
-/// Random places of the surface in `bounds`, uniform over its area; at most a few per line.
+/// Returns random samples of the surface in `bounds`, uniform over its area; at most a few for each line.
 pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64) -> Vec<Vec3> {
     let mut found = Vec::new();
     if bounds.is_valid() {
@@ -38,22 +38,22 @@ pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64)
     found
 }
 
-/// Appends where the next [`BATCH`] lines cross the surface.
+/// Appends the crossings of the next [`BATCH`] lines with the surface.
 fn cross(field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32, found: &mut Vec<Vec3>) {
-    let mut places = [Vec3::ZERO; BATCH * PLACES];
-    let mut values = [0.0_f32; BATCH * PLACES];
-    for line in places.chunks_exact_mut(PLACES) {
+    let mut points = [Vec3::ZERO; BATCH * STATIONS];
+    let mut values = [0.0_f32; BATCH * STATIONS];
+    for line in points.chunks_exact_mut(STATIONS) {
         let (from, to) = chord(random, bounds);
-        for (k, place) in line.iter_mut().enumerate() {
-            *place = from.lerp(to, (k as f64 + 0.5) / PLACES as f64).as_vec3();
+        for (k, point) in line.iter_mut().enumerate() {
+            *point = from.lerp(to, (k as f64 + 0.5) / STATIONS as f64).as_vec3();
         }
     }
-    field.values(&places, &mut values);
+    field.values(&points, &mut values);
     let (mut crossing, mut leash, mut ends) = (Vec::new(), Vec::new(), Vec::new());
-    for (line, value) in places.chunks_exact(PLACES).zip(values.chunks_exact(PLACES)) {
-        for k in 1..PLACES {
+    for (line, value) in points.chunks_exact(STATIONS).zip(values.chunks_exact(STATIONS)) {
+        for k in 1..STATIONS {
             let (a, b) = (value[k - 1], value[k]);
-            // False where either is NaN.
+            // This is false where either is NaN.
             if a <= 0.0 && b > 0.0 || a > 0.0 && b <= 0.0 {
                 let share = a / (a - b);
                 crossing.push(line[k - 1].lerp(line[k], if share.is_finite() { share } else { 0.5 }));
@@ -62,13 +62,13 @@ fn cross(field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32, found: &mut
             }
         }
     }
-    // Every step is taken: from a pole the steps lead away, as far again each time.
+    // All steps are taken: near a pole they lead away from it, by as much again at each step.
     project(field, &mut crossing, &leash, 0.0);
     let mut value = vec![0.0; crossing.len()];
     let mut gradient = vec![Vec3::ZERO; crossing.len()];
     field.gradients(&crossing, &mut value, &mut gradient);
     for (k, &p) in crossing.iter().enumerate() {
-        // Towards a pole f grows beyond its values at the ends, however small |f|/|∇f| becomes.
+        // Towards a pole |f| grows beyond its values at the ends of the step, even where |f|/|∇f| becomes small.
         let on_surface =
             value[k].abs() <= RESIDUAL * leash[k] * gradient[k].length() && value[k].abs() <= ends[k];
         if on_surface && bounds.contains(p) {
@@ -77,8 +77,8 @@ fn cross(field: &mut dyn Field, bounds: &Bounds, random: &mut Pcg32, found: &mut
     }
 }
 
-/// The ends of a chord of the box, uniform in the measure of lines: a uniform place of its boundary, and a direction inward
-/// with a density proportional to the cosine of its angle to the face.
+/// Returns the ends of a random chord of the box, uniform in the measure of lines: it starts at a uniform point of the boundary,
+/// in an inward direction with a density proportional to the cosine of the angle with the normal of the face.
 fn chord(random: &mut Pcg32, bounds: &Bounds) -> (DVec3, DVec3) {
     let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
     let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
@@ -92,7 +92,7 @@ fn chord(random: &mut Pcg32, bounds: &Bounds) -> (DVec3, DVec3) {
     let upper = unit() < 0.5;
     let mut from = lo + size * DVec3::new(unit(), unit(), unit());
     from[axis] = if upper { bounds.max[axis] } else { bounds.min[axis] };
-    // Uniform in the unit disc, lifted to the hemisphere.
+    // A uniform point of the unit disc, lifted to the hemisphere, has the density of the cosine.
     let (x, y) = loop {
         let (x, y) = (2.0 * unit() - 1.0, 2.0 * unit() - 1.0);
         if x * x + y * y < 1.0 {
@@ -103,7 +103,7 @@ fn chord(random: &mut Pcg32, bounds: &Bounds) -> (DVec3, DVec3) {
     direction[(axis + 1) % 3] = x;
     direction[(axis + 2) % 3] = y;
     direction[axis] = (1.0 - x * x - y * y).sqrt() * if upper { -1.0 } else { 1.0 };
-    // The first of the three far faces that the line meets.
+    // The chord ends at the first of the three far faces that the line meets.
     let length = (0..3).fold(f64::INFINITY, |length: f64, k| {
         let face = if direction[k] > 0.0 { bounds.max[k] } else { bounds.min[k] };
         let distance = (face - from[k]) / direction[k];
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn chords_have_the_mean_length_of_cauchys_formula() {
-        // 4 V / S for a convex body.
+        // The mean is 4 V / S for a convex body.
         let bounds = Bounds { min: [-1.0, 0.0, 2.0], max: [1.0, 1.0, 5.0] };
         let (volume, surface) = (6.0, 2.0 * (2.0 + 3.0 + 6.0));
         let mut random = Pcg32::seed_from_u64(5);

@@ -1,40 +1,32 @@
-//! Figures relative to a wanted radius of each point.
+//! Figures relative to the wanted radius of each point.
 
-use super::figures::Moments;
-use super::{Scene, Sizes};
+use super::moments::Moments;
+use super::options::Sizes;
+use super::scene::Scene;
 use crate::differential::exact_curvature;
 use crate::field::Field;
 use crate::math::SQRT_3;
 use crate::pieces::{piece, ranges};
 use glam::Vec3;
 
-/// Area of a point's cell in a hexagonal lattice of radius 1: 2√3.
+/// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
 const CELL_AREA: f64 = 2.0 * SQRT_3;
 /// Radius of a hole in that lattice.
 const HOLE: f64 = 2.0 / SQRT_3;
 
-/// Points whose radii are found in one piece of work.
-const PIECE: usize = 64;
+/// Points whose radii are found in one slice of work.
+const SLICE: usize = 64;
 
-/// The wanted radii, in tree order; NaN where there is none.
+/// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct Wanted {
     radius: Vec<f64>,
-    /// Radius of an ideal hole over the wanted radius: that of hexagonal cells that together have the surface's area.
+    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the area of the
+    /// surface.
     hole: f64,
 }
 
-/// Pairs of natural neighbours that both see each other and that both pass `inner`, each once.
-pub(super) fn mutual<'a>(scene: &'a Scene, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
-    scene.fans.of(i).filter(move |&j| j > i && inner[i] && inner[j] && scene.fans.adjacent(j, i))
-}
-
-/// Distance of two points, in tree order.
-pub(super) fn length(scene: &Scene, i: usize, j: usize) -> f64 {
-    (scene.tree.position[i].as_dvec3() - scene.tree.position[j].as_dvec3()).length()
-}
-
 impl Wanted {
-    /// The radii that `sizes` names, for points on a surface of this `area`.
+    /// Finds the radii that `sizes` asks for, of points on a surface of this `area`.
     pub(super) async fn new(
         scene: &Scene,
         inner: &[bool],
@@ -51,10 +43,10 @@ impl Wanted {
             }
             Sizes::Local => {
                 let mut own = vec![Moments::default(); n];
-                for range in ranges(n, PIECE) {
+                for range in ranges(n, SLICE) {
                     for i in range {
-                        for j in mutual(scene, inner, i) {
-                            let half = 0.5 * length(scene, i, j);
+                        for j in scene.mutual(inner, i) {
+                            let half = 0.5 * scene.distance(i, j);
                             own[i].add(half);
                             own[j].add(half);
                         }
@@ -69,7 +61,7 @@ impl Wanted {
                     1.0 / curvature.max(lowest).min(highest)
                 };
                 let mut radius = Vec::with_capacity(n);
-                for chunk in scene.tree.position.chunks(PIECE) {
+                for chunk in scene.tree.position.chunks(SLICE) {
                     radius.extend(chunk.iter().map(&mut of));
                     piece().await;
                 }
@@ -80,14 +72,40 @@ impl Wanted {
         Some(Self { radius, hole: HOLE * (area / cells).sqrt() })
     }
 
-    /// Distance of two points over the sum of their radii.
+    /// Returns the distance of two points over the sum of their radii.
     pub(super) fn ratio(&self, scene: &Scene, i: usize, j: usize) -> f64 {
-        length(scene, i, j) / (self.radius[i] + self.radius[j])
+        scene.distance(i, j) / (self.radius[i] + self.radius[j])
     }
 
-    /// Radius of an ideal hole between some points; NaN if one of them has no radius.
+    /// Returns the radius of an ideal hole between some points; NaN if one of them has no radius.
     pub(super) fn hole_between(&self, points: &[u32]) -> f32 {
         let sum: f64 = points.iter().map(|&i| self.radius[i as usize]).sum();
         (self.hole * sum / points.len() as f64) as f32
+    }
+}
+
+/// Statistics of the edge lengths over the sums of the wanted radii at their ends.
+pub(super) struct EdgeRatios {
+    /// Ratios of the edges between mutual natural neighbours.
+    pub(super) edge: Moments,
+    /// Smallest ratio of two natural neighbours.
+    pub(super) least: f64,
+}
+
+impl Default for EdgeRatios {
+    fn default() -> Self {
+        Self { edge: Moments::default(), least: f64::NAN }
+    }
+}
+
+impl EdgeRatios {
+    /// Takes in the edges of point `i`.
+    pub(super) fn add(&mut self, wanted: &Wanted, scene: &Scene, inner: &[bool], i: usize) {
+        scene
+            .mutual(inner, i)
+            .map(|j| wanted.ratio(scene, i, j))
+            .filter(|ratio| ratio.is_finite())
+            .for_each(|ratio| self.edge.add(ratio));
+        self.least = scene.rings.of(i).map(|j| wanted.ratio(scene, i, j)).fold(self.least, f64::min);
     }
 }

@@ -1,39 +1,42 @@
-//! Triangles of natural neighbours that their corners agree on, and what they add up to.
+//! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 
-use super::fans::Fans;
+use super::figures::Figures;
+use super::moments::{Moments, share};
+use super::one_rings::OneRings;
+use crate::math::SQRT_3;
 use crate::pieces::{piece, ranges};
 use crate::spatial::tree::{key, unkey};
 use glam::{DVec3, Vec3};
 
-/// Points whose triangles are found in one piece of work.
-const PIECE: usize = 64;
+/// Points whose triangles are found in one slice of work.
+const SLICE: usize = 64;
 
-/// The triangles of a set of points; indices in tree order, counter-clockwise round the normal of the first corner.
+/// The triangles of a set of points, as indices in tree order, counter-clockwise around the normal of the first corner.
 #[derive(Debug, Default)]
 pub(super) struct Triangles {
-    /// Those that all three corners see.
+    /// Triangles that all three corners see.
     pub(super) unanimous: Vec<[u32; 3]>,
-    /// Those that two of the three corners see.
+    /// Triangles that two of the three corners see.
     pub(super) majority: Vec<[u32; 3]>,
-    /// Those that one corner alone sees.
+    /// Triangles that only one corner sees.
     pub(super) single: Vec<[u32; 3]>,
 }
 
 impl Triangles {
     /// Counts, for each triangle that a corner sees, how many of its corners do.
-    pub(super) async fn new(fans: &Fans) -> Self {
-        let mut triangles = Self { unanimous: Vec::with_capacity(2 * fans.len()), ..Self::default() };
-        for range in ranges(fans.len(), PIECE) {
-            range.for_each(|i| triangles.add(fans, i));
+    pub(super) async fn new(rings: &OneRings) -> Self {
+        let mut triangles = Self { unanimous: Vec::with_capacity(2 * rings.len()), ..Self::default() };
+        for range in ranges(rings.len(), SLICE) {
+            range.for_each(|i| triangles.add(rings, i));
             piece().await;
         }
         triangles
     }
 
-    /// Adds the triangles that point `i` accounts for: those of which it is the smallest corner that sees them.
-    fn add(&mut self, fans: &Fans, i: usize) {
-        for (a, b) in fans.pairs(i) {
-            let (by_a, by_b) = (fans.sees(a, b, i), fans.sees(b, i, a));
+    /// Adds the triangles of which `i` is the smallest corner that sees them, so that each is added once.
+    fn add(&mut self, rings: &OneRings, i: usize) {
+        for (a, b) in rings.pairs(i) {
+            let (by_a, by_b) = (rings.sees(a, b, i), rings.sees(b, i, a));
             if by_a && a < i || by_b && b < i {
                 continue;
             }
@@ -46,23 +49,23 @@ impl Triangles {
         }
     }
 
-    /// The triangles that count: at least two of their three corners see them.
+    /// Returns the triangles that count: those that at least two of their three corners see.
     pub(super) fn kept(&self) -> impl Iterator<Item = &[u32; 3]> {
         self.unanimous.iter().chain(&self.majority)
     }
 
-    /// The kept triangles with the quarrels settled: no directed edge belongs to two of them.
+    /// Returns triangles without conflicts: no directed edge belongs to two of them.
     ///
-    /// Four nearly cocircular points may each prefer another diagonal, since each sees the others in its own tangent
-    /// plane. When two stand against two, the kept triangles overlap or leave a gap. Here the undisputed ones stay; the
-    /// others follow, those with short edges first, if their directed edges are free; then those that one
-    /// corner alone sees, if at least two of their sides are still open.
+    /// Four nearly cocircular points may disagree about the diagonal, because each sees the others in its own tangent plane.
+    /// Where two of them disagree with the other two, the triangles that count overlap or leave a gap. Here the unanimous
+    /// triangles stay. Those of a majority follow, in the order of their longest edge, if their directed edges are free; then
+    /// those that only one corner sees, if at least two of their sides are still open.
     pub(super) fn settled(&self, position: &[Vec3]) -> Vec<[u32; 3]> {
         let mut mesh = self.unanimous.clone();
         if self.majority.is_empty() && self.single.is_empty() {
             return mesh;
         }
-        // Only edges between corners of disputed triangles can matter.
+        // Only edges between corners of disputed triangles can be in conflict.
         let mut hot = vec![false; position.len()];
         for &i in self.majority.iter().chain(&self.single).flatten() {
             hot[i as usize] = true;
@@ -97,20 +100,20 @@ impl Triangles {
 
 /// A set of directed edges.
 struct Sides {
-    /// Open addressing, at most half full.
+    /// Slots of a hash table with open addressing, at most half full.
     slots: Vec<(u32, u32)>,
 }
 
 impl Sides {
-    /// No edge goes from a point to itself.
+    /// Marks an empty slot: no edge goes from a point to itself.
     const EMPTY: (u32, u32) = (u32::MAX, u32::MAX);
 
-    /// A set with room for `most` edges.
+    /// Returns an empty set with room for `most` edges.
     fn new(most: usize) -> Self {
         Self { slots: vec![Self::EMPTY; (2 * most + 1).next_power_of_two()] }
     }
 
-    /// The slot of `side`, or the empty one where it would go.
+    /// Returns the slot of `side`, or the empty one where it would go.
     fn slot(&self, side: (u32, u32)) -> usize {
         let mask = self.slots.len() - 1;
         let mixed = (u64::from(side.0) << 32 | u64::from(side.1)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -131,20 +134,68 @@ impl Sides {
     }
 }
 
-/// The directed edges of a triangle.
+/// Returns the directed edges of a triangle.
 fn sides([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
     [(a, b), (b, c), (c, a)]
 }
 
-/// Twice the area vector of a triangle.
+/// Returns twice the area vector of a triangle.
 pub(super) fn area_vector(position: &[Vec3], [a, b, c]: [u32; 3]) -> DVec3 {
     let a = position[a as usize].as_dvec3();
     (position[b as usize].as_dvec3() - a).cross(position[c as usize].as_dvec3() - a)
 }
 
-/// Euler number of a set of triangles over `points` points; points in no triangle do not count.
-pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> i64 {
-    // Each edge is written once, by its smaller end; the lists are short, so a linear look is enough.
+/// Returns the total area of triangles.
+pub(super) fn area(position: &[Vec3], mesh: &[[u32; 3]]) -> f64 {
+    mesh.iter().map(|&triangle| 0.5 * area_vector(position, triangle).length()).sum()
+}
+
+/// Angles of the triangles seen so far.
+#[derive(Default)]
+pub(super) struct TriangleAngles {
+    pub(super) count: usize,
+    smallest: Moments,
+    least: Option<f64>,
+    lt30: usize,
+    gt90: usize,
+    a_lt30: usize,
+    a_gt90: usize,
+}
+
+impl TriangleAngles {
+    pub(super) fn add(&mut self, position: &[Vec3], triangle: [u32; 3]) {
+        let corner = triangle.map(|i| position[i as usize].as_dvec3());
+        let twice_area = area_vector(position, triangle).length();
+        // At each corner the product of the sides is |a||b| cos; |a||b| sin is twice the area.
+        let cosines: [f64; 3] =
+            core::array::from_fn(|k| (corner[(k + 1) % 3] - corner[k]).dot(corner[(k + 2) % 3] - corner[k]));
+        // The sine term is the same at all corners, so the smallest angle has the largest cosine. It is below 30° if tan < 1/√3.
+        let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
+        let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
+        self.count += 1;
+        self.a_lt30 += sharp;
+        self.a_gt90 += blunt;
+        self.lt30 += usize::from(sharp > 0);
+        self.gt90 += usize::from(blunt > 0);
+        let largest_cosine = cosines[0].max(cosines[1]).max(cosines[2]);
+        let angle = libm::atan2(twice_area, largest_cosine).to_degrees();
+        self.smallest.add(angle);
+        self.least = Some(self.least.unwrap_or(angle).min(angle));
+    }
+
+    pub(super) fn figures(&self, figures: &mut Figures) {
+        figures.ang_min = self.least.unwrap_or(f64::NAN);
+        figures.ang_min_mean = self.smallest.mean();
+        figures.lt30 = share(self.lt30, self.count);
+        figures.gt90 = share(self.gt90, self.count);
+        figures.a_lt30 = share(self.a_lt30, 3 * self.count);
+        figures.a_gt90 = share(self.a_gt90, 3 * self.count);
+    }
+}
+
+/// Returns the Euler number of a set of triangles on `points` points; points in no triangle do not count.
+pub(super) fn euler_number(points: usize, triangles: &[[u32; 3]]) -> i64 {
+    // Each edge is written once, in the list of its smaller end. The lists are short, so a linear search is enough.
     let mut start = vec![0_u32; points + 1];
     for triangle in triangles {
         for k in 0..3 {
@@ -176,7 +227,7 @@ pub(super) fn topology(points: usize, triangles: &[[u32; 3]]) -> i64 {
     vertices as i64 - edges + triangles.len() as i64
 }
 
-/// Representative of `i`, halving the path to it.
+/// Returns the representative of `i` in a union–find forest, and halves the path to it.
 pub(super) fn find(root: &mut [u32], mut i: u32) -> u32 {
     while root[i as usize] != i {
         root[i as usize] = root[root[i as usize] as usize];

@@ -1,0 +1,52 @@
+//! Figures of accuracy: how far the points are from the surface, and how far their normals are from its normals.
+
+use super::figures::Figures;
+use super::moments::Moments;
+use glam::{DVec3, Vec3};
+
+/// Returns the first-order distance |f|/|∇f| of a point from the surface.
+pub(super) fn first_order_distance(value: f64, slope: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.abs() / slope }
+}
+
+/// Measures the first-order distances of all points.
+pub(super) fn residuals(residual: &[f64], figures: &mut Figures) {
+    let mut err = Moments::default();
+    let mut largest = f64::NAN;
+    for &distance in residual {
+        if distance.is_finite() {
+            err.add(distance);
+            largest = largest.max(distance);
+        } else {
+            figures.undefined += 1;
+        }
+    }
+    figures.err_mean = err.mean() / figures.d_hex;
+    figures.err_max = largest / figures.d_hex;
+}
+
+/// Angles between the given normals and the gradient.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct NormalAngles {
+    angle: Moments,
+    largest: f64,
+}
+
+impl NormalAngles {
+    /// Takes in a normal and a gradient, if both have a direction.
+    pub(super) fn add(&mut self, normal: Vec3, gradient: DVec3) {
+        let normal = normal.as_dvec3();
+        let (across, along) = (normal.cross(gradient).length(), normal.dot(gradient).abs());
+        if across + along > 0.0 && across.is_finite() && along.is_finite() {
+            let degrees = libm::atan2(across, along).to_degrees();
+            self.angle.add(degrees);
+            self.largest = self.largest.max(degrees);
+        }
+    }
+
+    /// Returns the mean and the largest angle in degrees; NaN of no angles.
+    pub(super) fn figures(&self) -> (f64, f64) {
+        let mean = self.angle.mean();
+        (mean, if mean.is_nan() { mean } else { self.largest })
+    }
+}

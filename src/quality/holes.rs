@@ -1,0 +1,297 @@
+//! Figures of the holes: distances from random points of the surface and from Voronoi corners to the nearest point.
+
+use super::border::Border;
+use super::nearby::Nearby;
+use super::probe;
+use super::projection::{BATCH, LAST_STEP, is_reached, project_batch};
+use super::sizes::Wanted;
+use super::triangles::area_vector;
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::pieces::piece;
+use crate::spatial::tree::Tree;
+use glam::{DVec3, Vec3};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// Crossings of random lines that are looked at in one slice of work.
+const SLICE: usize = 256;
+
+/// Returns the circumcentre and the circumradius of a triangle; `None` for one without area.
+fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
+    let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let offset = (normal.cross(ab) * ac.length_squared() + ac.cross(normal) * ab.length_squared())
+        / (2.0 * normal.length_squared());
+    offset.is_finite().then(|| (a + offset, offset.length()))
+}
+
+/// The points whose holes are measured, and the triangles from which samples of the surface are drawn.
+pub(super) struct Cover<'a> {
+    pub(super) tree: &'a Tree,
+    pub(super) mesh: &'a [[u32; 3]],
+    pub(super) border: Option<&'a Border>,
+    pub(super) wanted: Option<&'a Wanted>,
+    /// Largest leash of a sample whose surroundings are gathered at once: farther ones hold too many points.
+    pub(super) wide: f32,
+}
+
+impl Cover<'_> {
+    /// Returns whether a sample counts: it is away from the border.
+    pub(super) fn counts(&self, p: Vec3) -> bool {
+        self.border.is_none_or(|border| !border.is_near(p))
+    }
+
+    /// Returns the radius of an ideal hole between some points; NaN if there are no wanted radii.
+    pub(super) fn ideal(&self, points: &[u32]) -> f32 {
+        self.wanted.map_or(f32::NAN, |wanted| wanted.hole_between(points))
+    }
+
+    /// Returns the squared distance from `p` to the nearest of some points.
+    fn nearest_of(&self, p: Vec3, points: &[u32]) -> f32 {
+        points
+            .iter()
+            .map(|&i| self.tree.position[i as usize].distance_squared(p))
+            .fold(f32::INFINITY, f32::min)
+    }
+}
+
+/// Radii of the largest holes. A hole's radius is the distance of a sample of the surface to its nearest point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LargestHoles {
+    /// Largest radius.
+    pub(super) widest: f64,
+    /// Largest radius over that of an ideal hole at the same position.
+    pub(super) relative: f64,
+}
+
+impl LargestHoles {
+    /// Returns the larger of both.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self { widest: self.widest.max(other.widest), relative: self.relative.max(other.relative) }
+    }
+}
+
+/// Statistics of the distances from samples of the surface to their nearest points.
+#[derive(Default)]
+pub(super) struct HoleSearch {
+    nearby: Nearby,
+    widest_sq: f32,
+    relative_sq: f32,
+    /// Sum of the squared distances of the random samples, and their number.
+    sum_sq: f64,
+    samples: usize,
+}
+
+impl HoleSearch {
+    /// Returns the largest holes so far.
+    pub(super) fn largest(&self) -> LargestHoles {
+        LargestHoles {
+            widest: f64::from(self.widest_sq).sqrt(),
+            relative: f64::from(self.relative_sq).sqrt(),
+        }
+    }
+
+    /// Returns the mean squared distance of the random samples; NaN if there are none.
+    pub(super) fn mean_sq(&self) -> f64 {
+        self.sum_sq / self.samples as f64
+    }
+
+    /// Returns whether a distance is larger than those so far, in itself or relative to the ideal one.
+    fn exceeds(&self, gap_sq: f32, ideal_sq: f32) -> bool {
+        gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq
+    }
+
+    fn widen(&mut self, gap_sq: f32, ideal_sq: f32) {
+        self.widest_sq = self.widest_sq.max(gap_sq);
+        self.relative_sq = self.relative_sq.max(gap_sq / ideal_sq);
+    }
+
+    /// Takes in a batch of random samples.
+    fn add_random(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
+        project_batch(field, &mut batch.position, &batch.leash, LAST_STEP);
+        for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
+            if cover.counts(p) {
+                let bound_sq = cover.nearest_of(p, triangle);
+                let gap_sq = if leash < cover.wide {
+                    self.nearby.nearest_sq(cover.tree, p, bound_sq, leash)
+                } else {
+                    cover.tree.nearest_sq(p, u32::MAX, bound_sq)
+                };
+                let ideal = cover.ideal(triangle);
+                self.widen(gap_sq, ideal * ideal);
+                self.sum_sq += f64::from(gap_sq);
+                self.samples += 1;
+            }
+        }
+        batch.clear();
+    }
+
+    /// Takes in the Voronoi corners on the surface: the projected circumcentres of the triangles.
+    pub(super) async fn add_corners(&mut self, field: &mut dyn Field, cover: &Cover<'_>) {
+        let mut batch = Batch::default();
+        for chunk in cover.mesh.chunks(BATCH) {
+            for &triangle in chunk {
+                if let Some((centre, radius)) = circumcentre(&cover.tree.position, triangle) {
+                    batch.push(centre.as_vec3(), radius as f32, triangle);
+                }
+            }
+            self.add_corner_batch(field, cover, &mut batch);
+            piece().await;
+        }
+    }
+
+    fn add_corner_batch(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
+        project_batch(field, &mut batch.position, &batch.leash, LAST_STEP);
+        for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
+            // Corners that cannot exceed the largest distances so far are passed over.
+            let bound_sq = cover.nearest_of(p, triangle);
+            let ideal = cover.ideal(triangle);
+            let ideal_sq = ideal * ideal;
+            if self.exceeds(bound_sq, ideal_sq) {
+                let gap_sq = cover.tree.nearest_sq(p, u32::MAX, bound_sq);
+                if self.exceeds(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, leash) {
+                    self.widen(gap_sq, ideal_sq);
+                }
+            }
+        }
+        batch.clear();
+    }
+
+    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their area, and
+    /// projected onto the surface.
+    pub(super) async fn add_samples(
+        &mut self,
+        field: &mut dyn Field,
+        cover: &Cover<'_>,
+        count: usize,
+        seed: u64,
+    ) {
+        let (position, triangles) = (&cover.tree.position, cover.mesh);
+        let total: f64 = triangles.iter().map(|&t| area_vector(position, t).length()).sum();
+        let share = total / count as f64;
+        let mut random = Pcg32::seed_from_u64(seed);
+        let mut unit = move || f64::from(random.next_u32()) * (1.0 / 4_294_967_296.0);
+        let mut batch = Batch::default();
+        let mut passed = 0.0;
+        let mut next = share * unit();
+        let mut stratum = 1.0;
+        for &triangle in triangles {
+            passed += area_vector(position, triangle).length();
+            while next < passed && stratum <= count as f64 {
+                let [a, b, c] = triangle.map(|i| position[i as usize].as_dvec3());
+                // The sample is uniform in the triangle: the square root undoes the crowding towards `a`.
+                let (s, t) = (unit().sqrt(), unit());
+                let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
+                // The nearest point is no farther than the nearest corner, and the projection moves the sample by less than that.
+                let corner = (p - a).length().min((p - b).length()).min((p - c).length());
+                batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
+                if batch.position.len() == BATCH {
+                    self.add_random(field, cover, &mut batch);
+                    piece().await;
+                }
+                next = share * (stratum + unit());
+                stratum += 1.0;
+            }
+        }
+        self.add_random(field, cover, &mut batch);
+    }
+}
+
+/// A batch of samples to be projected.
+#[derive(Default)]
+struct Batch {
+    position: Vec<Vec3>,
+    /// Largest distance that the projection may move each.
+    leash: Vec<f32>,
+    /// The triangle that each comes from.
+    triangle: Vec<[u32; 3]>,
+}
+
+impl Batch {
+    fn clear(&mut self) {
+        self.position.clear();
+        self.leash.clear();
+        self.triangle.clear();
+    }
+
+    fn push(&mut self, position: Vec3, leash: f32, triangle: [u32; 3]) {
+        self.position.push(position);
+        self.leash.push(leash);
+        self.triangle.push(triangle);
+    }
+}
+
+/// The part of the surface that is farther from every point than any sample on the triangles.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Uncovered {
+    /// Share of the area.
+    pub(super) share: f64,
+    /// Sum of the squared distances to the nearest point over the number of all samples.
+    pub(super) sum_sq: f64,
+    pub(super) largest: LargestHoles,
+}
+
+/// Measures what the triangles cannot show: components without a point, and regions where the points end. `spanned` are the
+/// largest holes on the triangles.
+pub(super) async fn uncovered(
+    cover: &Cover<'_>,
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    seed: u64,
+    spanned: LargestHoles,
+) -> Uncovered {
+    let mut uncovered = Uncovered::default();
+    let (mut all, mut far) = (0.0, 0.0);
+    for chunk in probe::crossings(field, bounds, seed).await.chunks(SLICE) {
+        for &p in chunk.iter().filter(|&&p| cover.counts(p)) {
+            all += 1.0;
+            let (gap_sq, index) = cover.tree.nearest(p, u32::MAX, f32::INFINITY);
+            if index == u32::MAX {
+                continue;
+            }
+            let gap = f64::from(gap_sq).sqrt();
+            let relative = gap / f64::from(cover.ideal(&[index]));
+            // The hundredth allows for the rounding of the samples.
+            if gap > 1.01 * spanned.widest {
+                far += 1.0;
+                uncovered.sum_sq += gap * gap;
+                uncovered.largest.widest = uncovered.largest.widest.max(gap);
+            }
+            if relative > 1.01 * spanned.relative {
+                uncovered.largest.relative = uncovered.largest.relative.max(relative);
+            }
+        }
+        piece().await;
+    }
+    if all > 0.0 {
+        uncovered.share = far / all;
+        uncovered.sum_sq /= all;
+    }
+    uncovered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+    use crate::pieces::complete;
+
+    #[test]
+    fn corners_that_do_not_come_to_the_surface_are_no_holes() {
+        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let at = |y: f32, z: f32| Vec3::new(1.0, y, z).normalize_or_zero();
+        // These are almost on a great circle: their circumcentre is near that of the sphere, far from the surface.
+        let flat = [at(-0.1, 0.001), at(0.0, 0.0), at(0.1, 0.001)];
+        let wide = [at(-0.1, 0.0), at(0.1, 0.0), at(0.0, 0.2)];
+        for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {
+            let tree = Tree::new(&points);
+            let mesh = [[0, 1, 2]];
+            let cover = Cover { tree: &tree, mesh: &mesh, border: None, wanted: None, wide: 1.0 };
+            let mut search = HoleSearch::default();
+            complete(search.add_corners(&mut field, &cover));
+            assert!(holes.contains(&search.largest().widest), "{}", search.largest().widest);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Figures of the neighbourhoods: valence and six-fold order.
+
+use super::figures::Figures;
+use super::moments::{Moments, share};
+use super::one_rings::unroll;
+use super::scene::Scene;
+use crate::math::tangent_frame;
+use glam::DVec2;
+
+/// Counts of the valences, and the bond order, of the points seen so far.
+#[derive(Default)]
+pub(super) struct Order {
+    count: usize,
+    open: usize,
+    six: usize,
+    five_seven: usize,
+    valence: Moments,
+    psi6: Moments,
+}
+
+impl Order {
+    /// Takes in point `i`.
+    pub(super) fn add(&mut self, scene: &Scene, i: usize) {
+        self.count += 1;
+        if !scene.rings.closed[i] {
+            self.open += 1;
+            return;
+        }
+        let neighbours = scene.rings.valence(i);
+        self.valence.add(neighbours as f64);
+        self.six += usize::from(neighbours == 6);
+        self.five_seven += usize::from(neighbours == 5 || neighbours == 7);
+        let (u, v) = tangent_frame(scene.normal[i]);
+        let (u, v) = (u.as_dvec3(), v.as_dvec3());
+        let p = scene.tree.position[i].as_dvec3();
+        let mut sum = DVec2::ZERO;
+        for j in scene.rings.of(i) {
+            if let Some(q) = unroll(scene.tree.position[j].as_dvec3() - p, u, v) {
+                // exp(6iθ) is exp(iθ) to the sixth power, which takes products alone.
+                let unit = q / q.length();
+                let square = unit.rotate(unit);
+                sum += square.rotate(square).rotate(square);
+            }
+        }
+        self.psi6.add(sum.length() / neighbours as f64);
+    }
+
+    pub(super) fn figures(&self, figures: &mut Figures) {
+        figures.open = self.open;
+        figures.six = share(self.six, self.count);
+        figures.five_seven = share(self.five_seven, self.count);
+        figures.val_sd = self.valence.deviation();
+        figures.psi6 = self.psi6.mean();
+    }
+}

@@ -1,0 +1,172 @@
+//! The points to be measured, without duplicates, with their one-rings and triangles.
+
+use super::accuracy::{NormalAngles, first_order_distance};
+use super::figures::hexagonal_spacing;
+use super::one_rings::OneRings;
+use super::triangles::{Triangles, area};
+use crate::field::Field;
+use crate::pieces::piece;
+use crate::spatial::tree::Tree;
+use glam::{DVec3, Vec3};
+
+/// Points closer than this many d_hex to an earlier one are duplicates of it.
+const DUPLICATE: f64 = 1e-6;
+/// Points at which the field is evaluated together, in one piece of work.
+const BATCH: usize = 64;
+
+/// The points and what the figures are made from. All columns are in tree order.
+pub(super) struct Scene {
+    pub(super) tree: Tree,
+    /// Unit normals: ∇f/|∇f|, or the given normal where that is undefined.
+    pub(super) normal: Vec<Vec3>,
+    /// First-order distances |f|/|∇f| from the surface.
+    pub(super) residual: Vec<f64>,
+    /// Angles between the given normals and ∇f.
+    pub(super) normal_angles: NormalAngles,
+    pub(super) rings: OneRings,
+    /// Whether a duplicate of the point was dropped, so that the distance to the nearest point is 0.
+    has_duplicate: Vec<bool>,
+}
+
+impl Scene {
+    async fn new(
+        position: &[Vec3],
+        given: &[Vec3],
+        field: &mut dyn Field,
+        has_duplicate: &[bool],
+        drop: &[bool],
+    ) -> Self {
+        let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
+        let tree = Tree::in_pieces(kept).await;
+        let mut normal = Vec::with_capacity(tree.len());
+        let mut residual = Vec::with_capacity(tree.len());
+        let mut normal_angles = NormalAngles::default();
+        for (position, origin) in tree.position.chunks(BATCH).zip(tree.origin.chunks(BATCH)) {
+            let (mut value, mut gradient) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
+            field.exact_gradients(position, &mut value, &mut gradient);
+            for ((&i, value), &gradient) in origin.iter().zip(value).zip(&gradient) {
+                let slope = gradient.length();
+                let given = given.get(i as usize).copied().unwrap_or(Vec3::ZERO);
+                normal_angles.add(given, gradient);
+                let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
+                normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
+                residual.push(first_order_distance(value, slope));
+            }
+            piece().await;
+        }
+        let rings = OneRings::new(&tree, &normal).await;
+        let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
+        Self { tree, normal, residual, normal_angles, rings, has_duplicate }
+    }
+
+    /// Returns the distance from point `i` to the nearest other point, of any sheet.
+    pub(super) fn nearest(&self, i: usize) -> f32 {
+        if self.has_duplicate[i] { 0.0 } else { self.rings.nearest[i] }
+    }
+
+    /// Returns the distance of two points.
+    pub(super) fn distance(&self, i: usize, j: usize) -> f64 {
+        (self.tree.position[i].as_dvec3() - self.tree.position[j].as_dvec3()).length()
+    }
+
+    /// Returns the points `j` > `i` of which each is a natural neighbour of the other, if both are `inner`.
+    pub(super) fn mutual<'a>(&'a self, inner: &'a [bool], i: usize) -> impl Iterator<Item = usize> + 'a {
+        self.rings.of(i).filter(move |&j| j > i && inner[i] && inner[j] && self.rings.adjacent(j, i))
+    }
+}
+
+/// The points without duplicates and non-finite positions, and their triangles.
+pub(super) struct Prepared {
+    pub(super) scene: Scene,
+    pub(super) triangles: Triangles,
+    /// The triangles that count, without conflicts (see [`Triangles::settled`]).
+    pub(super) mesh: Vec<[u32; 3]>,
+    pub(super) duplicates: usize,
+    pub(super) not_finite: usize,
+    /// Whether each point is left out, by the index given.
+    pub(super) drop: Vec<bool>,
+}
+
+impl Prepared {
+    /// Prepares the points; `known_area` is that of the surface, if it is known.
+    pub(super) async fn new(
+        position: &[Vec3],
+        normal: &[Vec3],
+        field: &mut dyn Field,
+        known_area: Option<f64>,
+    ) -> Self {
+        let mut drop: Vec<bool> = position.iter().map(|p| !p.is_finite()).collect();
+        let not_finite = drop.iter().filter(|&&dropped| dropped).count();
+        let mut has_duplicate = vec![false; position.len()];
+        // Equal points go first: all of them would be nearest neighbours of one another.
+        drop_equal(position, &mut drop, &mut has_duplicate);
+        piece().await;
+        loop {
+            let scene = Scene::new(position, normal, field, &has_duplicate, &drop).await;
+            let triangles = Triangles::new(&scene.rings).await;
+            let mesh = triangles.settled(&scene.tree.position);
+            piece().await;
+            let area = known_area.unwrap_or_else(|| area(&scene.tree.position, &mesh));
+            let d_hex = hexagonal_spacing(area, position.len() - not_finite);
+            piece().await;
+            if !drop_close(&scene, (DUPLICATE * d_hex) as f32, &mut drop) {
+                let duplicates = position.len() - not_finite - scene.tree.len();
+                return Self { scene, triangles, mesh, duplicates, not_finite, drop };
+            }
+        }
+    }
+}
+
+/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`.
+fn drop_equal(position: &[Vec3], drop: &mut [bool], has_duplicate: &mut [bool]) {
+    // This is a hash table with open addressing, at most half full; a slot holds an index + 1.
+    let mut slots = vec![0_u32; (2 * position.len()).next_power_of_two()];
+    let mask = slots.len() - 1;
+    for (i, p) in position.iter().enumerate() {
+        if drop[i] {
+            continue;
+        }
+        let mut hash = 0_u64;
+        for c in p.to_array() {
+            // Adding 0 turns −0 into 0.
+            hash = (hash ^ u64::from((c + 0.0).to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash ^= hash >> 29;
+        }
+        let mut slot = hash as usize & mask;
+        loop {
+            match slots[slot] {
+                0 => {
+                    slots[slot] = i as u32 + 1;
+                    break;
+                }
+                earlier if position[earlier as usize - 1] == *p => {
+                    drop[i] = true;
+                    has_duplicate[earlier as usize - 1] = true;
+                    break;
+                }
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+    }
+}
+
+/// Marks every point closer than `limit` to an earlier one in `drop`. Returns whether there was any.
+fn drop_close(scene: &Scene, limit: f32, drop: &mut [bool]) -> bool {
+    let tree = &scene.tree;
+    let mut near = Vec::new();
+    let mut any = false;
+    for i in 0..tree.len() {
+        if scene.rings.nearest[i] < limit {
+            near.clear();
+            tree.within_box(tree.position[i] - limit, tree.position[i] + limit, &mut near);
+            if near.iter().any(|&j| {
+                tree.origin[j as usize] < tree.origin[i]
+                    && (tree.position[j as usize] - tree.position[i]).length() < limit
+            }) {
+                drop[tree.origin[i] as usize] = true;
+                any = true;
+            }
+        }
+    }
+    any
+}

@@ -1,0 +1,66 @@
+//! Figures of the nearest-neighbour distances.
+
+use super::figures::Figures;
+use super::moments::Moments;
+use super::scene::Scene;
+use crate::spatial::tree::{key, unkey};
+use serde::Serialize;
+
+/// Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub min: f64,
+    /// Upper end of the last bin.
+    pub max: f64,
+    /// Counts.
+    pub bins: Vec<u32>,
+}
+
+impl Histogram {
+    /// The range is fixed, so that two runs can be compared; the perfect lattice has 1.
+    const RANGE: (f64, f64) = (0.0, 1.2);
+    /// A bin is 0.01 wide.
+    const BINS: usize = 120;
+
+    /// Counts the distances `nearest`, of which those that are NaN are left out.
+    pub(super) fn new(nearest: &[f32], d_hex: f64) -> Self {
+        let (min, max) = Self::RANGE;
+        let mut bins = vec![0; Self::BINS];
+        for &distance in nearest {
+            let place = (f64::from(distance) / d_hex - min) / (max - min) * Self::BINS as f64;
+            if !place.is_nan() {
+                bins[(place as usize).min(Self::BINS - 1)] += 1;
+            }
+        }
+        Self { min, max, bins }
+    }
+}
+
+/// Measures the nearest-neighbour distances of the points that are `inner`.
+pub(super) fn measure(scene: &Scene, inner: &[bool], figures: &mut Figures) {
+    // Distances are sorted as keys. A dropped duplicate is a point too, at distance 0 from the one it equals.
+    let mut sorted: Vec<u64> = (0..inner.len())
+        .filter(|&i| inner[i])
+        .map(|i| scene.nearest(i))
+        .filter(|d| d.is_finite())
+        .chain(core::iter::repeat_n(0.0, figures.dup))
+        .map(|d| key(d, 0))
+        .collect();
+    if sorted.is_empty() {
+        return;
+    }
+    sorted.sort_unstable();
+    let distance = |k: usize| f64::from(unkey(sorted[k]).0);
+    let mut moments = Moments::default();
+    (0..sorted.len()).for_each(|k| moments.add(distance(k)));
+    figures.nn_min = distance(0) / figures.d_hex;
+    figures.rho = figures.nn_min;
+    figures.nn_mean = moments.mean() / figures.d_hex;
+    figures.nn_cv = moments.variation();
+    figures.nn_ratio = distance(0) / moments.mean();
+    // The first percentile is interpolated linearly between two distances.
+    let place = 0.01 * (sorted.len() - 1) as f64;
+    let (below, above) = (distance(place as usize), distance((place as usize + 1).min(sorted.len() - 1)));
+    figures.rho_1 = (below + (above - below) * place.fract()) / figures.d_hex;
+}
