@@ -157,7 +157,6 @@ pub(crate) fn refill<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
 }
 
 /// Returns the larger of two numbers, neither of which is NaN. `f32::max`, which handles NaN, takes five instructions.
-#[inline(always)]
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

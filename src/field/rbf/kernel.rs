@@ -1,33 +1,15 @@
-//! The sums in single precision, twice with the same bits: at one point, with SIMD lanes over the coefficients of a cell's
-//! polynomial and over its near centres, and at eight points of one cell, with lanes over the points.
+//! Evaluation in single precision, in two ways that give the same bits: at one point, with SIMD lanes over the coefficients of a
+//! cell's polynomial and over its near centres, and at eight points of one cell, with lanes over the points.
 //!
-//! Neighbours in a front or in a relaxation step mostly share a cell, but not all do, and a lone point in eight lanes would
+//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. A single point in eight lanes would
 //! cost several times as much.
 
-use super::taylor::DEGREE;
+use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
-use glam::DVec3;
 
-/// |d| below this, in local units, counts as this in a divisor: nothing is divided by zero at a centre.
+/// Smallest |d| that is divided by, in local units, so that nothing is divided by zero at a centre.
 const LEAST_DISTANCE: f32 = 1e-12;
-/// Rows of a polynomial: those powers of z and x that have degree up to [`DEGREE`].
-pub(super) const ROWS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
-
-/// A polynomial's coefficients: in the lanes the powers of y; by rows from the largest power of z down, and within it from
-/// the largest power of x down. What would be beyond the degree is zero.
-pub(super) type Rows = [Lanes; ROWS];
-
-const _: () = assert!(LANES == DEGREE + 1, "the powers of y fill the lanes");
-
-/// A centre with its coefficients, in local coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Centre {
-    pub(super) place: DVec3,
-    pub(super) alpha: f64,
-    pub(super) beta: DVec3,
-}
-
-/// Eight centres.
+/// Eight near centres, in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
     place: [Lanes; 3],
@@ -40,20 +22,20 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Up to eight centres; the rest has no weight.
+    /// Packs up to eight centres; the other lanes have the weight 0.
     pub(super) fn new(centres: &[Centre]) -> Self {
         let lanes = |of: &dyn Fn(&Centre) -> f64| {
             Lanes(core::array::from_fn(|k| centres.get(k).map_or(0.0, |centre| of(centre) as f32)))
         };
         Self {
-            place: [0, 1, 2].map(|axis| lanes(&|c| c.place[axis])),
+            place: [0, 1, 2].map(|axis| lanes(&|c| c.position[axis])),
             alpha: lanes(&|c| c.alpha),
             alpha3: lanes(&|c| 3.0 * c.alpha),
             beta: [0, 1, 2].map(|axis| lanes(&|c| 3.0 * c.beta[axis])),
         }
     }
 
-    /// One of the centres in every lane.
+    /// Returns centre `k` in every lane.
     // As a call it costs `add_lane` 6 % more instructions.
     #[inline(always)]
     fn splat(&self, k: usize) -> Self {
@@ -67,35 +49,34 @@ impl Near {
     }
 }
 
-/// A point, for a cell that holds it.
-pub(super) struct Place {
-    /// In local coordinates.
+/// A point, and its position in the cell that holds it.
+pub(super) struct LocalPoint {
+    /// Position in local coordinates.
     pub(super) local: [f32; 3],
-    /// From the middle of the cell, in units of its half-width.
+    /// Offset from the middle of the cell, in units of its half-width.
     pub(super) offset: [f32; 3],
-    /// 1 over the half-width.
+    /// 1 over the half-width of the cell.
     pub(super) inverse: f32,
 }
 
-/// f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
+/// Returns f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
 ///
-/// The loops that it calls are not inlined: only where lanes go in and out by memory does the compiler keep each of them in
-/// registers of its own. Inlined, they and those of [`sums_of_eight`] make a uniform run on the bunny take 39 % more
-/// instructions.
-pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], place: &Place) -> [f32; N] {
-    let [x, y, z] = place.offset.map(Lanes::splat);
+/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own only where they come in and go
+/// out by memory. Inlined, they and those of [`sums_of_eight`] make a uniform run on the bunny take 39 % more instructions.
+pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoint) -> [f32; N] {
+    let [x, y, z] = point.offset.map(Lanes::splat);
     let mut planes = [Lanes::splat(0.0); 6];
     polynomial::<N>(&mut planes, rows, &x, &z);
     let mut sums = [Lanes::splat(0.0); N];
-    weigh(&mut sums, &planes, &powers(y.0[0]), place.inverse);
+    weigh(&mut sums, &planes, &powers(y.0[0]), point.inverse);
     if !near.is_empty() {
-        add(&mut sums, near, &place.local.map(Lanes::splat));
+        add(&mut sums, near, &point.local.map(Lanes::splat));
     }
     sums.map(Lanes::sum)
 }
 
-/// The polynomial and its derivatives by x and z, by nested multiplication along both: f, ∂x, ∂z, half of ∂xx, ∂xz, half of
-/// ∂zz. The sums over the powers of y are left to the lanes.
+/// Evaluates the polynomial and its derivatives by x and z by Horner's rule along both: f, ∂x, ∂z, ½ ∂xx, ∂xz, ½ ∂zz. The
+/// lanes hold the powers of y, which are still to be summed.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z: &Lanes) {
@@ -110,8 +91,8 @@ fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z
     *planes = nested;
 }
 
-/// One step of that along z: takes in the polynomial in x that belongs to the next smaller power of z, given by its
-/// coefficients from the largest power of x down.
+/// Does one step of Horner's rule along z. `row` are the coefficients of the polynomial in x of the next smaller power of z, from
+/// the largest power of x down.
 // Inlined, so that the lanes stay in registers from call to call.
 #[inline(always)]
 fn nest<const N: usize>(planes: &mut [Lanes; 6], x: Lanes, z: Lanes, row: impl Iterator<Item = Lanes>) {
@@ -135,7 +116,9 @@ fn nest<const N: usize>(planes: &mut [Lanes; 6], x: Lanes, z: Lanes, row: impl I
     *planes = [f, fx, fz, fxx, fxz, fzz];
 }
 
-/// yʲ.
+/// Returns yʲ in lane j.
+// Not inlined, for the registers: see `sums`.
+#[inline(never)]
 fn powers(y: f32) -> Lanes {
     let mut power = [1.0; LANES];
     for j in 1..LANES {
@@ -144,12 +127,12 @@ fn powers(y: f32) -> Lanes {
     Lanes(power)
 }
 
-/// What stands in the lane before, times the lane's number.
+/// Returns j yʲ⁻¹ in lane j, from yʲ.
 fn slope(power: Lanes) -> Lanes {
     Lanes(core::array::from_fn(|j| if j < 1 { 0.0 } else { j as f32 * power.0[j - 1] }))
 }
 
-/// Weighs the planes with the powers of y, and makes derivatives by the offset into such by the place.
+/// Multiplies the planes by the powers of y, and turns derivatives by the offset into derivatives by the position.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn weigh<const N: usize>(sums: &mut [Lanes; N], planes: &[Lanes; 6], powers: &Lanes, inverse: f32) {
@@ -174,7 +157,7 @@ fn weigh<const N: usize>(sums: &mut [Lanes; N], planes: &[Lanes; 6], powers: &La
     sums[9] = (fzz + fzz) * power;
 }
 
-/// Adds the terms of centres.
+/// Adds the terms of near centres.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn add<const N: usize>(sums: &mut [Lanes; N], centres: &[Near], place: &[Lanes; 3]) {
@@ -186,7 +169,7 @@ fn add<const N: usize>(sums: &mut [Lanes; N], centres: &[Near], place: &[Lanes; 
     *sums = local;
 }
 
-/// Adds the terms of centres to points, lane by lane.
+/// Adds the terms of eight centres, lane by lane.
 // Inlined, so that the lanes stay in registers from call to call.
 #[inline(always)]
 fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near: &Near) {
@@ -218,20 +201,20 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
     sums[9] += common + (uz + uz) * pz;
 }
 
-/// As [`sums`] for eight points of one cell, with the same bits, at less than twice the cost of one.
+/// Does what [`sums`] does for eight points of one cell, with the same bits, at less than twice the cost of one.
 ///
-/// Here the lanes are the points; what [`sums`] has in its lanes is one of eight partial sums.
+/// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are added in the same order.
 pub(super) fn sums_of_eight<const N: usize>(
     rows: &Rows,
     near: &[Near],
     centres: usize,
-    places: &Places,
+    points: &LocalPoints,
     inverse: f32,
 ) -> [Lanes; N] {
     let mut sums = [[Lanes::splat(0.0); N]; LANES];
-    expand(&mut sums, rows, &places.offset, inverse);
+    expand(&mut sums, rows, &points.offset, inverse);
     for (k, sums) in sums.iter_mut().enumerate() {
-        add_lane(sums, near, k, centres, &places.local);
+        add_lane(sums, near, k, centres, &points.local);
     }
     core::array::from_fn(|n| {
         let v = |k: usize| sums[k][n];
@@ -239,25 +222,25 @@ pub(super) fn sums_of_eight<const N: usize>(
     })
 }
 
-/// Eight points, as [`Place`].
-pub(super) struct Places {
+/// Eight points of one cell, as [`LocalPoint`] has one.
+pub(super) struct LocalPoints {
     pub(super) local: [Lanes; 3],
     pub(super) offset: [Lanes; 3],
 }
 
-/// The polynomial's part of each partial sum: [`polynomial`] and [`weigh`] in one.
+/// Evaluates the polynomial's part of each partial sum, as [`polynomial`] and [`weigh`] do.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &[Lanes; 3], inverse: f32) {
     let [x, y, z] = *offset;
     let inverse = Lanes::splat(inverse);
-    // yʲ, and what its first two derivatives by the place weigh, for this power of y and the one before.
+    // These are yʲ, and the weights of the first two derivatives by the position for the power before.
     let mut power = Lanes::splat(1.0);
     let [mut power_before, mut first_before] = [Lanes::splat(0.0); 2];
     for (j, sums) in sums.iter_mut().enumerate() {
         let mut planes = [Lanes::splat(0.0); 6];
         for i in (0..=DEGREE - j).rev() {
-            // The rows of this power of z begin behind those of the larger ones.
+            // The rows of this power of z follow those of the larger ones.
             let last = (DEGREE - i + 1) * (DEGREE - i + 2) / 2;
             let row = rows[last - (DEGREE - i - j + 1)..last].iter();
             nest::<N>(&mut planes, x, z, row.map(|row| Lanes::splat(row.0[j])));
@@ -284,7 +267,7 @@ fn expand<const N: usize>(sums: &mut [[Lanes; N]; LANES], rows: &Rows, offset: &
     }
 }
 
-/// Adds the terms of every eighth centre, from the `k`th on, to the points.
+/// Adds the terms of every eighth centre, from centre `k` on, to eight points.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn add_lane<const N: usize>(

@@ -4,6 +4,7 @@
 //! the Hessian 3 (r I + d dᵀ/r) vanish at d = 0. `pointcloud::fit` computes the coefficients from the conditions f = 0
 //! and ∇f = n at every centre. The models of the paper (§6) are fields of this kind.
 
+mod coefficients;
 mod data;
 mod frame;
 mod kernel;

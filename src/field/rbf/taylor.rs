@@ -1,59 +1,57 @@
 //! Taylor polynomials of the sum over far centres.
 //!
-//! About the middle of a cell the terms of centres that are far from it are smooth, and a few dozen coefficients stand for
-//! all of them. The recurrence for |d + t|³ follows from u ∇φ = 3 (d + t) φ with u = |d + t|², φ = u^(3/2), degree by degree
+//! Around the middle of a cell the terms of far centres are smooth, so one polynomial of a few dozen coefficients replaces all of
+//! them. The recurrence for |d + t|³ follows from u ∇φ = 3 (d + t) φ with u = |d + t|², φ = u^(3/2), degree by degree
 //! (Duan & Krasny, "An adaptive treecode for computing nonbonded potential energy in classical molecular systems", 2001,
 //! have it for other powers).
 
-use super::kernel::{Centre, Rows};
+use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
 use glam::DVec3;
 
-/// Degree of the polynomials.
-pub(super) const DEGREE: usize = 7;
-/// Their coefficients: those of degree up to [`DEGREE`] in three variables.
+/// Number of coefficients of a polynomial of degree [`DEGREE`] in three variables.
 pub(super) const TERMS: usize = below(DEGREE + 1);
-/// One degree more, as ∇φ takes it.
+/// Number of coefficients for one degree more, which ∇φ needs.
 const MORE_TERMS: usize = below(DEGREE + 2);
-/// Centres expanded together.
+/// Centres that are expanded together.
 const TOGETHER: usize = 8;
-/// Powers along an axis, of the cube that holds a polynomial while it is shifted.
+/// Powers along each axis of the cube that holds a polynomial while it is shifted.
 const POWERS: usize = DEGREE + 1;
 
-/// Number of terms in three variables below a degree.
+/// Returns the number of terms in three variables below a degree.
 const fn below(degree: usize) -> usize {
     degree * (degree + 1) * (degree + 2) / 6
 }
 
-/// Coefficients in order of degree; the variables are offsets from the middle of a cell in units of its half-width.
+/// Coefficients in the order of their degree. The variables are offsets from the middle of a cell in units of its half-width.
 pub(super) type Polynomial = [f64; TERMS];
 
-/// A coefficient and its neighbours.
+/// The powers of a term, and the indices of the terms next to it.
 #[derive(Clone, Copy, Debug)]
 struct Term {
     powers: [usize; 3],
-    /// Index of the coefficient with one power less along each axis; [`MORE_TERMS`], where a zero stands, if there is none.
-    /// In bytes, so that no index needs to be checked.
+    /// Index of the term with one power less along each axis; [`MORE_TERMS`], whose coefficient is zero, if there is none. The
+    /// type is a byte, so that indices need no bounds checks.
     less: [u8; 3],
-    /// With two powers less.
+    /// Index of the term with two powers less.
     less_two: [u8; 3],
-    /// With one power more.
+    /// Index of the term with one power more.
     more: [u8; 3],
 }
 
-/// What is the same for all polynomials.
+/// Tables that all polynomials share, and a buffer.
 #[derive(Clone, Debug)]
 pub(super) struct Taylor {
     terms: Vec<Term>,
-    /// For each of [`Rows`] the indices of its coefficients; [`MORE_TERMS`] beyond the degree.
+    /// For each row of [`Rows`] the indices of its coefficients; [`MORE_TERMS`] beyond the degree.
     rows: Vec<[usize; LANES]>,
-    /// Coefficients of a group of centres.
+    /// Buffer for the coefficients of a group of centres.
     group: Vec<Group>,
 }
 
-/// A number of each of the centres that are expanded together.
+/// One number for each of the centres that are expanded together.
 type Group = [f64; TOGETHER];
-/// Places for coefficients: as many as a byte can tell.
+/// Length of that buffer: as many entries as a byte can index.
 const PLACES: usize = 256;
 
 impl Taylor {
@@ -87,7 +85,7 @@ impl Taylor {
         Self { terms, rows, group: vec![[0.0; TOGETHER]; PLACES] }
     }
 
-    /// Adds the terms of `centres`, of which none is at `middle`, to the polynomial of the cell.
+    /// Adds the terms of `centres`, none of which is at `middle`, to the polynomial of a cell.
     pub(super) fn expand(
         &mut self,
         polynomial: &mut Polynomial,
@@ -97,8 +95,8 @@ impl Taylor {
     ) {
         for group in centres.chunks(TOGETHER) {
             let at = |k: usize| group[k.min(group.len() - 1)];
-            // In units of the cell: φ has the factor half³, ∇φ half².
-            let offset = core::array::from_fn(|k| (middle - at(k).place) / half);
+            // In units of the cell φ has the factor half³, and ∇φ has half².
+            let offset = core::array::from_fn(|k| (middle - at(k).position) / half);
             let real: [f64; TOGETHER] =
                 core::array::from_fn(|k| if k < group.len() { half * half } else { 0.0 });
             let alpha: [f64; TOGETHER] = core::array::from_fn(|k| at(k).alpha * half * real[k]);
@@ -126,7 +124,7 @@ impl Taylor {
         collect(polynomial, powers, &self.terms, alpha, &beta);
     }
 
-    /// The polynomial of the eighth of the cell whose middle is at `side`/2, each of −1 or 1.
+    /// Returns the polynomial of the eighth of the cell whose middle is at `side`/2; each component of `side` is −1 or 1.
     pub(super) fn shifted(&self, polynomial: &Polynomial, side: [f64; 3]) -> Polynomial {
         let mut cube = [0.0; POWERS * POWERS * POWERS];
         let place = |[k, j, i]: [usize; 3]| (i * POWERS + j) * POWERS + k;
@@ -137,7 +135,7 @@ impl Taylor {
             let middle = 0.5 * side[axis];
             for term in self.terms[..TERMS].iter().filter(|term| term.powers[axis] == 0) {
                 let (first, top) = (place(term.powers), DEGREE - term.powers.iter().sum::<usize>());
-                // Σ cₖ (middle + t/2)ᵏ by repeated synthetic division.
+                // Repeated synthetic division gives Σ cₖ (middle + t/2)ᵏ.
                 for low in 0..top {
                     for k in (low..top).rev() {
                         cube[first + k * stride] += middle * cube[first + (k + 1) * stride];
@@ -153,7 +151,7 @@ impl Taylor {
         core::array::from_fn(|n| cube[place(self.terms[n].powers)])
     }
 
-    /// The coefficients in single precision, as the kernel takes them.
+    /// Returns the coefficients in single precision, in the order of the kernel.
     pub(super) fn rows(&self, polynomial: &Polynomial) -> Rows {
         core::array::from_fn(|row| {
             Lanes(self.rows[row].map(|n| polynomial.get(n).map_or(0.0, |&coefficient| coefficient as f32)))
@@ -161,7 +159,7 @@ impl Taylor {
     }
 }
 
-/// The coefficients of |d + t|³ from the first on, by the recurrence.
+/// Computes the coefficients of |d + t|³ by the recurrence; the first one is given.
 // Not inlined, as `collect`, for the SIMD registers: inlined, the two take 20 % more instructions.
 #[inline(never)]
 fn recur(a: &mut [Group; PLACES], terms: &[Term], d: &[Group; 3], inverse: &Group) {
@@ -189,7 +187,7 @@ fn collect(
     alpha: &Group,
     beta: &[Group; 3],
 ) {
-    // β along each axis times the power that a derivative brings down.
+    // This is β along each axis times the power that a derivative brings down.
     let weighed =
         beta.map(|b| -> [Group; POWERS] { core::array::from_fn(|power| b.map(|b| b * (power + 1) as f64)) });
     for (sum, (a_n, term)) in polynomial.iter_mut().zip(a.iter().zip(terms)) {

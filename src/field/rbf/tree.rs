@@ -9,9 +9,11 @@
 //! The scheme is the dual of the tree code of J. Barnes & P. Hut (1986): the expansions are about the targets, as the
 //! local expansions of the fast multipole method (L. Greengard & V. Rokhlin, 1987).
 
-use super::kernel::{self, Centre, Near, Place, Places, Rows};
-use super::taylor::{DEGREE, Polynomial, TERMS, Taylor};
-use super::{Frame, RbfData};
+use super::coefficients::{Centre, DEGREE, Rows};
+use super::data::RbfData;
+use super::frame::Frame;
+use super::kernel::{self, LocalPoint, LocalPoints, Near};
+use super::taylor::{Polynomial, TERMS, Taylor};
 use crate::math::{LANES, Lanes, Sym3};
 use glam::{DVec3, Vec3};
 
@@ -86,7 +88,7 @@ impl Tree {
         // With g the function in local coordinates, f(x) = g(s (x − o))/s, as in `pointcloud::fit`.
         let centres: Vec<Centre> = (0..data.centres.len())
             .map(|j| Centre {
-                place: frame.local(DVec3::from_array(data.centres[j])),
+                position: frame.local(DVec3::from_array(data.centres[j])),
                 alpha: data.alpha[j] / (scale * scale),
                 beta: DVec3::from_array(data.beta[j]) / scale,
             })
@@ -109,7 +111,7 @@ impl Tree {
     /// shifted to this cell, and `centres` are the near centres of its parent.
     fn add_cell(&mut self, middle: DVec3, half: f64, far: &Polynomial, centres: &[u32]) -> u32 {
         let radius = half * 3.0_f64.sqrt();
-        let distance = |j: u32| self.centres[j as usize].place.distance(middle);
+        let distance = |j: u32| self.centres[j as usize].position.distance(middle);
         let (away, near): (Vec<u32>, Vec<u32>) = centres.iter().partition(|&&j| {
             let (centre, distance) = (&self.centres[j as usize], distance(j));
             let slope = centre.alpha.abs() * distance + (DEGREE + 1) as f64 * centre.beta.length();
@@ -206,14 +208,15 @@ impl Tree {
             if together < MIN_TOGETHER {
                 for lane in 0..together {
                     let [local, offset] = [&local, &offset].map(|place| place.map(|lanes| lanes.0[lane]));
-                    let mut sums = kernel::sums::<N>(far, near, &Place { local, offset, inverse: *inverse });
+                    let mut sums =
+                        kernel::sums::<N>(far, near, &LocalPoint { local, offset, inverse: *inverse });
                     sums[0] /= scale;
                     sums[4.min(N)..].iter_mut().for_each(|second| *second *= scale);
                     store(n + lane, sums);
                 }
             } else {
                 let mut sums =
-                    kernel::sums_of_eight::<N>(far, near, *centres, &Places { local, offset }, *inverse);
+                    kernel::sums_of_eight::<N>(far, near, *centres, &LocalPoints { local, offset }, *inverse);
                 sums[0] = sums[0] / Lanes::splat(scale);
                 sums[4.min(N)..].iter_mut().for_each(|second| *second = *second * Lanes::splat(scale));
                 for lane in 0..together {

@@ -226,6 +226,7 @@ impl NeighbourLists {
     }
 
     /// Finds the neighbours of particle `i` of the group, itself among them, in what [`Self::gather`] has collected.
+    #[inline]
     fn find(&mut self, particles: &Particles, i: usize) {
         let (p, n, radius) = (particles.position[i], particles.normal[i], particles.radius[i]);
         self.near.resize(self.found.len(), 0);

@@ -77,6 +77,7 @@ impl PackedNeighbours {
     }
 
     /// Appends the list of the next particle: the `candidates`, all of a smaller index, that are paired with `true`.
+    #[inline]
     pub(crate) fn push(&mut self, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let i = self.near.len();
         self.near.push([0; ROOM]);
@@ -85,6 +86,7 @@ impl PackedNeighbours {
 
     /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are paired with
     /// `true`.
+    #[inline]
     pub(crate) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let mut list = [0; ROOM + 1];
         let mut len = 0;

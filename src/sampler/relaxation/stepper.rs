@@ -216,6 +216,7 @@ impl Stepper {
 ///
 /// A list serves until its particle has used up half of the skin: two such particles may have come within range without being
 /// listed.
+#[inline]
 fn add_travel<L: Repulsion>(
     law: &L,
     lists: &mut NeighbourLists,
