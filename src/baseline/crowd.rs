@@ -1,4 +1,4 @@
-//! The particles of a baseline and the search among them.
+//! The particles of a baseline, and the neighbour search among them.
 
 use crate::math::tangent_frame;
 use crate::spatial::{CellGrid, Neighbour};
@@ -6,15 +6,15 @@ use glam::Vec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Side of a grid cell over the mean reach of a particle: an iteration takes 5 % fewer instructions than with 1.25 with Witkin and
-/// Heckbert, 13 % fewer with forces. Up to 3.2 makes no difference to the first.
+/// Side of a grid cell over the mean reach of a particle. Compared with 1.25 an iteration takes 5 % fewer instructions with Witkin and
+/// Heckbert's scheme and 13 % fewer with forces. Values up to 3.2 make no difference to the former.
 const CELL: f32 = 1.6;
 
-/// A reach of more cells than this is searched through all particles instead: it belongs to a particle with few
-/// neighbours, of which there are a few at a time.
+/// Reach, in cells, beyond which all particles are searched instead of the grid. Only a few particles at a time, which have few
+/// neighbours, reach so far.
 const FARTHEST: f32 = 4.0;
 
-/// A particle with what an iteration finds out about it.
+/// A particle, and what an iteration computes for it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Particle {
     pub(crate) position: Vec3,
@@ -26,40 +26,40 @@ pub(crate) struct Particle {
     pub(crate) height: f32,
     /// Sum of the forces of the neighbours.
     pub(crate) force: Vec3,
-    /// How much it is pressed: an energy, or a sum of overlaps.
+    /// Measure of its compression: an energy, or a sum of squared overlaps.
     pub(crate) load: f32,
-    /// Σ |r|² E over its neighbours, for the change of the energy with the radius.
+    /// Σ |r|² E over its neighbours, from which follows how the energy changes with the radius.
     pub(crate) moment: f32,
-    /// Way of the last iteration, in radii.
-    pub(crate) way: f32,
-    /// |ṗ|/σ with Witkin and Heckbert, before it is limited.
+    /// Distance that it has moved in the last iteration, in radii.
+    pub(crate) moved: f32,
+    /// |ṗ|/σ with Witkin and Heckbert's scheme, before the limit on moves.
     pub(crate) speed: f32,
-    /// Way since the radius was brought up to date with the curvature.
-    pub(crate) since: f32,
-    /// Whether it is taken out at the end of the iteration.
+    /// Distance that it has travelled since its radius was brought up to date with the curvature.
+    pub(crate) radius_travel: f32,
+    /// Whether it is removed at the end of the iteration.
     pub(crate) dies: bool,
 }
 
 impl Particle {
-    /// A particle at rest on the surface.
+    /// Returns a particle at rest on the surface.
     pub(crate) fn new(position: Vec3, normal: Vec3, radius: f32) -> Self {
         Self { position, normal, radius, ..Self::default() }
     }
 }
 
-/// What a list reaches farther than its particle, in its reach: chosen by counting instructions of a whole run.
+/// Verlet skin of the lists, as a share of the reach. Instruction counts of a whole run have chosen it.
 const SKIN: f32 = 0.12;
 
-/// Where a particle was when its list was made, and how far that reaches.
+/// The position of a particle when its list was made, and the reach of the list.
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     position: Vec3,
     reach: f32,
-    /// End of its list; it begins where that of the particle before ends.
+    /// End of the list, which begins where that of the particle before ends.
     end: u32,
 }
 
-/// The neighbours of all particles: from a grid, and from lists as long as these serve.
+/// Neighbour search by a grid, and by lists as long as these hold all neighbours.
 #[derive(Clone)]
 pub(crate) struct Neighbourhood {
     grid: CellGrid,
@@ -82,19 +82,19 @@ impl Neighbourhood {
         }
     }
 
-    /// Whether there are lists of these particles, and they hold all neighbours within the `reach` of each. Nobody may have divided or
-    /// died since they were made.
+    /// Returns whether there are lists of these particles and they hold all neighbours within the `reach` of each. No particle may
+    /// have divided or died since they were made.
     pub(crate) fn serves(&self, particles: &[Particle], reach: impl Fn(f32) -> f32) -> bool {
-        let way = |(listed, particle): (&Listed, &Particle)| (particle.position - listed.position).length();
-        let farthest = self.listed.iter().zip(particles).map(way).fold(0.0, f32::max);
+        let moved = |(listed, particle): (&Listed, &Particle)| (particle.position - listed.position).length();
+        let farthest = self.listed.iter().zip(particles).map(moved).fold(0.0, f32::max);
         self.listed.len() == particles.len()
             && self.listed.iter().zip(particles).all(|(listed, particle)| {
-                reach(particle.radius) + way((listed, particle)) + farthest <= listed.reach
+                reach(particle.radius) + moved((listed, particle)) + farthest <= listed.reach
             })
     }
 
-    /// Empties the grid and fits its cells to the mean `reach` of the particles. Lists are made for longer than this iteration if
-    /// they are `to_last`.
+    /// Empties the grid and fits its cells to the mean `reach` of the particles. With `to_last`, lists are made that serve for more
+    /// than this iteration.
     pub(crate) fn reset(&mut self, particles: &[Particle], reach: impl Fn(f32) -> f32, to_last: bool) {
         let sum: f64 = particles.iter().map(|p| f64::from(reach(p.radius))).sum();
         let mean = (sum / particles.len() as f64) as f32;
@@ -109,8 +109,8 @@ impl Neighbourhood {
         self.grid.insert(particles[i].position, i as u32);
     }
 
-    /// The particles within `reach` of particle `i`, itself among them: from its list, else from the grid. Lists are made on the way,
-    /// which asks for the particles in their order.
+    /// Returns the particles within `reach` of particle `i`, itself among them, from its list or else from the grid. Lists are made
+    /// at the same time, so particles must be queried in their order.
     pub(crate) fn around(&mut self, particles: &[Particle], i: usize, reach: f32) -> &[Neighbour] {
         let centre = particles[i].position;
         if let Some(listed) = self.listed.get(i) {
@@ -142,16 +142,16 @@ fn neighbour(particles: &[Particle], centre: Vec3, index: u32) -> Neighbour {
     Neighbour { index, distance_sq: offset.length_squared(), offset }
 }
 
-/// A number from 0 up to 1, without 1.
+/// Returns a random number in [0, 1).
 pub(crate) fn uniform(random: &mut Pcg32) -> f32 {
-    // The 24 bits that a number in single precision has room for.
+    // A number in single precision has 24 bits.
     (random.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// A unit vector in the tangent plane, of any direction.
+/// Returns a random unit vector in the tangent plane.
 pub(crate) fn tangent(normal: Vec3, random: &mut Pcg32) -> Vec3 {
     let (u, v) = tangent_frame(normal);
-    // A place in the unit disc, by trial: four out of five are. That needs no sine.
+    // A random point of the square is in the unit disc in four of five trials. This needs no sine.
     loop {
         let [a, b] = [0, 1].map(|_| 2.0 * uniform(random) - 1.0);
         let length_sq = a * a + b * b;

@@ -1,22 +1,23 @@
-//! The scheme of forces to which the paper compares its adaptive sampling (§6, Table 1): discs whose radii follow the curvature
+//! The scheme of forces with which the paper compares its adaptive sampling (§6, Table 1): discs whose radii follow the curvature
 //! push each other apart where they overlap, and "we split a particle when no force is applied on it".
 //!
-//! Forces by distance, radii and the way back onto the surface are those of our own relaxation, [`Overlap`]: "we used the same code for the
-//! relaxations of our methods and for the comparative techniques (with the exception of the split criterion)".
+//! The forces, the radii and the projection onto the surface are those of our own relaxation, [`Overlap`]: "we used the same code
+//! for the relaxations of our methods and for the comparative techniques (with the exception of the split criterion)".
 //!
 //! # Differs from the paper
 //!
-//! * The paper names no death, and does not say how its counts settle. Here a particle that is pressed as if in a lattice with δ = 0.7
-//!   of the wanted spacing, or more, dies with the same chance as with Witkin and Heckbert: what is pressed in the last gap
-//!   from all sides leaves again.
-//! * Two particles push each other in full up to normals 90° apart, and beyond that not at all; with our own relaxation that fades
-//!   between 60° and 120°.
-//! * "No force" has a tolerance, [`Settings::free_load`]: two discs that push each other apart never quite come apart.
-//! * Only particles that have come to rest divide or die, as with Witkin and Heckbert.
-//! * The children sit half a radius to either side of their parent in a random direction, on the surface, with the radii there.
+//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in
+//!   a lattice with δ = 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's scheme, so that
+//!   a particle squeezed into the last gap is removed again.
+//! * Two particles repel each other with the weight 1 if their normals are within 90°, and not at all otherwise. In our own
+//!   relaxation the weight falls from 1 to 0 between 60° and 120°.
+//! * "No force" has a tolerance, [`Settings::free_load`]: discs that push each other apart never separate completely.
+//! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's scheme.
+//! * The children are placed half a radius to either side of their parent in a random direction, on the surface, with the radii
+//!   there.
 
 use super::crowd::Particle;
-use super::{Ground, Settings};
+use super::{Settings, SurfaceContext};
 use crate::math::Bounds;
 use crate::sampler::projection::BATCH;
 use crate::sampler::relaxation::repulsion::{LandingBatch, Overlap, Repulsion};
@@ -26,11 +27,11 @@ use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec3, Vec4};
 
-/// A particle that has gone less than this share of its radius in an iteration counts as at rest: γΔt of Witkin and Heckbert, whose
-/// γ is 4 and whose Δt is 0.03.
+/// A particle that has moved by less than this share of its radius in an iteration counts as at rest. This is γΔt of Witkin and
+/// Heckbert, with γ = 4 and Δt = 0.03.
 const REST: f32 = 0.12;
 
-/// The scheme with the constants of a run.
+/// The scheme, with the constants of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Forces {
     pub(crate) sizing: Sizing,
@@ -39,7 +40,7 @@ pub(crate) struct Forces {
     pub(crate) min_gradient: f32,
     /// Σ (overlap / mean radius)² of a particle below which it divides.
     free: f32,
-    /// The same above which it may die.
+    /// The same sum above which it may die.
     crowded: f32,
 }
 
@@ -51,7 +52,7 @@ impl Forces {
         resolution: f32,
         min_gradient: f32,
     ) -> Self {
-        // Six neighbours at δ of the spacing 2r.
+        // A particle is compressed as much by six neighbours at δ of the spacing 2r.
         let overlap = Overlap::RANGE - 2.0 * settings.death_radius as f32;
         let (free, crowded) = (settings.free_load as f32, 6.0 * overlap * overlap);
         Self { sizing, bounds: *bounds, resolution, min_gradient, free, crowded }
@@ -61,12 +62,12 @@ impl Forces {
         Overlap { sizing: &self.sizing, resolution: self.resolution, min_gradient: self.min_gradient }
     }
 
-    /// How far a particle of this radius reaches to one no larger.
+    /// Returns the distance at which a particle of this radius repels one that is not larger.
     pub(crate) fn reach(radius: f32) -> f32 {
         Overlap::RANGE * radius
     }
 
-    /// Adds the forces between particle `i` and its neighbours of a smaller radius or, where the radii are equal, index.
+    /// Adds the forces between particle `i` and those neighbours that have a smaller radius or, at equal radii, a smaller index.
     pub(crate) fn repel(&self, particles: &mut [Particle], i: usize, near: &[Neighbour]) {
         let Particle { normal, radius, .. } = particles[i];
         let law = self.law();
@@ -98,7 +99,12 @@ impl Forces {
     }
 
     /// Moves particles along their forces by one step of the relaxation.
-    pub(crate) fn advance(&self, ground: &mut Ground, particles: &mut [Particle], range: Range<usize>) {
+    pub(crate) fn advance(
+        &self,
+        surface: &mut SurfaceContext,
+        particles: &mut [Particle],
+        range: Range<usize>,
+    ) {
         let mut landing = LandingBatch::new();
         for (k, particle) in particles[range.clone()].iter().enumerate() {
             let (force, normal) = (particle.force, particle.normal);
@@ -106,59 +112,56 @@ impl Forces {
             let step = (along * Overlap::STEP).clamp_length_max(MAX_MOVE * particle.radius);
             landing.position[k] = particle.position + step;
             landing.radius[k] = particle.radius;
-            landing.radius_travel[k] = particle.since + step.length();
+            landing.radius_travel[k] = particle.radius_travel + step.length();
         }
         landing.count = range.len();
         landing.trust = TRUSTED_CORRECTION;
-        self.law().land(ground.field, ground.projector, &mut landing);
+        self.law().land(surface.field, surface.projector, &mut landing);
         for (k, particle) in particles[range].iter_mut().enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
-            particle.way = 0.0;
-            // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
+            particle.moved = 0.0;
+            // A particle stays where it is if it cannot go: at the border of the box, where the field ends, at a fold.
             if landing.ok[k] && self.bounds.contains(position) && normal.dot(particle.normal) > 0.0 {
-                particle.way = (position - particle.position).length() / particle.radius;
+                particle.moved = (position - particle.position).length() / particle.radius;
                 particle.position = position;
                 particle.normal = normal;
                 particle.radius = landing.radius[k];
-                particle.since = landing.radius_travel[k];
+                particle.radius_travel = landing.radius_travel[k];
             }
         }
     }
 
-    /// Whether the particle dies, if the random number comes out against it.
+    /// Returns whether the particle dies, given a random number in [0, 1).
     pub(crate) fn dies(&self, particle: &Particle, random: f32) -> bool {
-        particle.way < REST && particle.load > self.crowded && random > self.crowded / particle.load
+        particle.moved < REST && particle.load > self.crowded && random > self.crowded / particle.load
     }
 
-    /// Whether the particle divides.
+    /// Returns whether the particle divides.
     pub(crate) fn divides(&self, particle: &Particle) -> bool {
-        particle.way < REST && particle.load < self.free
+        particle.moved < REST && particle.load < self.free
     }
 
-    /// The two children of a particle, `direction` apart; none where they do not come to the surface.
+    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the surface.
     pub(crate) fn children(
         &self,
-        ground: &mut Ground,
+        surface: &mut SurfaceContext,
         parent: &Particle,
         direction: Vec3,
     ) -> Option<[Particle; 2]> {
         let step = direction * (0.5 * parent.radius);
-        let places = [parent.position + step, parent.position - step];
-        let landed = self.land(
-            ground,
-            places.map(|place| Particle { position: place, ..*parent }),
-            TRUSTED_CORRECTION,
-        );
+        let children = [parent.position + step, parent.position - step];
+        let landed =
+            self.land(surface, children.map(|position| Particle { position, ..*parent }), TRUSTED_CORRECTION);
         let is_good =
             |child: &Particle| self.bounds.contains(child.position) && child.normal.dot(parent.normal) > 0.0;
         landed.filter(|children| children.iter().all(is_good))
     }
 
-    /// Particles brought onto the surface with their radii there; none if one does not come to it. A correction shorter than `trust`
-    /// radii is not checked.
+    /// Returns the particles on the surface, with the radii there; `None` if one does not come to it. A Newton correction shorter than
+    /// `trust` radii is not checked.
     pub(crate) fn land<const N: usize>(
         &self,
-        ground: &mut Ground,
+        surface: &mut SurfaceContext,
         particles: [Particle; N],
         trust: f32,
     ) -> Option<[Particle; N]> {
@@ -168,19 +171,20 @@ impl Forces {
         for (k, particle) in particles.iter().enumerate() {
             landing.position[k] = particle.position;
             landing.radius[k] = particle.radius;
-            // Its curvature is asked for.
+            // So its radius is brought up to date.
             landing.radius_travel[k] = f32::INFINITY;
         }
         landing.trust = trust;
-        self.law().land(ground.field, ground.projector, &mut landing);
+        self.law().land(surface.field, surface.projector, &mut landing);
         landing.ok[..N].iter().all(|&ok| ok).then(|| {
             core::array::from_fn(|k| Particle::new(landing.position[k], landing.normal[k], landing.radius[k]))
         })
     }
 
-    /// The particle on the surface to the last; as it is where rounding in single precision hides the surface: it has always been on it.
-    pub(crate) fn landed(&self, ground: &mut Ground, particle: &Particle) -> Particle {
-        match self.land(ground, [*particle], 0.0) {
+    /// Returns the particle on the surface within the tolerance. Where rounding hides the surface the particle stays as it is: it has
+    /// always been on the surface.
+    pub(crate) fn landed(&self, surface: &mut SurfaceContext, particle: &Particle) -> Particle {
+        match self.land(surface, [*particle], 0.0) {
             Some([landed]) if self.bounds.contains(landed.position) => landed,
             _ => *particle,
         }

@@ -1,19 +1,22 @@
-//! What the paper compares its method with (§3 and §6, Table 1): particle systems that begin with one particle and cover the surface
-//! by fission and death.
+//! The methods that the paper compares its own with (§3 and §6, Table 1): particle systems that start from one particle and cover
+//! the surface by fission and death.
 //!
-//! For particles of one size that is the system of Witkin and Heckbert (`witkin_heckbert`), for those whose size follows the
-//! curvature a scheme of forces (`forces`). Both do, over and over (paper §3): compute forces and energies, move the particles,
-//! split or kill them; until nothing more happens, or the iterations are at their end.
+//! For particles of one size this is the system of Witkin and Heckbert (`witkin_heckbert`); for particles whose size follows the
+//! curvature it is a scheme of forces (`forces`). An iteration of either (paper §3) computes forces and energies, moves the
+//! particles, and lets them divide or die. A run ends when nothing happens any more, or after a given number of iterations.
 //!
-//! They are built to be hard to beat: neighbours come from the grid of the front, so that an iteration is linear in the particles, and
-//! from lists that serve for several iterations once no particle divides or dies; a particle takes one evaluation of the field in an iteration, in batches; the survey, the radius law, the forces between
-//! discs and the way back onto the surface are those of the sampler. Only the page is without them.
+//! The implementations are meant to be strong opponents. Neighbours come from the grid of the front, so an iteration is linear in
+//! the number of particles, and from lists that serve for several iterations once no particle divides or dies. A particle takes
+//! one evaluation of the field in an iteration, in batches. The survey, the radius law, the forces between discs and the
+//! projection onto the surface are those of the sampler. The module is not part of the page.
 //!
 //! # Differs from the paper
 //!
-//! * The paper detects convergence by the number of particles and their residual motion, without numbers (§3). Here a run has settled
-//!   after [`Settings::quiet_iterations`] in a row without fission and death and with the mean motion below [`Settings::rest`].
-//! * At the end all particles are brought onto the surface to the tolerance of the sampler; those that are not beside it are dropped.
+//! * The paper detects convergence by the number of particles and their residual motion and gives no numbers (§3). Here a run has
+//!   settled after [`Settings::quiet_iterations`] consecutive iterations without fission and death and with a mean motion of at
+//!   most [`Settings::rest`].
+//! * At the end all particles are brought onto the surface within the tolerance of the sampler, and those that are far from it
+//!   are dropped.
 
 mod crowd;
 mod forces;
@@ -25,7 +28,7 @@ pub use settings::Settings;
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::{Bounds, SQRT_3};
-use crate::sampler::discovery::survey::survey;
+use crate::sampler::discovery::survey::{Survey, survey};
 use crate::sampler::projection::{BATCH, Projector, tolerance};
 use crate::sampler::relaxation::repulsion::TRUSTED_CORRECTION;
 use crate::sampler::sizing::Sizing;
@@ -43,15 +46,15 @@ use witkin_heckbert::WitkinHeckbert;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StopReason {
-    /// Nothing more happens: no fission, no death, hardly any motion.
+    /// The particles have come to rest: no fission, no death, hardly any motion.
     Settled,
-    /// The iterations are at their end; particles still move, divide or die.
+    /// The limit on iterations was reached; particles still move, divide or die.
     Iterations,
     /// The limit on particles was reached.
     Cap,
-    /// Stopped by the caller; what was there stays.
+    /// The caller has stopped the run; its particles stay.
     Cancelled,
-    /// No particle: the survey has met no surface in the box, or no radius where the first particle would be.
+    /// There is no particle: the survey has found no surface in the box, or the first particle would have no radius.
     NoSurface,
 }
 
@@ -68,16 +71,16 @@ pub struct Progress {
     pub deaths: u64,
     /// Particles dropped at the end because they did not come to the surface.
     pub dropped: u64,
-    /// Mean way of the particles in the last iteration, in radii.
+    /// Mean distance that a particle has moved in the last iteration, in radii.
     pub motion: f64,
-    /// Field evaluations so far, of the survey too.
+    /// Field evaluations so far, including those of the survey.
     pub evaluations: u64,
     /// Set once the run has ended.
     pub stop_reason: Option<StopReason>,
 }
 
-/// What the particles stand on.
-struct Ground<'a> {
+/// The surface that the particles are on.
+struct SurfaceContext<'a> {
     field: &'a mut dyn Field,
     projector: &'a mut Projector,
 }
@@ -89,6 +92,17 @@ enum Scheme {
 }
 
 impl Scheme {
+    /// Returns the scheme for particles of one radius.
+    fn uniform(settings: &Settings, survey: &Survey, bounds: &Bounds, radius: f32) -> Self {
+        let infinite = Vec3::splat(f32::INFINITY);
+        let lo = survey.position.iter().fold(infinite, |lo, &p| lo.min(p));
+        let hi = survey.position.iter().fold(-infinite, |hi, &p| hi.max(p));
+        let diameter = (hi - lo).length().max(2.0 * radius);
+        let tolerance = tolerance(radius, survey.resolution, survey.gradient_scale);
+        Self::WitkinHeckbert(WitkinHeckbert::new(settings, tolerance, bounds, radius, diameter))
+    }
+
+    /// Returns the distance within which a particle of this radius has neighbours.
     fn reach(&self, radius: f32) -> f32 {
         match self {
             Self::WitkinHeckbert(_) => WitkinHeckbert::reach(radius),
@@ -97,18 +111,34 @@ impl Scheme {
     }
 }
 
-/// What an iteration does next.
+/// What a run does next, particle by particle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+enum Phase {
     /// Put all particles into the grid.
-    Grid,
+    FillGrid,
+    /// Sum the forces.
     Repel,
+    /// Move the particles.
     Move,
-    /// Split and kill.
-    Fate,
-    /// Bring all onto the surface, at the end.
-    Polish,
+    /// Let particles divide or die.
+    Decide,
+    /// Bring all particles onto the surface, before the run ends for this reason.
+    Polish(StopReason),
+    /// Nothing: the run has ended.
     Done,
+}
+
+/// What happens in an iteration.
+#[derive(Clone, Copy, Debug, Default)]
+struct Activity {
+    /// Sum of the distances that particles have moved in this iteration, in radii.
+    motion: f64,
+    /// Fissions and deaths of the run when the iteration began.
+    events: u64,
+    /// Whether no particle divided or died in the last iteration.
+    is_calm: bool,
+    /// Consecutive iterations in which particles were at rest.
+    quiet: u32,
 }
 
 /// One run of a baseline at a time.
@@ -123,19 +153,12 @@ pub struct Baseline {
     particles: Vec<Particle>,
     neighbourhood: Neighbourhood,
     random: Pcg32,
-    stage: Stage,
-    /// The reason for the end, once that has come.
-    ending: StopReason,
+    phase: Phase,
+    /// The next particle in this phase.
     next: usize,
-    /// Particles when the stage began.
+    /// Number of particles when the phase began.
     living: usize,
-    /// Sum of the ways of the particles in this iteration, in radii.
-    way: f64,
-    /// Fissions and deaths when the iteration began.
-    events: u64,
-    /// Whether no particle has divided or died in the last iteration.
-    is_calm: bool,
-    quiet: u32,
+    activity: Activity,
     progress: Progress,
 }
 
@@ -157,23 +180,14 @@ impl Baseline {
         let survey = survey(field, bounds, is_dense, &mut projector);
         let sizes = &settings.sizes;
         let radius_of = |count: f64| (survey.area / (2.0 * SQRT_3 * count)).sqrt();
-        // A surface that f touches without crossing it has no known area: any radius is as good.
+        // A surface that f touches without crossing has no known area, and then no radius is better than another.
         let by_share = sizes.radius_share * bounds.diagonal();
         let mut radius = match sizes.size_mode {
             SizeMode::Count if survey.area > 0.0 => radius_of(f64::from(sizes.count)),
             _ => by_share,
         };
-        let (resolution, scale) = (survey.resolution, survey.gradient_scale);
         let scheme = match sizes.sampling {
-            Sampling::Uniform => {
-                let infinite = Vec3::splat(f32::INFINITY);
-                let lo = survey.position.iter().fold(infinite, |lo, &p| lo.min(p));
-                let hi = survey.position.iter().fold(-infinite, |hi, &p| hi.max(p));
-                let diameter = (hi - lo).length().max(2.0 * radius as f32);
-                let tolerance = tolerance(radius as f32, resolution, scale);
-                let scheme = WitkinHeckbert::new(settings, tolerance, bounds, radius as f32, diameter);
-                Scheme::WitkinHeckbert(scheme)
-            }
+            Sampling::Uniform => Scheme::uniform(settings, &survey, bounds, radius as f32),
             Sampling::Adaptive => {
                 let mut sizing = Sizing::new(field, bounds, sizes, &survey, &mut projector.evaluations);
                 if sizes.size_mode == SizeMode::Count {
@@ -182,8 +196,8 @@ impl Baseline {
                 if sizing.predicted_count() > 0.0 {
                     radius = radius_of(sizing.predicted_count());
                 }
-                let least = tolerance(0.0, 0.0, scale).min_gradient;
-                Scheme::Forces(Box::new(Forces::new(settings, sizing, bounds, resolution, least)))
+                let least = tolerance(0.0, 0.0, survey.gradient_scale).min_gradient;
+                Scheme::Forces(Box::new(Forces::new(settings, sizing, bounds, survey.resolution, least)))
             }
         };
         let mut random = Pcg32::seed_from_u64(sizes.seed);
@@ -193,10 +207,10 @@ impl Baseline {
             .map(|k| (first + k) % count)
             .find(|&i| survey.is_zero(field, &mut projector, i))
             .map(|i| Particle::new(survey.position[i], survey.normal[i], radius as f32));
-        let ground = &mut Ground { field, projector: &mut projector };
+        let surface = &mut SurfaceContext { field, projector: &mut projector };
         let seed = zero.and_then(|seed| match &scheme {
             Scheme::WitkinHeckbert(_) => Some(seed),
-            Scheme::Forces(forces) => forces.land(ground, [seed], TRUSTED_CORRECTION).map(|[seed]| seed),
+            Scheme::Forces(forces) => forces.land(surface, [seed], TRUSTED_CORRECTION).map(|[seed]| seed),
         });
         let stop_reason = seed.is_none().then_some(StopReason::NoSurface);
         Ok(Self {
@@ -208,14 +222,10 @@ impl Baseline {
             particles: seed.into_iter().collect(),
             neighbourhood: Neighbourhood::new(),
             random,
-            stage: if stop_reason.is_some() { Stage::Done } else { Stage::Grid },
-            ending: StopReason::Settled,
+            phase: if stop_reason.is_some() { Phase::Done } else { Phase::FillGrid },
             next: 0,
             living: 0,
-            way: 0.0,
-            events: 0,
-            is_calm: false,
-            quiet: 0,
+            activity: Activity::default(),
             progress: Progress {
                 iterations: 0,
                 particles: 0,
@@ -230,143 +240,142 @@ impl Baseline {
         })
     }
 
-    /// Wanted repulsion radius σ̂; with radii that follow the curvature, that of as many particles of one size.
+    /// Returns the wanted repulsion radius σ̂. If radii follow the curvature, it is that of as many particles of one size.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The box.
+    /// Returns the box that is sampled.
     #[must_use]
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// Positions of the particles.
+    /// Returns the positions of the particles.
     #[must_use]
     pub fn positions(&self) -> Vec<Vec3> {
         self.particles.iter().map(|particle| particle.position).collect()
     }
 
-    /// Unit outward normals of the particles.
+    /// Returns the unit outward normals of the particles.
     #[must_use]
     pub fn normals(&self) -> Vec<Vec3> {
         self.particles.iter().map(|particle| particle.normal).collect()
     }
 
-    /// Repulsion radii of the particles.
+    /// Returns the repulsion radii of the particles.
     #[must_use]
     pub fn radii(&self) -> Vec<f32> {
         self.particles.iter().map(|particle| particle.radius).collect()
     }
 
-    /// The state as of now.
+    /// Returns the present state.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress { particles: self.particles.len(), evaluations: self.projector.evaluations, ..self.progress }
     }
 
-    /// Ends the run where it is; the next steps only bring the particles onto the surface.
+    /// Ends the run: the next steps only bring the particles onto the surface.
     pub fn cancel(&mut self) {
-        if self.stage != Stage::Done {
+        if self.phase != Phase::Done {
             self.end(StopReason::Cancelled);
         }
     }
 
-    /// Does up to `budget` units of work: a particle in one stage of an iteration. Returns early where an iteration ends, so that
-    /// each can be looked at. How a run is cut into steps does not change it.
+    /// Does up to `budget` units of work; a unit is a particle in one phase. Returns early at the end of an iteration, so that each
+    /// can be looked at. How a run is divided into steps does not change it.
     pub fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> Progress {
         let field = &mut Scaled::new(field, self.factor);
         let iteration = self.progress.iterations;
-        while budget > 0 && self.stage != Stage::Done && self.progress.iterations == iteration {
+        while budget > 0 && self.phase != Phase::Done && self.progress.iterations == iteration {
             if self.next == 0 {
-                self.begin_stage();
+                self.begin_phase();
             }
             let last = self.living.min(self.next + budget as usize);
             let range = self.next..last;
             budget -= range.len() as u32;
             self.next = last;
-            match self.stage {
-                Stage::Grid => range.for_each(|i| self.neighbourhood.insert(&self.particles, i)),
-                Stage::Repel => self.repel(range),
-                Stage::Move => self.advance(field, range),
-                Stage::Fate => self.decide(field, range),
-                Stage::Polish => self.polish(field, range),
-                Stage::Done => {}
+            match self.phase {
+                Phase::FillGrid => range.for_each(|i| self.neighbourhood.insert(&self.particles, i)),
+                Phase::Repel => self.repel(range),
+                Phase::Move => self.advance(field, range),
+                Phase::Decide => self.decide(field, range),
+                Phase::Polish(_) => self.polish(field, range),
+                Phase::Done => {}
             }
             if self.next == self.living {
-                self.end_stage();
+                self.end_phase();
             }
         }
         self.progress()
     }
 
-    fn enter(&mut self, stage: Stage) {
-        self.stage = stage;
+    fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
         self.next = 0;
     }
 
     fn end(&mut self, reason: StopReason) {
-        self.ending = reason;
         self.particles.retain(|particle| !particle.dies);
-        self.enter(Stage::Polish);
+        self.enter(Phase::Polish(reason));
     }
 
-    fn begin_stage(&mut self) {
-        // Children that come in the meantime have their turn in the next iteration.
+    fn begin_phase(&mut self) {
+        // Children that are born in this phase have their turn in the next iteration.
         self.living = self.particles.len();
-        match self.stage {
-            Stage::Grid => {
+        match self.phase {
+            Phase::FillGrid => {
                 for particle in &mut self.particles {
                     (particle.force, particle.load, particle.moment) = (Vec3::ZERO, 0.0, 0.0);
                 }
                 let reach = |radius| self.scheme.reach(radius);
-                if self.is_calm && self.neighbourhood.serves(&self.particles, reach) {
-                    self.enter(Stage::Repel);
+                if self.activity.is_calm && self.neighbourhood.serves(&self.particles, reach) {
+                    self.enter(Phase::Repel);
                 } else {
-                    self.neighbourhood.reset(&self.particles, reach, self.is_calm);
+                    self.neighbourhood.reset(&self.particles, reach, self.activity.is_calm);
                 }
             }
-            Stage::Fate => {
-                self.way = 0.0;
-                self.events = self.progress.fissions + self.progress.deaths;
+            Phase::Decide => {
+                self.activity.motion = 0.0;
+                self.activity.events = self.progress.fissions + self.progress.deaths;
             }
             _ => {}
         }
     }
 
-    fn end_stage(&mut self) {
-        match self.stage {
-            Stage::Grid => self.enter(Stage::Repel),
-            Stage::Repel => self.enter(Stage::Move),
-            Stage::Move => self.enter(Stage::Fate),
-            Stage::Fate => self.end_iteration(),
-            Stage::Polish => {
+    fn end_phase(&mut self) {
+        match self.phase {
+            Phase::FillGrid => self.enter(Phase::Repel),
+            Phase::Repel => self.enter(Phase::Move),
+            Phase::Move => self.enter(Phase::Decide),
+            Phase::Decide => self.end_iteration(),
+            Phase::Polish(reason) => {
                 let before = self.particles.len();
                 self.particles.retain(|particle| !particle.dies);
                 self.progress.dropped += (before - self.particles.len()) as u64;
-                self.progress.stop_reason = Some(self.ending);
-                self.enter(Stage::Done);
+                self.progress.stop_reason = Some(reason);
+                self.enter(Phase::Done);
             }
-            Stage::Done => {}
+            Phase::Done => {}
         }
     }
 
     fn end_iteration(&mut self) {
         self.particles.retain(|particle| !particle.dies);
         self.progress.iterations += 1;
-        self.progress.motion = self.way / self.living as f64;
-        self.is_calm = self.events == self.progress.fissions + self.progress.deaths;
-        let is_quiet = self.is_calm && self.progress.motion <= self.settings.rest;
-        self.quiet = if is_quiet { self.quiet + 1 } else { 0 };
+        self.progress.motion = self.activity.motion / self.living as f64;
+        self.activity.is_calm = self.activity.events == self.progress.fissions + self.progress.deaths;
+        let is_quiet = self.activity.is_calm && self.progress.motion <= self.settings.rest;
+        self.activity.quiet = if is_quiet { self.activity.quiet + 1 } else { 0 };
         if self.is_full() {
             self.end(StopReason::Cap);
-        } else if self.quiet >= self.settings.quiet_iterations {
+        } else if self.activity.quiet >= self.settings.quiet_iterations {
             self.end(StopReason::Settled);
         } else if self.progress.iterations >= self.settings.max_iterations {
             self.end(StopReason::Iterations);
         } else {
-            self.enter(Stage::Grid);
+            self.enter(Phase::FillGrid);
         }
     }
 
@@ -386,36 +395,36 @@ impl Baseline {
     }
 
     fn advance(&mut self, field: &mut dyn Field, range: Range<usize>) {
-        let ground = &mut Ground { field, projector: &mut self.projector };
+        let surface = &mut SurfaceContext { field, projector: &mut self.projector };
         for first in range.clone().step_by(BATCH) {
             let part = first..range.end.min(first + BATCH);
             match &self.scheme {
-                Scheme::WitkinHeckbert(scheme) => scheme.advance(ground, &mut self.particles, part),
-                Scheme::Forces(scheme) => scheme.advance(ground, &mut self.particles, part),
+                Scheme::WitkinHeckbert(scheme) => scheme.advance(surface, &mut self.particles, part),
+                Scheme::Forces(scheme) => scheme.advance(surface, &mut self.particles, part),
             }
         }
     }
 
-    /// Splits and kills particles.
+    /// Lets particles divide or die.
     fn decide(&mut self, field: &mut dyn Field, range: Range<usize>) {
         for i in range {
             let particle = self.particles[i];
-            self.way += f64::from(particle.way);
+            self.activity.motion += f64::from(particle.moved);
             let random = uniform(&mut self.random);
             let (dies, divides) = match &self.scheme {
                 Scheme::WitkinHeckbert(scheme) => (scheme.dies(&particle, random), scheme.divides(&particle)),
                 Scheme::Forces(scheme) => (scheme.dies(&particle, random), scheme.divides(&particle)),
             };
-            // The first stays, so that there is always one.
+            // The first particle does not die, so that there is always one.
             if dies && i > 0 {
                 self.particles[i].dies = true;
                 self.progress.deaths += 1;
             } else if divides && !self.is_full() {
-                let ground = &mut Ground { field, projector: &mut self.projector };
+                let surface = &mut SurfaceContext { field, projector: &mut self.projector };
                 let direction = tangent(particle.normal, &mut self.random);
                 let children = match &self.scheme {
-                    Scheme::WitkinHeckbert(scheme) => scheme.children(ground, &particle, direction),
-                    Scheme::Forces(scheme) => scheme.children(ground, &particle, direction),
+                    Scheme::WitkinHeckbert(scheme) => scheme.children(surface, &particle, direction),
+                    Scheme::Forces(scheme) => scheme.children(surface, &particle, direction),
                 };
                 if let Some([one, other]) = children {
                     self.particles[i] = one;
@@ -426,13 +435,13 @@ impl Baseline {
         }
     }
 
-    /// Brings particles onto the surface for good.
+    /// Brings particles onto the surface within the tolerance.
     fn polish(&mut self, field: &mut dyn Field, range: Range<usize>) {
-        let ground = &mut Ground { field, projector: &mut self.projector };
+        let surface = &mut SurfaceContext { field, projector: &mut self.projector };
         for particle in &mut self.particles[range] {
             let landed = match &self.scheme {
-                Scheme::WitkinHeckbert(scheme) => scheme.landed(ground, particle),
-                Scheme::Forces(scheme) => Some(scheme.landed(ground, particle)),
+                Scheme::WitkinHeckbert(scheme) => scheme.landed(surface, particle),
+                Scheme::Forces(scheme) => Some(scheme.landed(surface, particle)),
             };
             match landed {
                 Some(landed) => *particle = landed,

@@ -1,4 +1,4 @@
-//! What a caller of a baseline may choose; the defaults are the values of Witkin and Heckbert 1994.
+//! Settings of a baseline. The defaults are the values of Witkin and Heckbert 1994.
 
 use crate::sampler::{Settings as Sizes, SettingsError};
 use serde::Serialize;
@@ -6,39 +6,38 @@ use serde::Serialize;
 /// Settings of a baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Settings {
-    /// How large the particles are wanted, as for the sampler; the sampling chooses the scheme:
-    /// [`Uniform`](crate::sampler::Sampling::Uniform) is that of Witkin and Heckbert, [`Adaptive`](crate::sampler::Sampling::Adaptive)
-    /// that of forces. A count becomes the radius of which as many particles cover the surface in perfect hexagons. The seed
-    /// chooses the first particle and all that is random, and the limit on particles is kept. What concerns the front and its
-    /// relaxation has no meaning here.
+    /// Wanted sizes, as for the sampler. The sampling chooses the scheme: [`Uniform`](crate::sampler::Sampling::Uniform) is that of
+    /// Witkin and Heckbert, [`Adaptive`](crate::sampler::Sampling::Adaptive) that of forces. A count stands for the radius with which
+    /// so many particles cover the surface in perfect hexagons. The seed chooses the first particle and everything that is random,
+    /// and the limit on particles applies. Settings of the front and the relaxation have no meaning here.
     pub sizes: Sizes,
-    /// Most iterations.
+    /// Largest number of iterations.
     pub max_iterations: u32,
-    /// Iterations in a row without fission, death and motion after which the particles count as settled.
+    /// Number of consecutive iterations without fission, death and motion after which the particles count as settled.
     pub quiet_iterations: u32,
-    /// Mean way of the particles in an iteration, in radii, below which they count as not moving.
+    /// Mean motion in an iteration, in radii, up to which particles count as not moving.
     pub rest: f64,
-    /// Δt of an iteration, for Witkin and Heckbert.
+    /// Δt: time step of an iteration, for Witkin and Heckbert's scheme.
     pub time_step: f64,
     /// α: repulsion amplitude.
     pub amplitude: f64,
-    /// Ê/α: wanted energy of a particle over the amplitude.
+    /// Ê/α: wanted energy of a particle over the repulsion amplitude.
     pub wanted_energy: f64,
-    /// ρ: feedback of the energy.
+    /// ρ: feedback gain of the energy.
     pub energy_feedback: f64,
-    /// φ: feedback of the distance from the surface.
+    /// φ: feedback gain of the distance from the surface.
     pub surface_feedback: f64,
-    /// β: what keeps the radius of a lone particle from growing at once, per half diameter of the surface.
+    /// β: limits the growth of the radius of a lone particle, in units of 1 / (half the diameter of the surface).
     pub lone_growth: f64,
-    /// γ: a particle slower than this, in radii per unit of time, is near equilibrium: only then does it split or die.
+    /// γ: speed below which a particle is near equilibrium, in radii per unit of time. Only then does it divide or die.
     pub equilibrium_speed: f64,
-    /// ν: a particle above the wanted radius splits if it has this share of the wanted energy.
+    /// ν: share of the wanted energy above which a particle larger than the wanted radius divides.
     pub fission_energy: f64,
-    /// Σ (overlap / mean radius)² below which "no force" is on a particle and it divides, for the scheme of forces. 0.01 is one
-    /// overlap of a twentieth of the spacing. A larger value gives more particles: 0.5, where a lattice of the wanted spacing is
-    /// hardly pressed, about a third more.
+    /// Σ (overlap / mean radius)² below which a particle counts as free of forces and divides, for the scheme of forces. 0.01 is one
+    /// overlap of a twentieth of the spacing. A larger value gives more particles: with 0.5, at which a lattice of the wanted
+    /// spacing is hardly compressed, about a third more.
     pub free_load: f64,
-    /// δ: a particle with less than this share of the wanted radius, or pressed as if it had, may die.
+    /// δ: share of the wanted radius below which a particle may die, or that its compression corresponds to.
     pub death_radius: f64,
 }
 
@@ -64,12 +63,12 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Ranges of the settings but those of the sizes: name, smallest and largest value.
+    /// Ranges of the settings except the sizes: name, smallest and largest value.
     pub const RANGES: [(&'static str, f64, f64); 13] = [
         ("max_iterations", 1.0, 1e6),
         ("quiet_iterations", 1.0, 1e4),
         ("rest", 0.0, 1.0),
-        // Above, the feedback of energy and surface overshoots and the closest pairs swing.
+        // Above this, the feedback of energy and surface overshoots, and the closest pairs oscillate.
         ("time_step", 1e-4, 0.06),
         ("amplitude", 0.1, 10.0),
         ("wanted_energy", 0.1, 3.0),
@@ -79,11 +78,11 @@ impl Settings {
         ("equilibrium_speed", 1e-3, 1e3),
         ("fission_energy", 0.0, 1.0),
         ("free_load", 1e-6, 1.0),
-        // Both children of a particle of the wanted radius have 0.707 of it: above, they might die at once.
+        // Both children of a particle of the wanted radius have 0.707 of it: above this, they might die at once.
         ("death_radius", 0.0, 0.707),
     ];
 
-    /// Checks every value against its range, those of the sizes too.
+    /// Checks every value against its range, including the sizes.
     ///
     /// # Errors
     ///

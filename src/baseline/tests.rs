@@ -3,7 +3,7 @@
 use super::crowd::{Neighbourhood, Particle, tangent};
 use super::forces::Forces;
 use super::witkin_heckbert::WitkinHeckbert;
-use super::{Ground, Settings};
+use super::{Settings, SurfaceContext};
 use crate::field::formula::FormulaField;
 use crate::math::Bounds;
 use crate::sampler::Settings as Sizes;
@@ -215,7 +215,7 @@ fn children_share_the_area_of_their_parent_and_sit_on_the_surface() {
     let scheme = witkin_heckbert();
     let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
     let mut projector = Projector::new();
-    let ground = &mut Ground { field: &mut field, projector: &mut projector };
+    let surface = &mut SurfaceContext { field: &mut field, projector: &mut projector };
     let mut random = Pcg32::seed_from_u64(3);
     let parent = Particle::new(Vec3::X, Vec3::X, WANTED);
     let mut mean = Vec3::ZERO;
@@ -223,7 +223,7 @@ fn children_share_the_area_of_their_parent_and_sit_on_the_surface() {
         let direction = tangent(parent.normal, &mut random);
         assert!((direction.length() - 1.0).abs() < 1e-5 && direction.dot(parent.normal).abs() < 1e-6);
         mean += direction / 50.0;
-        let [one, other] = scheme.children(ground, &parent, direction).expect("two children");
+        let [one, other] = scheme.children(surface, &parent, direction).expect("two children");
         for child in [one, other] {
             assert!((child.radius - WANTED / 2.0_f32.sqrt()).abs() < 1e-7);
             assert!((child.position.length() - 1.0).abs() < 1e-5);
@@ -236,7 +236,7 @@ fn children_share_the_area_of_their_parent_and_sit_on_the_surface() {
     // Out of the box there are none.
     let mut corner = scheme;
     corner.bounds.min = [0.0; 3];
-    assert!(corner.children(ground, &parent, Vec3::Y).is_none());
+    assert!(corner.children(surface, &parent, Vec3::Y).is_none());
 }
 
 /// The scheme of forces on the unit sphere, where all radii are the same.
@@ -279,7 +279,7 @@ fn forces_are_the_overlaps_of_discs_each_pair_once() {
 fn free_disc_divides_and_pressed_disc_dies() {
     let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
     let scheme = forces(&mut field);
-    let ground = &mut Ground { field: &mut field, projector: &mut Projector::new() };
+    let surface = &mut SurfaceContext { field: &mut field, projector: &mut Projector::new() };
     let free = Particle::new(Vec3::X, Vec3::X, WANTED);
     assert!(scheme.divides(&free));
     assert!(!scheme.divides(&Particle { way: 0.2, ..free }));
@@ -288,7 +288,7 @@ fn free_disc_divides_and_pressed_disc_dies() {
     assert!(!scheme.dies(&Particle { load: 4.85, ..free }, 0.999_999));
     assert!(scheme.dies(&Particle { load: 9.72, ..free }, 0.51));
     assert!(!scheme.dies(&Particle { load: 9.72, ..free }, 0.49));
-    let children = scheme.children(ground, &free, Vec3::Y).expect("two children");
+    let children = scheme.children(surface, &free, Vec3::Y).expect("two children");
     for child in children {
         // The law's own, not a share of the parent's.
         assert!((child.radius / WANTED - 1.0).abs() < 0.01, "{}", child.radius);

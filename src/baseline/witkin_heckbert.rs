@@ -1,18 +1,18 @@
 //! The particles of one size of A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control Implicit
 //! Surfaces* (SIGGRAPH 1994), §4: Gaussian repulsion, adaptive radii, fission and death.
 //!
-//! Particle i has the radius σᵢ, and E_ij = α exp(−|r_ij|²/2σᵢ²) is its energy by particle j at the distance
-//! r_ij = p_i − p_j. It moves with the velocity
+//! Particle i has the radius σᵢ, and E_ij = α exp(−|r_ij|²/2σᵢ²) is its energy due to particle j, where r_ij = p_i − p_j.
+//! It moves with the velocity
 //!
 //! P_i = σᵢ² Σⱼ r_ij (E_ij/σᵢ² + E_ji/σⱼ²),
 //!
-//! of which the part along the surface is taken, less φ f ∇f/|∇f|² to come back to it. (As printed, the terms are subtracted
-//! in their equation 9; the erratum adds them.) Its radius changes so that the energy D_i = Σⱼ E_ij comes to Ê,
+//! of which the part along the surface is taken, less φ f ∇f/|∇f|² as feedback towards it. (Their equation 9 subtracts the two
+//! terms as printed; the erratum adds them.) The radius changes so that the energy D_i = Σⱼ E_ij approaches Ê,
 //!
 //! σ̇ᵢ = −ρ (D_i − Ê) / (σᵢ⁻³ Σⱼ |r_ij|² E_ij + β).
 //!
-//! A particle that is near equilibrium, |ṗ| < γσ, divides in two of radius σ/√2 if σ > σ_max, or if D > νÊ and σ > σ̂; it dies if
-//! σ < δσ̂ and a random number is above σ/(δσ̂).
+//! A particle near equilibrium, |ṗ| < γσ, divides into two of radius σ/√2 if σ > σ_max, or if D > νÊ and σ > σ̂. It dies if σ < δσ̂
+//! and a random number exceeds σ/(δσ̂).
 //!
 //! # Differs from the source
 //!
@@ -20,12 +20,12 @@
 //! * Particles whose normals are 90° or more apart do not repel each other: they are on opposite sides of a thin part.
 //! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box around the
 //!   surface, √3 times the diameter of a sphere, and no less than 2σ̂.
-//! * No particle goes farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a finite Δt,
-//!   a pair that has just divided would leave the surface, or its radii become negative.
-//! * The children sit σ/2 to either side of their parent in a random direction, on the surface.
+//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a finite Δt a
+//!   pair that has just divided could leave the surface, or get negative radii.
+//! * The children are placed σ/2 to either side of their parent in a random direction, on the surface.
 
 use super::crowd::Particle;
-use super::{Ground, Settings};
+use super::{Settings, SurfaceContext};
 use crate::math::Bounds;
 use crate::sampler::neighbours::constants::GAUSSIAN_RANGE;
 use crate::sampler::projection::{BATCH, Descent, Tolerance};
@@ -37,14 +37,14 @@ use glam::{Vec3, Vec4};
 
 /// Largest factor by which a radius changes in an iteration.
 const MAX_GROWTH: f32 = 2.0;
-/// No radius falls below this share of the wanted one; such a particle dies with a probability of 13 in 14.
+/// Smallest radius over the wanted one. A particle as small as that dies with a probability of 13/14.
 const LEAST: f32 = 0.05;
-/// A particle that does not come onto the surface at the end is beside it within this share of its radius.
+/// A particle that does not come onto the surface at the end stays if its distance is below this share of its radius.
 const BESIDE: f32 = 0.02;
-/// Evaluations to bring a particle onto the surface.
+/// Largest number of evaluations to bring a particle onto the surface.
 const MAX_NEWTON: u32 = 8;
 
-/// The scheme with the constants of a run, in the field's units.
+/// The scheme, with the constants of a run in the field's units.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WitkinHeckbert {
     pub(crate) tolerance: Tolerance,
@@ -64,7 +64,7 @@ pub(crate) struct WitkinHeckbert {
 }
 
 impl WitkinHeckbert {
-    /// The scheme for particles of the radius `wanted` on a surface of the given diameter, no less than theirs.
+    /// Returns the scheme for particles of the radius `wanted` on a surface of this diameter, which must not be below theirs.
     pub(crate) fn new(
         settings: &Settings,
         tolerance: Tolerance,
@@ -90,24 +90,24 @@ impl WitkinHeckbert {
         }
     }
 
-    /// How far the energy of a particle of this radius reaches.
+    /// Returns the range of the energy of a particle of this radius.
     pub(crate) fn reach(radius: f32) -> f32 {
         GAUSSIAN_RANGE * radius
     }
 
-    /// Adds the energies E_ij of particle `i` by its neighbours, and their part of the velocities of both: each pair is met
-    /// twice, once from each side, with the radius of that side.
+    /// Adds the energies E_ij of particle `i` due to its neighbours, and their contributions to the velocities of both. Each pair
+    /// is visited twice, once with the radius of either particle.
     pub(crate) fn repel(&self, particles: &mut [Particle], i: usize, near: &[Neighbour]) {
         let Particle { normal, radius, .. } = particles[i];
         let inverse_sq = 1.0 / (radius * radius);
         let (mut force, mut load, mut moment) = (Vec3::ZERO, 0.0, 0.0);
         for four in near.chunks(4) {
-            // Beyond the end, of no weight.
+            // Lanes beyond the end are not read.
             let mut distance_sq = [0.0; 4];
             for (lane, other) in distance_sq.iter_mut().zip(four) {
                 *lane = other.distance_sq;
             }
-            // The polynomial holds up to the cut-off, which the search may pass by a rounding.
+            // The polynomial is valid up to the cut-off, which the search may exceed by rounding.
             let most = 0.5 * GAUSSIAN_RANGE * GAUSSIAN_RANGE;
             let half_sq = (Vec4::from_array(distance_sq) * (0.5 * inverse_sq)).min(Vec4::splat(most));
             let energy = (gaussian(half_sq) * self.amplitude).to_array();
@@ -129,48 +129,53 @@ impl WitkinHeckbert {
         particle.moment = moment;
     }
 
-    /// ṗ of a particle whose forces are summed: along the surface, and back to it.
+    /// Returns ṗ of a particle whose forces are summed: the part along the surface, and the feedback towards it.
     pub(crate) fn velocity(&self, particle: &Particle) -> Vec3 {
         let free = particle.force * (particle.radius * particle.radius);
         let normal = particle.normal;
         free - normal * (normal.dot(free) + self.phi * particle.height)
     }
 
-    /// σ̇ of a particle whose energies are summed.
+    /// Returns σ̇ of a particle whose energies are summed.
     pub(crate) fn growth(&self, particle: &Particle) -> f32 {
         let radius = particle.radius;
         let stretch = particle.moment / (radius * radius * radius);
         self.rho * (self.wanted_energy - particle.load) / (stretch + self.beta)
     }
 
-    /// Moves particles by one Δt and changes their radii.
-    pub(crate) fn advance(&self, ground: &mut Ground, particles: &mut [Particle], range: Range<usize>) {
-        let mut place = [Vec3::ZERO; BATCH];
+    /// Moves particles by one time step and changes their radii.
+    pub(crate) fn advance(
+        &self,
+        surface: &mut SurfaceContext,
+        particles: &mut [Particle],
+        range: Range<usize>,
+    ) {
+        let mut position = [Vec3::ZERO; BATCH];
         let n = range.len();
-        for (place, particle) in place.iter_mut().zip(&mut particles[range.clone()]) {
+        for (position, particle) in position.iter_mut().zip(&mut particles[range.clone()]) {
             let radius = particle.radius;
             let velocity = self.velocity(particle);
             let growth = self.growth(particle) * self.time_step;
-            *place = particle.position + (velocity * self.time_step).clamp_length_max(MAX_MOVE * radius);
+            *position = particle.position + (velocity * self.time_step).clamp_length_max(MAX_MOVE * radius);
             particle.speed = velocity.length() / radius;
-            particle.way = 0.0;
+            particle.moved = 0.0;
             particle.radius = (radius + growth)
                 .max(radius / MAX_GROWTH)
                 .min(radius * MAX_GROWTH)
                 .clamp(LEAST * self.wanted, self.largest);
         }
-        let (value, gradient) = ground.projector.evaluate_batch(ground.field, &place[..n]);
+        let (value, gradient) = surface.projector.evaluate_batch(surface.field, &position[..n]);
         for (k, particle) in particles[range].iter_mut().enumerate() {
             let slope = gradient[k].length();
             let (height, normal) = (value[k] / slope, gradient[k] / slope);
-            // A particle that cannot go stays: at the border of the box, where the field ends, at a fold.
+            // A particle stays where it is if it cannot go: at the border of the box, where the field ends, at a fold.
             if self.tolerance.is_slope(slope)
                 && height.is_finite()
-                && self.bounds.contains(place[k])
+                && self.bounds.contains(position[k])
                 && normal.dot(particle.normal) > 0.0
             {
-                particle.way = (place[k] - particle.position).length() / particle.radius;
-                particle.position = place[k];
+                particle.moved = (position[k] - particle.position).length() / particle.radius;
+                particle.position = position[k];
                 particle.normal = normal;
                 particle.height = height;
             }
@@ -181,52 +186,52 @@ impl WitkinHeckbert {
         particle.speed < self.gamma
     }
 
-    /// Whether the particle dies, if the random number comes out against it.
+    /// Returns whether the particle dies, given a random number in [0, 1).
     pub(crate) fn dies(&self, particle: &Particle, random: f32) -> bool {
         self.is_near_equilibrium(particle)
             && particle.radius < self.death_radius
             && random > particle.radius / self.death_radius
     }
 
-    /// Whether the particle divides.
+    /// Returns whether the particle divides.
     pub(crate) fn divides(&self, particle: &Particle) -> bool {
         let is_large = particle.load > self.fission_energy && particle.radius > self.wanted;
         self.is_near_equilibrium(particle) && (particle.radius >= self.largest || is_large)
     }
 
-    /// The two children of a particle, `direction` apart; none where they do not come to the surface.
+    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the surface.
     pub(crate) fn children(
         &self,
-        ground: &mut Ground,
+        surface: &mut SurfaceContext,
         parent: &Particle,
         direction: Vec3,
     ) -> Option<[Particle; 2]> {
         let step = direction * (0.5 * parent.radius);
-        let mut place = [parent.position + step, parent.position - step];
+        let mut position = [parent.position + step, parent.position - step];
         let (mut normal, mut ok) = ([Vec3::ZERO; 2], [false; 2]);
-        self.land(ground, &mut place, &mut normal, &mut ok, (parent.radius, TRUSTED_CORRECTION));
+        self.land(surface, &mut position, &mut normal, &mut ok, (parent.radius, TRUSTED_CORRECTION));
         let is_good =
-            (0..2).all(|k| ok[k] && self.bounds.contains(place[k]) && normal[k].dot(parent.normal) > 0.0);
+            (0..2).all(|k| ok[k] && self.bounds.contains(position[k]) && normal[k].dot(parent.normal) > 0.0);
         let radius = parent.radius * core::f32::consts::FRAC_1_SQRT_2;
-        is_good.then(|| [0, 1].map(|k| Particle::new(place[k], normal[k], radius)))
+        is_good.then(|| [0, 1].map(|k| Particle::new(position[k], normal[k], radius)))
     }
 
-    /// The particle on the surface; none if it is not beside it. Where rounding in single precision hides the surface it stays as it is.
-    pub(crate) fn landed(&self, ground: &mut Ground, particle: &Particle) -> Option<Particle> {
-        let (mut place, mut normal, mut ok) = ([particle.position], [Vec3::ZERO], [false]);
-        self.land(ground, &mut place, &mut normal, &mut ok, (particle.radius, 0.0));
-        if ok[0] && self.bounds.contains(place[0]) {
-            Some(Particle::new(place[0], normal[0], particle.radius))
+    /// Returns the particle on the surface; `None` if it is far from it. Where rounding hides the surface it stays as it is.
+    pub(crate) fn landed(&self, surface: &mut SurfaceContext, particle: &Particle) -> Option<Particle> {
+        let (mut position, mut normal, mut ok) = ([particle.position], [Vec3::ZERO], [false]);
+        self.land(surface, &mut position, &mut normal, &mut ok, (particle.radius, 0.0));
+        if ok[0] && self.bounds.contains(position[0]) {
+            Some(Particle::new(position[0], normal[0], particle.radius))
         } else {
             (particle.height.abs() < BESIDE * particle.radius).then_some(*particle)
         }
     }
 
-    /// Brings places onto the surface, if it is not farther than `radius`. A correction shorter than `trust` radii is not checked.
+    /// Moves positions onto the surface, if that is within `radius`. A Newton correction shorter than `trust` radii is not checked.
     fn land(
         &self,
-        ground: &mut Ground,
-        place: &mut [Vec3],
+        surface: &mut SurfaceContext,
+        position: &mut [Vec3],
         normal: &mut [Vec3],
         ok: &mut [bool],
         (radius, trust): (f32, f32),
@@ -234,9 +239,9 @@ impl WitkinHeckbert {
         let residual = self.tolerance.residual;
         let mut descent = Descent { residual, reach: radius, trust: trust * radius };
         let least = self.tolerance.min_gradient;
-        ground.projector.land_along_gradient(
-            ground.field,
-            place,
+        surface.projector.land_along_gradient(
+            surface.field,
+            position,
             normal,
             ok,
             least,
