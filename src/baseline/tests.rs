@@ -282,7 +282,7 @@ fn free_disc_divides_and_pressed_disc_dies() {
     let surface = &mut SurfaceContext { field: &mut field, projector: &mut Projector::new() };
     let free = Particle::new(Vec3::X, Vec3::X, WANTED);
     assert!(scheme.divides(&free));
-    assert!(!scheme.divides(&Particle { way: 0.2, ..free }));
+    assert!(!scheme.divides(&Particle { moved: 0.2, ..free }));
     assert!(!scheme.divides(&Particle { load: 0.02, ..free }));
     // Six neighbours at 0.7 of the spacing: 6 (2.3 − 1.4)² = 4.86.
     assert!(!scheme.dies(&Particle { load: 4.85, ..free }, 0.999_999));

@@ -1,38 +1,38 @@
-//! Bringing points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or along
-//! the gradient (for seeds and relaxation). Everything works on batches, so that the field is evaluated in SIMD lanes.
+//! Projection of points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or along the
+//! gradient (for seeds and the relaxation). Points are projected in batches, so that the field is evaluated in SIMD lanes.
 
 use crate::field::Field;
 use crate::math::sort_few;
 use glam::Vec3;
 
-/// Points per call of the field. Large enough to hide the cost of a call, small enough to stay in the first-level
-/// cache; a point's result does not depend on it.
+/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the first-level
+/// cache. The result for a point does not depend on it.
 pub(crate) const BATCH: usize = 128;
 
-/// Most Newton steps on one circle; a good guess takes two evaluations.
+/// Largest number of Newton steps on a circle; a good guess takes two evaluations.
 const MAX_NEWTON_STEPS: u32 = 12;
 
-/// Most steps of the bracketed search, over all brackets of one circle.
+/// Largest number of steps of the bracketed search, over all brackets of a circle.
 const MAX_BRACKET_STEPS: u32 = 38;
 
-/// A Newton step on the circle turns by at most this angle, in half-angle tangents: about 23° a step.
+/// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°.
 const MAX_TURN: f32 = 0.2;
 
-/// The circle is searched while the child stays within about 100° of the tangent plane: cos θ above this.
+/// Smallest cos θ: the circle is searched up to about 100° from the tangent plane.
 pub(crate) const MIN_COS: f32 = -0.18;
 
-/// Newton on the circle is trusted while the circle crosses the surface at more than about 6°.
+/// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°.
 const MIN_CROSSING: f32 = 0.1;
 
-/// |f| has to fall at least to this share in every Newton step, else the bracketed search takes over.
+/// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over.
 const MIN_DECREASE: f32 = 0.7;
 
-/// Intervals into which the bracketed search cuts the arc.
+/// Number of intervals into which the bracketed search divides the arc.
 const ARC_SAMPLES: usize = 32;
 
 /// The circle C(p, 2r) in the plane of the parent's normal and one tangent direction.
 ///
-/// A point of it is p + 2r (cos θ V̂ + sin θ N̂): the paper's formula with the centre added.
+/// Its points are p + 2r (cos θ V̂ + sin θ N̂), which is the paper's formula with the centre added.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circle {
     /// Parent position p.
@@ -43,72 +43,73 @@ pub(crate) struct Circle {
     pub(crate) direction: Vec3,
     /// Parent–child distance 2r.
     pub(crate) radius: f32,
-    /// cos θ and sin θ of the first guess.
+    /// cos θ and sin θ of the guess.
     pub(crate) guess: [f32; 2],
 }
 
 impl Circle {
+    /// Returns the point at an angle, given by its cosine and sine.
     pub(crate) fn point(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         self.centre + (self.direction * cos + self.normal * sin) * self.radius
     }
 
-    /// Derivative of the point by θ.
+    /// Returns the derivative of the point by θ.
     pub(crate) fn tangent(&self, [cos, sin]: [f32; 2]) -> Vec3 {
         (self.normal * cos - self.direction * sin) * self.radius
     }
 }
 
-/// Where the search on a circle ended.
+/// Result of the search on a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Landing {
-    /// On the surface.
+    /// The search has met the surface.
     On {
         /// Point of the surface.
         position: Vec3,
         /// Unit outward normal there.
         normal: Vec3,
     },
-    /// No point of the surface met.
+    /// The search has met no point of the surface.
     NotConverged,
-    /// The field has no value there, or no gradient to speak of.
+    /// The field has no value there, or its gradient counts as zero.
     Undefined,
 }
 
-/// What counts as being on the surface.
+/// Criterion for a point to be on the surface.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tolerance {
     /// Largest |f|/|∇f|.
     pub(crate) residual: f32,
-    /// |∇f| below this counts as zero: the surface has no normal there.
+    /// Largest |∇f| that counts as zero, where the surface has no normal.
     pub(crate) min_gradient: f32,
 }
 
 impl Tolerance {
-    /// Whether |∇f| tells where the surface is: not where it counts as zero, nor where it overflows, as beside a pole, and
-    /// any value would be small against it.
+    /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as it does beside a pole, where any
+    /// value would be small against it.
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
     }
 }
 
-/// How far a point may go along the gradient, and when it has arrived.
+/// Limits of the projection of a point along the gradient.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Descent {
-    /// Largest |f|/|∇f| of a point of the surface.
+    /// Largest |f|/|∇f| at which the point is on the surface.
     pub(crate) residual: f32,
-    /// A point farther than this from where it began is given up.
+    /// Largest distance from the starting point; a point that moves farther is given up.
     pub(crate) reach: f32,
-    /// A point whose last correction was shorter is not evaluated again: by the quadratic convergence of Newton's method
-    /// its residual is then below the tolerance's order, and its normal is that of the point before the correction.
+    /// Length of a correction below which the point is not evaluated again. Newton's method converges quadratically, so the residual
+    /// is then below the order of the tolerance. The normal is that of the point before the correction.
     pub(crate) trust: f32,
 }
 
-/// What applies to each of some points on their way along the gradient, and what is asked of the field there.
+/// Limits and evaluations of a batch of points that are projected along the gradient.
 pub(crate) trait Descents {
-    /// What applies to point `i`.
+    /// Returns the limits of point `i`.
     fn of(&self, i: usize) -> Descent;
 
-    /// Evaluates the field at `points`, which are those with the numbers `which`.
+    /// Evaluates the field at `points`, whose indices in the batch are `which`.
     fn evaluate(
         &mut self,
         field: &mut dyn Field,
@@ -122,30 +123,32 @@ pub(crate) trait Descents {
     }
 }
 
-/// The same for all points.
+/// All points have the same limits.
 impl Descents for Descent {
     fn of(&self, _: usize) -> Descent {
         *self
     }
 }
 
-/// One circle under way.
+/// The search on a circle, by Newton's method, under way.
 #[derive(Clone, Copy)]
 struct Active {
     /// Index of the circle in the batch.
     circle: u32,
     steps: u32,
+    /// cos θ and sin θ of the next point.
     turn: [f32; 2],
+    /// |f| at the last point.
     last: f32,
 }
 
-/// Projects batches of points; owns the memory that takes.
+/// Projects batches of points, and owns the buffers for that.
 #[derive(Clone, Debug)]
 pub(crate) struct Projector {
     points: Vec<Vec3>,
     value: Vec<f32>,
     gradient: Vec<Vec3>,
-    /// Field evaluations made so far, one per point and call.
+    /// Number of field evaluations so far, one for each point and call.
     pub(crate) evaluations: u64,
 }
 
@@ -159,14 +162,14 @@ impl Projector {
         }
     }
 
-    /// Value and gradient at one point.
+    /// Returns value and gradient at a point.
     pub(crate) fn evaluate(&mut self, field: &mut dyn Field, point: Vec3) -> (f32, Vec3) {
         self.evaluations += 1;
         field.gradients(&[point], &mut self.value[..1], &mut self.gradient[..1]);
         (self.value[0], self.gradient[0])
     }
 
-    /// Evaluates at most [`BATCH`] points in one call; the results stand in the returned slices.
+    /// Returns values and gradients at no more than [`BATCH`] points, which are evaluated in one call.
     pub(crate) fn evaluate_batch(&mut self, field: &mut dyn Field, points: &[Vec3]) -> (&[f32], &[Vec3]) {
         let n = points.len();
         self.evaluations += n as u64;
@@ -174,9 +177,10 @@ impl Projector {
         (&self.value[..n], &self.gradient[..n])
     }
 
-    /// Finds the surface on each of at most [`BATCH`] circles, nearest to the guess: Newton's method in θ, which
-    /// takes two evaluations where the guess is good, and a bracketed search where Newton's method does not settle
-    /// (at most 50 steps in all, so it ends on any field). `landing[i]` belongs to `circles[i]`.
+    /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs to `circles[i]`.
+    ///
+    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not converge, a bracketed search follows.
+    /// Both together take at most 50 steps, so the search ends on any field.
     pub(crate) fn land_on_circles(
         &mut self,
         field: &mut dyn Field,
@@ -220,7 +224,7 @@ impl Projector {
                     && a.turn[0] > MIN_COS
                     && a.steps < MAX_NEWTON_STEPS;
                 a.last = value.abs();
-                // A NaN anywhere makes `settles` false or stays in the position until it does.
+                // A NaN either makes `settles` false or stays in the position until it does.
                 if settles && half.is_finite() && tolerance.is_slope(slope) {
                     active[kept] = a;
                     kept += 1;
@@ -236,9 +240,9 @@ impl Projector {
         }
     }
 
-    /// The root on the arc nearest to the guess, by bracketing and the Illinois method.
+    /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois method.
     fn search_arc(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
-        // θ runs over ±100° in equal steps of the half-angle rotation around the guess-free zero direction.
+        // θ runs over ±100° in equal steps from the tangent plane.
         let half = HALF_TURN;
         let mut turns = [[1.0, 0.0]; ARC_SAMPLES + 1];
         for k in 0..ARC_SAMPLES / 2 {
@@ -253,7 +257,7 @@ impl Projector {
         if f.iter().all(|v| !v.is_finite()) {
             return Landing::Undefined;
         }
-        // Brackets by nearness to the guess: the larger the cosine of the angle between, the nearer.
+        // Brackets are tried in the order of their angle to the guess: its cosine falls.
         let nearness = |k: usize| {
             let middle = turned(turns[k], 0.5 * half);
             middle[0] * circle.guess[0] + middle[1] * circle.guess[1]
@@ -278,8 +282,8 @@ impl Projector {
         if count == 0 && undefined > ARC_SAMPLES / 2 { Landing::Undefined } else { Landing::NotConverged }
     }
 
-    /// Root in the bracket that begins at `turn` with the values `fa` and `fb` at its ends; `None` where the sign
-    /// change is a pole or a jump.
+    /// Finds the root in the bracket that begins at `turn` and has the values `fa` and `fb` at its ends; `None` if the sign changes at a
+    /// pole or a jump.
     fn illinois(
         &mut self,
         field: &mut dyn Field,
@@ -288,7 +292,7 @@ impl Projector {
         (turn, mut fa, mut fb): ([f32; 2], f32, f32),
         budget: &mut u32,
     ) -> Option<Landing> {
-        // The unknown is the half-angle tangent t from the start of the bracket.
+        // The unknown t is the tangent of half the angle from the start of the bracket.
         let (mut a, mut b) = (0.0, HALF_TURN);
         let end = fa.abs().max(fb.abs());
         let mut side = 0;
@@ -333,9 +337,9 @@ impl Projector {
 
     /// Moves each of at most [`BATCH`] points onto the surface along the gradient, by Newton's method.
     ///
-    /// `normal[i]` becomes the unit normal. `ok[i]` says that the point is on the surface as `descents` ask; a point is
-    /// given up when it has not arrived after `max_steps` evaluations, when it has gone too far from where it began, or
-    /// where the field is undefined or its gradient is not above `min_gradient`.
+    /// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of `descents`. A point
+    /// is given up after `max_steps` evaluations, when it has moved too far, and where the field is undefined or its gradient is not
+    /// above `min_gradient`.
     #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
     pub(crate) fn land_along_gradient(
         &mut self,
@@ -371,7 +375,7 @@ impl Projector {
                 let slope_sq = gradient.length_squared();
                 let inverse_slope = 1.0 / slope_sq.sqrt();
                 let slope = slope_sq * inverse_slope;
-                // Written so that NaN fails.
+                // The condition is false for NaN.
                 if !(slope > min_gradient && slope.is_finite() && value.is_finite()) {
                     continue;
                 }
@@ -397,19 +401,19 @@ impl Projector {
     }
 }
 
-/// tan of half the angle between two samples of the arc: 16 steps of 6.3° each way.
+/// Tangent of half the angle between two samples of the arc: 16 steps of 6.3° to either side.
 const HALF_TURN: f32 = 0.055;
 
-/// (cos θ, sin θ) turned by the angle whose half has the tangent `t`: exact to rounding, arithmetic only.
+/// Rotates (cos θ, sin θ) by the angle whose half has the tangent `t`, by arithmetic alone and exactly up to rounding.
 pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     let scale = 1.0 / (1.0 + t * t);
     let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
     [cos * c - sin * s, sin * c + cos * s]
 }
 
-/// The tolerance for particles of radius `radius`: |f|/|∇f| ≤ 10⁻⁴ r (paper §4.3 stops "when the child has converged"
-/// and names no number), but not below `resolution`, what single precision resolves on this field; a gradient below a
-/// millionth of the usual one is the cancellation noise of a singular point.
+/// Returns the tolerance for particles of a radius: |f|/|∇f| ≤ 10⁻⁴ r, but not below `resolution`, the distance that single precision
+/// resolves on this field. The paper stops "when the child has converged" (§4.3) and gives no number. A gradient below a
+/// millionth of the usual `gradient_scale` is cancellation noise at a singular point.
 pub(crate) fn tolerance(radius: f32, resolution: f32, gradient_scale: f32) -> Tolerance {
     Tolerance { residual: (1e-4 * radius).max(resolution), min_gradient: 1e-6 * gradient_scale }
 }

@@ -1,17 +1,17 @@
-//! Radius laws: how large a particle may be where the surface has given curvatures (paper §5).
+//! Radius laws: the radius of a particle as a function of the curvature of the surface (paper §5).
 //!
-//! A law gives a radius between nothing and infinity; [`SizingLaw`] clamps it to the smallest and largest radius of the run.
-//! Where the surface has no curvature (see [`Curvature::is_defined`]: cone points, creases, places where f ends) every law
-//! gives the smallest radius, which is also the limit as the curvature grows on the way there.
+//! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of the run.
+//! Where the curvature is undefined (see [`Curvature::is_defined`]: cone points, creases, the border of the domain of f) every law
+//! gives the smallest radius, which is also the limit if the curvature grows towards such a point.
 
 use crate::differential::Curvature;
 use crate::sampler::settings::{LawKind, Settings};
 
-/// The gap between the surface and a triangle of neighbours is at most ε.
+/// Law by the chord error: the gap between the surface and a triangle of neighbours is at most ε.
 ///
-/// An equilateral triangle of side h inscribed in a sphere of radius R is ε away from it at its middle when
-/// h = √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2. It is for a person the easiest law to
-/// state, and the default.
+/// The middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if
+/// h = √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2. This law is the default, since its parameter is
+/// the easiest to understand.
 ///
 /// # Differs from the paper
 ///
@@ -22,15 +22,16 @@ pub struct ChordError {
     pub error: f64,
 }
 
-/// r = s / max(|κ₁|, |κ₂|): neighbours' normals differ by about 2s radians in the direction of the strongest bending.
+/// Law by the largest curvature, r = s / max(|κ₁|, |κ₂|): the normals of neighbours differ by about 2s radians in the direction of
+/// the largest curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaxCurvature {
     /// s, a pure number.
     pub scale: f64,
 }
 
-/// r = s / |κ₁ + κ₂|: the paper's law (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum vanishes on
-/// saddles that bend as much to one side as to the other; they get the largest radius.
+/// The paper's law, r = s / |κ₁ + κ₂| (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum vanishes on symmetric
+/// saddles, which get the largest radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SumOfCurvatures {
     /// s, a pure number.
@@ -38,7 +39,7 @@ pub struct SumOfCurvatures {
 }
 
 impl ChordError {
-    /// Radius of a particle there; infinite on a plane, 0 where the surface bends more sharply than ε.
+    /// Returns the radius of a particle: infinite on a plane, 0 where the radius of curvature is below ε/2.
     #[must_use]
     pub fn radius(&self, curvature: &Curvature) -> f32 {
         let error = self.error as f32;
@@ -48,7 +49,7 @@ impl ChordError {
 }
 
 impl MaxCurvature {
-    /// Radius of a particle there; infinite on a plane.
+    /// Returns the radius of a particle: infinite on a plane.
     #[must_use]
     pub fn radius(&self, curvature: &Curvature) -> f32 {
         self.scale as f32 / curvature.max_abs()
@@ -56,7 +57,7 @@ impl MaxCurvature {
 }
 
 impl SumOfCurvatures {
-    /// Radius of a particle there; infinite where the mean curvature vanishes.
+    /// Returns the radius of a particle: infinite where the mean curvature vanishes.
     #[must_use]
     pub fn radius(&self, curvature: &Curvature) -> f32 {
         self.scale as f32 / (2.0 * curvature.mean().abs())
@@ -71,18 +72,18 @@ enum Kind {
     SumOfCurvatures(SumOfCurvatures),
 }
 
-/// The law of a run, with its clamp and the factor on all radii with which a count is met.
+/// The law of a run, with its clamp, and the factor on all radii that makes the count match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizingLaw {
     kind: Kind,
-    /// Smallest and largest radius before the factor.
+    /// Smallest and largest radius, before the factor.
     least: f32,
     greatest: f32,
     factor: f32,
 }
 
 impl SizingLaw {
-    /// The law that `settings` ask for in a box with this diagonal.
+    /// Returns the law that `settings` ask for in a box with this diagonal.
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
         let scale = settings.curvature_scale;
         Self {
@@ -99,22 +100,22 @@ impl SizingLaw {
         }
     }
 
-    /// The same law with all radii, the clamp's too, larger by `factor`.
+    /// Returns the law with all radii and the clamp multiplied by `factor`.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         Self { factor: self.factor * factor as f32, ..self }
     }
 
-    /// Smallest radius that the law gives.
+    /// Returns the smallest radius that the law gives.
     pub(crate) fn least(&self) -> f32 {
         self.least * self.factor
     }
 
-    /// Largest radius that the law gives.
+    /// Returns the largest radius that the law gives.
     pub(crate) fn greatest(&self) -> f32 {
         self.greatest * self.factor
     }
 
-    /// Radius where the surface has this curvature.
+    /// Returns the radius where the surface has this curvature.
     #[inline]
     pub(crate) fn radius(&self, curvature: &Curvature) -> f32 {
         let radius = match self.kind {
@@ -122,7 +123,7 @@ impl SizingLaw {
             Kind::MaxCurvature(law) => law.radius(curvature),
             Kind::SumOfCurvatures(law) => law.radius(curvature),
         };
-        // NaN, where there is no curvature, is not larger than the least.
+        // NaN, which stands for an undefined curvature, is not above the smallest radius.
         let radius = if radius > self.least { radius.min(self.greatest) } else { self.least };
         radius * self.factor
     }
@@ -133,14 +134,14 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    fn bent(k1: f32, k2: f32) -> Curvature {
+    fn curved(k1: f32, k2: f32) -> Curvature {
         Curvature { k1, k2, direction: Vec3::X }
     }
 
     #[test]
     fn chord_error_is_the_gap_of_an_inscribed_triangle() {
         for (error, bend_radius) in [(1e-3, 1.0), (1e-4, 0.3), (0.05, 0.2)] {
-            let radius = f64::from(ChordError { error }.radius(&bent(1.0 / bend_radius as f32, 0.0)));
+            let radius = f64::from(ChordError { error }.radius(&curved(1.0 / bend_radius as f32, 0.0)));
             // A side of 2r puts the corners at circumradius 2r/√3 from the foot of the sphere's centre.
             let corner_sq = 4.0 * radius * radius / 3.0;
             let gap = bend_radius - (bend_radius * bend_radius - corner_sq).sqrt();
@@ -149,15 +150,15 @@ mod tests {
                 "asked {error}, got {gap} on a sphere of {bend_radius}"
             );
         }
-        assert_eq!(ChordError { error: 0.1 }.radius(&bent(100.0, 0.0)), 0.0);
-        assert_eq!(ChordError { error: 0.1 }.radius(&bent(0.0, 0.0)), f32::INFINITY);
+        assert_eq!(ChordError { error: 0.1 }.radius(&curved(100.0, 0.0)), 0.0);
+        assert_eq!(ChordError { error: 0.1 }.radius(&curved(0.0, 0.0)), f32::INFINITY);
     }
 
     #[test]
     fn curvature_laws_are_reciprocal() {
-        assert_eq!(MaxCurvature { scale: 0.5 }.radius(&bent(1.0, -4.0)), 0.125);
-        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&bent(1.0, -5.0)), 0.125);
-        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&bent(3.0, -3.0)), f32::INFINITY);
+        assert_eq!(MaxCurvature { scale: 0.5 }.radius(&curved(1.0, -4.0)), 0.125);
+        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&curved(1.0, -5.0)), 0.125);
+        assert_eq!(SumOfCurvatures { scale: 0.5 }.radius(&curved(3.0, -3.0)), f32::INFINITY);
     }
 
     #[test]
@@ -166,13 +167,13 @@ mod tests {
             let settings = Settings { radius_law, ..Settings::default() };
             let law = SizingLaw::new(&settings, 2.0);
             let larger = law.scaled(3.0);
-            let nowhere = bent(f32::NAN, f32::NAN);
+            let nowhere = curved(f32::NAN, f32::NAN);
             assert_eq!(law.radius(&nowhere), law.least(), "{radius_law:?}");
-            assert_eq!(law.radius(&bent(1e30, 1e30)), law.least(), "{radius_law:?}");
-            assert_eq!(law.radius(&bent(0.0, 0.0)), law.greatest(), "{radius_law:?}");
+            assert_eq!(law.radius(&curved(1e30, 1e30)), law.least(), "{radius_law:?}");
+            assert_eq!(law.radius(&curved(0.0, 0.0)), law.greatest(), "{radius_law:?}");
             let mut before = law.greatest();
             for k in -40..60 {
-                let curvature = bent(libm::powf(1.3, k as f32), 0.0);
+                let curvature = curved(libm::powf(1.3, k as f32), 0.0);
                 let radius = law.radius(&curvature);
                 assert!(radius >= law.least() && radius <= before, "{radius_law:?} at {curvature:?}");
                 assert!((larger.radius(&curvature) / radius - 3.0).abs() < 1e-5);

@@ -34,14 +34,14 @@ fn a_sphere_has_one_radius_and_the_count_of_its_area() {
 fn the_envelope_lies_above_the_law_by_no_more_than_a_cell() {
     for surface in smooth() {
         let sizing = sizing_of(surface, &Settings::default());
-        for site in &sizing.site {
+        for sample in &sizing.samples {
             // In the middle of a cell the nodes are half a diagonal away.
             let slack = sizing.slope * sizing.envelope.cell * 0.87;
-            let law = sizing.law.radius(&site.curvature);
-            let bound = sizing.envelope(site.position);
+            let law = sizing.law.radius(&sample.curvature);
+            let bound = sizing.envelope(sample.position);
             assert!(bound <= law + 1.001 * slack, "{}: envelope {bound}, law {law}", surface.id);
             assert!(bound >= sizing.law.least() && bound <= sizing.law.greatest());
-            assert!(sizing.radius(site.position, &site.curvature) <= law);
+            assert!(sizing.radius(sample.position, &sample.curvature) <= law);
         }
     }
 }
