@@ -10,7 +10,9 @@ use anyhow::{Context, Result, bail};
 use crate::fingerprint::sha256_of;
 use crate::project::{Project, on_path, rustc};
 use crate::step;
-use crate::wasm_target::SOURCE_IN_SYSROOT;
+
+/// Path of the source of the standard library in the sysroot of a toolchain.
+pub(crate) const SOURCE_IN_SYSROOT: &str = "lib/rustlib/src/rust/library";
 
 /// Debian's archive. Its index files are fetched over TLS and state each package's SHA-256.
 const DEBIAN: &str = "https://deb.debian.org/debian";

@@ -12,14 +12,11 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use crate::project::{Project, cargo, on_path, rustc};
-use crate::rust_source;
+use crate::rust_source::{self, SOURCE_IN_SYSROOT};
 use crate::step;
 
 /// The target's name.
 pub(crate) const TARGET: &str = "wasm32-unknown-unknown";
-
-/// Where a toolchain keeps the source of the standard library, from its sysroot.
-pub(crate) const SOURCE_IN_SYSROOT: &str = "lib/rustlib/src/rust/library";
 
 /// A way to compile for the target.
 pub(crate) struct WasmTarget {

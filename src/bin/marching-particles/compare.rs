@@ -2,7 +2,8 @@
 
 use crate::arguments::Compare;
 use crate::failure::{Failure, LIMIT};
-use crate::sample::{self, Begun, Clock, Seconds, bar, begin, refusal};
+use crate::outcome::Seconds;
+use crate::sample::{self, Begun, Clock, bar, begin, refusal};
 use crate::summary::{COLUMN, LABEL, figure, grouped, time};
 use indicatif::ProgressBar;
 use marching_particles::baseline::{self, Baseline};

@@ -2,20 +2,19 @@
 
 use crate::arguments::{self, Gaps, Law, Length, Placement as Placed, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
+use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::{self, Format};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
-use marching_particles::field::model::{self, ModelInfo};
+use marching_particles::field::model;
 use marching_particles::math::{Bounds, shortest_text};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode, StopReason,
 };
-use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Report, Session};
-use serde::Serialize;
-use std::collections::BTreeMap;
+use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -28,41 +27,6 @@ const BUDGET: u32 = 256;
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 /// Limit of particles relative to a wanted count, which is met within 3 %.
 const ROOM: f64 = 1.1;
-
-/// Wall times of the phases in seconds.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(crate) struct Seconds {
-    /// Time to read points and to fit a field to them.
-    pub(crate) points: f64,
-    pub(crate) seeding: f64,
-    pub(crate) generation: f64,
-    pub(crate) relaxation: f64,
-    pub(crate) quality: f64,
-    pub(crate) writing: f64,
-}
-
-/// Result of a run, as `--json` prints it.
-#[derive(Debug, Serialize)]
-pub(crate) struct Outcome {
-    pub(crate) version: &'static str,
-    pub(crate) surface: Option<String>,
-    /// Report of the fit, for a surface through points.
-    pub(crate) model: Option<ModelInfo>,
-    pub(crate) formula: String,
-    pub(crate) parameters: BTreeMap<String, f64>,
-    pub(crate) bounds: Bounds,
-    pub(crate) settings: Settings,
-    pub(crate) predicted_count: u64,
-    #[serde(flatten)]
-    pub(crate) report: Report,
-    pub(crate) seconds: Seconds,
-    /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
-    pub(crate) peak_mb: Option<f64>,
-    /// Peak resident memory at the end of the sampling, before quality is measured and files are written.
-    pub(crate) peak_sampling_mb: Option<f64>,
-    /// Names of the files written, with replacement characters for invalid Unicode.
-    pub(crate) files: Vec<String>,
-}
 
 /// A session with the requested surface, whose run has begun.
 pub(crate) struct Begun {

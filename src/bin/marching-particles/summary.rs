@@ -1,6 +1,6 @@
 //! Report of a run as text.
 
-use crate::sample::Outcome;
+use crate::outcome::Outcome;
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::session::{ReportRow, describe};
 use serde_json::Value;

@@ -1,0 +1,43 @@
+//! Result of a run.
+
+use marching_particles::field::model::ModelInfo;
+use marching_particles::math::Bounds;
+use marching_particles::sampler::Settings;
+use marching_particles::session::Report;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Wall times of the phases in seconds.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct Seconds {
+    /// Time to read points and to fit a field to them.
+    pub(crate) points: f64,
+    pub(crate) seeding: f64,
+    pub(crate) generation: f64,
+    pub(crate) relaxation: f64,
+    pub(crate) quality: f64,
+    pub(crate) writing: f64,
+}
+
+/// Result of a run, as `--json` prints it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Outcome {
+    pub(crate) version: &'static str,
+    pub(crate) surface: Option<String>,
+    /// Report of the fit, for a surface through points.
+    pub(crate) model: Option<ModelInfo>,
+    pub(crate) formula: String,
+    pub(crate) parameters: BTreeMap<String, f64>,
+    pub(crate) bounds: Bounds,
+    pub(crate) settings: Settings,
+    pub(crate) predicted_count: u64,
+    #[serde(flatten)]
+    pub(crate) report: Report,
+    pub(crate) seconds: Seconds,
+    /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
+    pub(crate) peak_mb: Option<f64>,
+    /// Peak resident memory at the end of the sampling, before quality is measured and files are written.
+    pub(crate) peak_sampling_mb: Option<f64>,
+    /// Names of the files written, with replacement characters for invalid Unicode.
+    pub(crate) files: Vec<String>,
+}
