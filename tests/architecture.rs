@@ -27,7 +27,7 @@ const ROOMS: [Room; 4] = [
             ("particles", &["math"]),
             ("trace", &["math", "particles"]),
             ("mesh", &["math", "spatial", "particles"]),
-            ("sampler", &["math", "field", "differential", "spatial", "particles", "trace"]),
+            ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh", "trace"]),
             // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
             ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
             // Figures about a set of particles must not depend on what made them.
@@ -69,11 +69,12 @@ const ROOMS: [Room; 4] = [
             ("sizing", &["settings", "projection", "discovery"]),
             ("front", &["settings", "fates", "projection", "neighbours", "discovery", "sizing"]),
             ("relaxation", &["projection", "neighbours", "sizing"]),
+            ("refine", &[]),
             ("message", &["discovery", "phase"]),
-            ("progress", &["fates", "phase"]),
-            ("attempt", &["settings", "projection", "discovery", "sizing"]),
+            ("progress", &["fates", "phase", "refine"]),
+            ("attempt", &["settings", "projection", "discovery", "sizing", "refine"]),
             // The state machine, which alone knows every room.
-            ("run", &["settings", "phase", "attempt", "discovery", "front", "relaxation"]),
+            ("run", &["settings", "phase", "attempt", "discovery", "front", "refine", "relaxation"]),
         ],
     ),
     (

@@ -3,6 +3,7 @@
 use crate::math::SQRT_3;
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::projection::{Tolerance, tolerance};
+use crate::sampler::refine;
 use crate::sampler::settings::{Settings, SizeMode};
 use crate::sampler::sizing::Sizing;
 
@@ -40,6 +41,8 @@ pub(super) struct Attempt {
     area: f64,
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
     packing: f64,
+    /// Times that the radius of the front is halved by the refinement, after which it is `radius`; `None` where the front stands.
+    pub(super) levels: Option<u32>,
     /// Whether this attempt only measures the packing.
     is_pilot: bool,
     /// Attempts completed before this one.
@@ -48,7 +51,15 @@ pub(super) struct Attempt {
 
 impl Default for Attempt {
     fn default() -> Self {
-        Self { radius: 1.0, sizing: None, area: 0.0, packing: PACKING, is_pilot: false, completed: 0 }
+        Self {
+            radius: 1.0,
+            sizing: None,
+            area: 0.0,
+            packing: PACKING,
+            levels: None,
+            is_pilot: false,
+            completed: 0,
+        }
     }
 }
 
@@ -56,7 +67,7 @@ impl Attempt {
     /// The first attempt on a surface of the estimated `area` in a box of the given `diagonal`.
     pub(super) fn first(settings: &Settings, area: f64, diagonal: f64, sizing: Option<Sizing>) -> Self {
         let packing = if sizing.is_some() { ADAPTIVE_PACKING } else { PACKING };
-        let mut attempt = Self { radius: 1.0, sizing, area, packing, is_pilot: false, completed: 0 };
+        let mut attempt = Self { sizing, area, packing, ..Self::default() };
         attempt.radius = settings.radius_share * diagonal;
         if settings.size_mode == SizeMode::Count {
             let wanted = f64::from(settings.count);
@@ -83,6 +94,37 @@ impl Attempt {
         self.area * self.packing / (2.0 * SQRT_3)
     }
 
+    /// Makes this an attempt at a coarse front to be refined, on a surface with this largest curvature, if that can be. There is no
+    /// pilot run: the refinement meets the wanted count by itself.
+    pub(super) fn refine(&mut self, settings: &Settings, max_curvature: f64) {
+        let count = self.predicted_count(settings);
+        let radius = (self.count_times_radius_sq() / count).sqrt();
+        let levels = refine::levels(max_curvature * 2.0 * radius, count);
+        // There is no radius where there is no surface.
+        if levels.is_some()
+            && radius > 0.0
+            && self.sizing.is_none()
+            && count <= f64::from(settings.max_particles)
+        {
+            (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
+        }
+    }
+
+    /// What a refinement of this attempt's front aims at.
+    pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
+        let count = match settings.size_mode {
+            SizeMode::Radius => refine::Count::PerCell(self.packing),
+            SizeMode::Count => refine::Count::Total(f64::from(settings.count)),
+        };
+        self.levels.map(|levels| refine::Target { levels, radius: self.radius as f32, count })
+    }
+
+    /// Radius of the front.
+    pub(super) fn front_radius(&self) -> f64 {
+        let coarse = |levels: u32| refine::FRONT_RADIUS * f64::from(1_u32 << levels);
+        self.radius * self.levels.map_or(1.0, coarse)
+    }
+
     /// Takes the radius from the radius field, if there is one.
     fn follow_sizing(&mut self) {
         let Some(sizing) = &self.sizing else { return };
@@ -101,9 +143,9 @@ impl Attempt {
         }
     }
 
-    /// Particles that this attempt is expected to place.
+    /// Particles that the front of this attempt is expected to place.
     pub(super) fn expected_count(&self) -> f64 {
-        self.area * self.packing / (2.0 * SQRT_3 * self.radius * self.radius)
+        self.count_times_radius_sq() / (self.front_radius() * self.front_radius())
     }
 
     /// Particles to reserve room for.
@@ -115,13 +157,13 @@ impl Attempt {
     pub(super) fn radii(&self) -> [f32; 2] {
         match &self.sizing {
             Some(sizing) => [sizing.smallest(), sizing.largest()],
-            None => [self.radius as f32; 2],
+            None => [self.front_radius() as f32; 2],
         }
     }
 
     /// What counts as being on the surface.
     pub(super) fn tolerance(&self, survey: &Survey) -> Tolerance {
-        tolerance(self.radius as f32, survey.resolution, survey.gradient_scale)
+        tolerance(self.front_radius() as f32, survey.resolution, survey.gradient_scale)
     }
 
     /// Notes that this attempt has covered the surface with `count` particles. Says whether another one, with the radius as

@@ -13,6 +13,7 @@ pub(crate) mod neighbours;
 mod phase;
 mod progress;
 pub(crate) mod projection;
+mod refine;
 pub(crate) mod relaxation;
 mod run;
 mod settings;
@@ -22,7 +23,8 @@ pub use discovery::completeness::Search;
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
-pub use settings::{GapPolicy, LawKind, Placement, Sampling, Settings, SettingsError, SizeMode};
+pub use refine::Refusal;
+pub use settings::{GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode};
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
@@ -39,6 +41,7 @@ use front::Front;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use projection::Projector;
+use refine::Refinement;
 use relaxation::Relaxation;
 use run::Input;
 use sizing::Sizing;
@@ -61,6 +64,8 @@ pub struct Sampler {
     projector: Projector,
     seeds: Seeds,
     front: Front,
+    /// Of a coarse front, while it goes on.
+    refinement: Option<Box<Refinement>>,
     relaxation: Relaxation,
     pairs: PackedNeighbours,
     particles: Particles,
@@ -90,6 +95,7 @@ impl Sampler {
             projector: Projector::new(),
             seeds: Seeds::default(),
             front: Front::new(),
+            refinement: None,
             relaxation: Relaxation::new(),
             pairs: PackedNeighbours::default(),
             particles: Particles::default(),
@@ -219,6 +225,13 @@ impl Sampler {
             Sizing::new(field, bounds, settings, &self.survey, &mut self.counts.seeding_evaluations)
         });
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
+        self.refinement = None;
+        if settings.method == Method::Refined {
+            let field = &mut Scaled::new(field, self.survey.factor);
+            let max_curvature = refine::max_curvature(field, &self.survey.position);
+            self.attempt.refine(settings, max_curvature);
+            self.counts.refusal = self.attempt.levels.is_none().then_some(Refusal::Unsuitable);
+        }
         let predicted = self.attempt.predicted_count(settings);
         self.seeds.expect(predicted.min(f64::from(settings.max_particles)));
         let warnings = self.warnings(predicted);

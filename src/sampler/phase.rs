@@ -11,7 +11,7 @@ pub enum Phase {
     Idle,
     /// Looking for a first point on every component that the survey has met.
     Seeding,
-    /// Placing particles, level by level.
+    /// Placing particles, level by level, and refining them.
     Generation,
     /// Looking for components that the survey has missed.
     Search,
@@ -46,9 +46,10 @@ pub enum StopReason {
 /// ```text
 /// Idle ──▶ Seeding ◀──▶ Generation ◀──▶ Search ──▶ Filling
 ///             ▲                            │          │
-///             └──── the count is missed ───┴──────────┤
+///             └── the count is missed, or ─┴──────────┤
+///                 the front is too coarse             │
 ///                                                     ▼
-///                      Done ◀── Marking ◀──────── Relaxation
+///                      Done ◀── Marking ◀── Relaxation / Refinement
 /// ```
 ///
 /// `Sampler::next` makes every transition. A run that is cancelled, or that needs no relaxation, goes to `Marking` at once.
@@ -65,6 +66,8 @@ pub(super) enum PhaseState {
     Search,
     /// Fills the gaps that the fronts have left.
     Filling,
+    /// Brings a coarse front into order and refines it.
+    Refinement,
     /// Moves the particles to more even distances.
     Relaxation,
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
@@ -79,7 +82,7 @@ impl PhaseState {
         match self {
             Self::Idle => Phase::Idle,
             Self::Seeding(_) => Phase::Seeding,
-            Self::Generation(_) | Self::Filling => Phase::Generation,
+            Self::Generation(_) | Self::Filling | Self::Refinement => Phase::Generation,
             Self::Search => Phase::Search,
             Self::Relaxation => Phase::Relaxation,
             Self::Marking(_) | Self::Done(_) => Phase::Done,

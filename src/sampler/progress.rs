@@ -3,6 +3,7 @@
 use super::{Sampler, StopReason};
 use crate::sampler::fates::FateCounts;
 use crate::sampler::phase::{Phase, PhaseState};
+use crate::sampler::refine::{self, Refusal};
 use serde::Serialize;
 
 /// Cost of a relaxation step per particle, as a share of what it costs to place the particle.
@@ -67,6 +68,10 @@ pub struct Counts {
     pub seeds: u32,
     /// Seeds that stayed alone beside other particles and were taken back.
     pub left_out: u32,
+    /// Times that the coarse front was refined, where it was.
+    pub refined_levels: Option<u32>,
+    /// Why the front stands, where a refinement was asked for.
+    pub refusal: Option<Refusal>,
 }
 
 impl Sampler {
@@ -96,6 +101,9 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
+        if let Some(refinement) = &self.refinement {
+            return refinement.fraction();
+        }
         match self.phase.name() {
             Phase::Idle => 0.0,
             Phase::Relaxation => {
@@ -104,7 +112,11 @@ impl Sampler {
             }
             Phase::Done => 1.0,
             // In all other phases the number of particles grows.
-            _ => generation * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99),
+            _ => {
+                // A coarse front is the smaller part of its run.
+                let share = self.attempt.levels.map_or(generation, refine::coarse_share);
+                share * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
+            }
         }
     }
 }

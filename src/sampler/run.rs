@@ -8,6 +8,7 @@ use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
+use crate::sampler::refine::{self, Refinement, Refusal, Target};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
 use glam::Vec3;
@@ -59,6 +60,11 @@ impl Sampler {
                     self.moved |= self.relaxation.abandon(&mut self.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
+                // The columns hold the last level that was finished.
+                PhaseState::Refinement => {
+                    self.refinement = None;
+                    PhaseState::Marking(StopReason::Cancelled)
+                }
             },
             Input::Work { field, left } => match phase {
                 PhaseState::Idle | PhaseState::Done(_) => phase,
@@ -66,6 +72,7 @@ impl Sampler {
                 PhaseState::Generation(after) => self.grow(field, left, after),
                 PhaseState::Search => self.search_components(field, left),
                 PhaseState::Filling => self.fill(field, left),
+                PhaseState::Refinement => self.refine(field, left),
                 PhaseState::Relaxation => self.relax_particles(field, left),
                 PhaseState::Marking(reason) => self.mark(field, reason),
             },
@@ -81,11 +88,15 @@ impl Sampler {
         let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
         self.particles.reserve(expected);
         self.pairs.reserve(expected);
+        let mut settings = self.settings;
+        if self.attempt.levels.is_some() {
+            settings.match_tolerance = refine::MATCH_TOLERANCE;
+        }
         self.front.reset(&FrontSetup {
-            settings: &self.settings,
+            settings: &settings,
             bounds: &self.bounds,
             survey: &self.survey,
-            radius: self.attempt.radius as f32,
+            radius: self.attempt.front_radius() as f32,
             radii: self.attempt.radii(),
             expected,
         });
@@ -235,6 +246,9 @@ impl Sampler {
                 _ => StopReason::NoSurface,
             });
         }
+        if let Some(target) = self.attempt.target(&self.settings) {
+            return self.begin_refinement(target);
+        }
         if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
         }
@@ -244,6 +258,63 @@ impl Sampler {
             PhaseState::Marking(self.reason_for_end())
         } else {
             self.begin_relaxation()
+        }
+    }
+
+    /// Begins to refine the front that has covered the surface.
+    fn begin_refinement(&mut self, target: Target) -> PhaseState {
+        let is_smooth = self.seeds.singular().is_empty() && !self.front.is_capped();
+        let begun = if is_smooth {
+            Refinement::new(&self.particles, &self.bounds, target)
+        } else {
+            Err(Refusal::Unsuitable)
+        };
+        match begun {
+            Ok(refinement) => {
+                self.front.release();
+                // They are those of the front.
+                self.pairs.clear();
+                self.refinement = Some(Box::new(refinement));
+                PhaseState::Refinement
+            }
+            Err(refusal) => self.refuse(refusal),
+        }
+    }
+
+    /// Tries a front of half the radius, or goes back to one of the wanted radius.
+    fn refuse(&mut self, refusal: Refusal) -> PhaseState {
+        self.refinement = None;
+        self.attempt.levels = match self.attempt.levels {
+            Some(levels) if levels > 0 && refusal.is_coarse() => Some(levels - 1),
+            _ => None,
+        };
+        if self.attempt.levels.is_none() {
+            self.counts.refusal = Some(refusal);
+            self.attempt = Attempt::first(&self.settings, self.survey.area, self.bounds.diagonal(), None);
+        }
+        self.begin_attempt()
+    }
+
+    fn refine(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
+        let Some(refinement) = &mut self.refinement else { return PhaseState::Marking(StopReason::Complete) };
+        let before = refinement.evaluations();
+        let step = refinement.step(field, &mut self.particles, *left);
+        let evaluations = refinement.evaluations() - before;
+        let is_done = refinement.is_done();
+        self.projector.evaluations += evaluations;
+        self.counts.generation_evaluations += evaluations;
+        match step {
+            Err(refusal) => self.refuse(refusal),
+            Ok((units, has_changed)) => {
+                *left = left.saturating_sub(units);
+                self.moved |= has_changed;
+                if !is_done {
+                    return PhaseState::Refinement;
+                }
+                self.counts.refined_levels = self.attempt.levels.take();
+                self.refinement = None;
+                PhaseState::Marking(StopReason::Complete)
+            }
         }
     }
 

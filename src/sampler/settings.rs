@@ -27,6 +27,17 @@ pub enum GapPolicy {
     Leave,
 }
 
+/// How the particles are brought onto the surface and into order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// A front of the wanted radius, and relaxation (paper §4 and §5).
+    #[default]
+    Front,
+    /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
+    Refined,
+}
+
 /// Whether all particles have one size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -66,6 +77,8 @@ pub enum Placement {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
+    /// How the particles are brought onto the surface and into order.
+    pub method: Method,
     /// Whether all particles have one size.
     pub sampling: Sampling,
     /// Whether the radius or the wanted count decides the size. With adaptive sampling the count scales all radii by one
@@ -145,6 +158,7 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 impl Settings {
     /// The values that `Default` gives.
     pub const DEFAULT: Self = Self {
+        method: Method::Front,
         sampling: Sampling::Uniform,
         size_mode: SizeMode::Radius,
         radius_share: 0.006,

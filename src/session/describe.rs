@@ -5,7 +5,7 @@ use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::{MODELS, Model};
 use crate::math::Bounds;
-use crate::sampler::{GapPolicy, LawKind, Placement, Sampling, Settings, SizeMode};
+use crate::sampler::{GapPolicy, LawKind, Method, Placement, Sampling, Settings, SizeMode};
 use serde::Serialize;
 
 /// The whole description.
@@ -93,6 +93,8 @@ pub enum Value {
     Integer(u64),
     /// Of the choice of the size.
     Size(SizeMode),
+    /// Of the choice of the method.
+    Method(Method),
     /// Of the choice about gaps.
     Gaps(GapPolicy),
     /// Of the choice between one size and many.
@@ -335,6 +337,15 @@ const SETTINGS: &[Setting] = &[
         unit: "steps",
         help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
         ..number("relax_steps", "Relaxation", Value::Integer(DEFAULT.relax_steps as u64), 1.0)
+    },
+    Setting {
+        kind: "choice",
+        step: None,
+        group: "Advanced",
+        choices: &[Choice { value: "front", label: "Front" }, Choice { value: "refined", label: "Refined" }],
+        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on closed smooth surfaces.",
+        when: &[UNIFORM],
+        ..number("method", "Method", Value::Method(DEFAULT.method), 0.0)
     },
     Setting {
         unit: "× 2r",

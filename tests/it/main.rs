@@ -28,6 +28,7 @@ mod pointcloud_read;
 mod quality;
 #[cfg(feature = "points")]
 mod rbf;
+mod refine;
 mod relax;
 mod session;
 mod shaders;

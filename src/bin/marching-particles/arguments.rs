@@ -30,6 +30,14 @@ Examples:
   marching-particles compare --surface ellipsoid --count 13923";
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Method {
+    /// A front of the wanted radius, and relaxation
+    Front,
+    /// A coarse front, brought into order and refined
+    Refined,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Gaps {
     Fill,
     Leave,
@@ -247,6 +255,10 @@ pub(crate) struct Sampling {
     /// How near, in units of two radii, a new particle must come to an old one to be the same
     #[arg(long, value_name = "SHARE", default_value_t = defaults().match_tolerance, help_heading = "Sampling")]
     pub(crate) match_tolerance: f64,
+
+    /// How the particles are placed: by a front and relaxation, as in the paper, or by a coarse front that is refined
+    #[arg(long, value_enum, default_value_t = Method::Front, help_heading = "Sampling")]
+    pub(crate) method: Method,
 
     /// What becomes of gaps between fronts that are wide enough for a particle; the paper leaves them
     #[arg(long, value_enum, default_value_t = Gaps::Fill, help_heading = "Sampling")]

@@ -12,7 +12,8 @@ use marching_particles::field::model;
 use marching_particles::math::{Bounds, shortest_text};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::sampler::{
-    GapPolicy, LawKind, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode, StopReason,
+    GapPolicy, LawKind, Method, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode,
+    StopReason,
 };
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
 use std::fs::File;
@@ -234,6 +235,10 @@ fn settings(arguments: &arguments::Sampling, bounds: &Bounds) -> Settings {
         count: arguments.count.unwrap_or(default.count),
         relax_steps: arguments.relax,
         match_tolerance: arguments.match_tolerance,
+        method: match arguments.method {
+            arguments::Method::Front => Method::Front,
+            arguments::Method::Refined => Method::Refined,
+        },
         gaps: match arguments.gaps {
             Gaps::Fill => GapPolicy::Fill,
             Gaps::Leave => GapPolicy::Leave,

@@ -1,0 +1,310 @@
+//! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
+
+use crate::field::Field;
+use crate::mesh::half_edge::{HalfEdges, NONE, previous};
+use crate::particles::Slots;
+use glam::Vec3;
+
+/// Particles that are brought back onto the surface together: the field is evaluated in lanes.
+pub(super) const BLOCK: usize = 64;
+
+/// No move is longer than this share of the spacing.
+const MAX_MOVE: f32 = 0.3;
+/// A particle whose correction is longer than this share of the spacing has left the surface; it goes back to where it was.
+const MAX_CORRECTION: f32 = 0.5;
+/// A move that turns the normal by more than 72° is taken back: it has crossed to another sheet.
+const MIN_AGREEMENT: f32 = 0.3;
+/// An edge is flipped only if its angles exceed π by so much that rounding cannot flip it back.
+const FLIP_SLACK: f32 = 1e-5;
+
+/// The springs between neighbours: their energy is Σ (l − θa)² over the edges.
+///
+/// At θ = 1 the rest length is the spacing of the lattice. Below it the springs pull against a surface that cannot shrink, which
+/// makes the lattice stiffer in shear: its bulk modulus over its shear modulus is 2θ/(4 − 3θ).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Springs {
+    /// Spacing a of the hexagonal lattice with the wanted number of particles.
+    pub(super) spacing: f32,
+    /// Rest length over spacing, θ.
+    pub(super) theta: f32,
+    /// Over-relaxation ω: 1 goes to where the springs of one particle would be at rest, all others held.
+    pub(super) omega: f32,
+}
+
+impl Springs {
+    pub(super) fn rest(&self) -> f32 {
+        self.theta * self.spacing
+    }
+}
+
+/// The field, with the memory that it takes to evaluate it at blocks of particles.
+pub(super) struct Ground<'a> {
+    pub(super) field: &'a mut dyn Field,
+    pub(super) block: &'a mut Block,
+}
+
+/// Particles that have been moved and not yet been brought back onto the surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Block {
+    which: Vec<u32>,
+    /// Where they were before the move.
+    before: Vec<Vec3>,
+    points: Vec<Vec3>,
+    value: Vec<f32>,
+    gradient: Vec<Vec3>,
+    /// Evaluations of the field so far.
+    pub(super) evaluations: u64,
+}
+
+impl Block {
+    fn clear(&mut self) {
+        self.which.clear();
+        self.before.clear();
+        self.points.clear();
+    }
+
+    fn add(&mut self, v: u32, before: Vec3, after: Vec3) {
+        self.which.push(v);
+        self.before.push(before);
+        self.points.push(after);
+    }
+}
+
+/// Particles and the surface between them. Vertex `v` of the surface is particle `v` of every column.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layer {
+    pub(super) mesh: HalfEdges,
+    pub(super) position: Vec<Vec3>,
+    pub(super) normal: Vec<Vec3>,
+    /// What became of the slots of the particles that the front placed; undecided for all others.
+    pub(super) slots: Vec<Slots>,
+}
+
+impl Layer {
+    /// A layer over the surface with columns still to be filled.
+    pub(super) fn with_room(mesh: HalfEdges, count: usize) -> Self {
+        Self {
+            mesh,
+            position: Vec::with_capacity(count),
+            normal: Vec::with_capacity(count),
+            slots: Vec::with_capacity(count),
+        }
+    }
+
+    /// Moves each particle by its springs, and then brings them back onto the surface together.
+    ///
+    /// A particle sees the new places of those before it, as in the method of Gauss and Seidel. That these are not yet
+    /// back on the surface changes a distance in second order only.
+    #[inline(always)]
+    pub(super) fn relax(
+        &mut self,
+        ground: &mut Ground,
+        springs: Springs,
+        particles: impl Iterator<Item = u32>,
+    ) {
+        let rest = springs.rest();
+        // The second derivative of the energy, averaged over all directions, is this per neighbour.
+        let stiffness = 1.0 - 0.5 * springs.theta;
+        self.shift(ground, springs.spacing, particles, |layer, v| {
+            let p = layer.position[v as usize];
+            let (mut force, mut degree) = (Vec3::ZERO, 0.0_f32);
+            for other in layer.mesh.neighbours(v) {
+                let offset = p - layer.position[other as usize];
+                force += offset * (rest / offset.length() - 1.0);
+                degree += 1.0;
+            }
+            force * (springs.omega / (degree * stiffness))
+        });
+    }
+
+    /// Moves each particle to the centre of its Voronoi cell, with the over-relaxation of the springs: Lloyd's method.
+    pub(super) fn centre(
+        &mut self,
+        ground: &mut Ground,
+        springs: Springs,
+        particles: impl Iterator<Item = u32>,
+    ) {
+        self.shift(ground, springs.spacing, particles, |layer, v| layer.way_to_centre(v) * springs.omega);
+    }
+
+    /// From `v` to the centre of its Voronoi cell, whose corners are the circumcentres of the faces around it.
+    fn way_to_centre(&self, v: u32) -> Vec3 {
+        let (p, n) = (self.position[v as usize], self.normal[v as usize]);
+        let circumcentre = |h: u32| {
+            let b = self.position[self.mesh.target(h) as usize] - p;
+            let c = self.position[self.mesh.origin(previous(h)) as usize] - p;
+            let normal = b.cross(c);
+            (normal.cross(b) * c.length_squared() + c.cross(normal) * b.length_squared())
+                / (2.0 * normal.length_squared())
+        };
+        let mut around = self.mesh.around(v);
+        let Some(first) = around.next().map(circumcentre) else { return Vec3::ZERO };
+        let (mut last, mut moment, mut area) = (first, Vec3::ZERO, 0.0);
+        let mut add = |a: Vec3, b: Vec3| {
+            let twice = a.cross(b).dot(n);
+            moment += (a + b) * twice;
+            area += twice;
+        };
+        for h in around {
+            let here = circumcentre(h);
+            add(last, here);
+            last = here;
+        }
+        add(last, first);
+        moment / (3.0 * area)
+    }
+
+    /// Moves each particle by the tangential part of `step`, one after the other, and brings all back onto the surface.
+    #[inline(always)]
+    fn shift(
+        &mut self,
+        ground: &mut Ground,
+        spacing: f32,
+        particles: impl Iterator<Item = u32>,
+        step: impl Fn(&Self, u32) -> Vec3,
+    ) {
+        let farthest = MAX_MOVE * spacing;
+        ground.block.clear();
+        for v in particles {
+            if !self.mesh.has_vertex(v) {
+                continue;
+            }
+            let (p, n) = (self.position[v as usize], self.normal[v as usize]);
+            let mut step = step(self, v);
+            step -= n * step.dot(n);
+            let length = step.length();
+            if length > farthest {
+                step *= farthest / length;
+            }
+            // Two particles at one place have no direction.
+            let moved = if step.is_finite() { p + step } else { p };
+            self.position[v as usize] = moved;
+            ground.block.add(v, p, moved);
+        }
+        self.settle(ground, spacing);
+    }
+
+    /// Brings the particles back onto the surface that have just been put near it.
+    pub(super) fn land(
+        &mut self,
+        ground: &mut Ground,
+        spacing: f32,
+        particles: impl Iterator<Item = u32>,
+    ) -> usize {
+        ground.block.clear();
+        for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
+            let p = self.position[v as usize];
+            ground.block.add(v, p, p);
+        }
+        self.settle(ground, spacing)
+    }
+
+    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient. Returns how
+    /// many could not be: they go back to where they were.
+    fn settle(&mut self, ground: &mut Ground, spacing: f32) -> usize {
+        let Block { which, before, points, value, gradient, evaluations } = &mut *ground.block;
+        let n = points.len();
+        if value.len() < n {
+            value.resize(n, 0.0);
+            gradient.resize(n, Vec3::ZERO);
+        }
+        *evaluations += n as u64;
+        ground.field.gradients(points, &mut value[..n], &mut gradient[..n]);
+        let longest = MAX_CORRECTION * spacing;
+        let mut refused = 0;
+        for k in 0..n {
+            let v = which[k] as usize;
+            let inverse_slope = 1.0 / gradient[k].length();
+            let normal = gradient[k] * inverse_slope;
+            let correction = value[k] * inverse_slope;
+            // Written so that NaN fails.
+            if correction.abs() <= longest && normal.dot(self.normal[v]) >= MIN_AGREEMENT {
+                self.position[v] = points[k] - normal * correction;
+                self.normal[v] = normal;
+            } else {
+                self.position[v] = before[k];
+                refused += 1;
+            }
+        }
+        refused
+    }
+
+    /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its
+    /// quadrilateral is Delaunay's, and the flip is allowed.
+    #[inline(always)]
+    pub(super) fn wants_flip(&self, h: u32) -> bool {
+        let t = self.mesh.twin(h);
+        if t == NONE {
+            return false;
+        }
+        let at = |h: u32| self.position[self.mesh.origin(h) as usize];
+        let (a, b, c, d) = (at(h), at(t), at(previous(h)), at(previous(t)));
+        let (ca, cb, da, db) = (a - c, b - c, a - d, b - d);
+        let (cos_c, cos_d) = (ca.dot(cb), da.dot(db));
+        // Two angles that are not obtuse: nearly every edge.
+        if cos_c >= 0.0 && cos_d >= 0.0 {
+            return false;
+        }
+        let (sin_c, sin_d) = (ca.cross(cb).length(), da.cross(db).length());
+        let slack = FLIP_SLACK * (sin_c + sin_d) * (ca.length_squared() + da.length_squared());
+        // The sine of the sum, times the lengths.
+        if cos_c * sin_d + sin_c * cos_d >= -slack {
+            return false;
+        }
+        // Both new faces must look outward.
+        let up = self.normal[self.mesh.origin(previous(h)) as usize]
+            + self.normal[self.mesh.origin(previous(t)) as usize];
+        (d - a).cross(c - a).dot(up) > 0.0 && (c - b).cross(d - b).dot(up) > 0.0 && self.mesh.can_flip(h)
+    }
+
+    /// Flips those of the half-edges whose edge is not Delaunay's; each edge is looked at once.
+    pub(super) fn flip(&mut self, half_edges: core::ops::Range<u32>) {
+        for h in half_edges {
+            if self.mesh.has_half_edge(h) && h < self.mesh.twin(h) && self.wants_flip(h) {
+                self.mesh.flip(h);
+            }
+        }
+    }
+
+    /// Twice the area of a face, as a vector outward.
+    pub(super) fn area_vector(&self, [a, b, c]: [u32; 3]) -> Vec3 {
+        let a = self.position[a as usize];
+        (self.position[b as usize] - a).cross(self.position[c as usize] - a)
+    }
+
+    /// Area of the faces.
+    pub(super) fn flat_area(&self) -> f64 {
+        0.5 * self.mesh.triangles().map(|face| f64::from(self.area_vector(face).length())).sum::<f64>()
+    }
+
+    /// Area of the surface, by Richardson's extrapolation from the faces and from those with lifted middles of edges.
+    pub(super) fn area(&self) -> f64 {
+        let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
+        let (mut coarse, mut fine) = (0.0, 0.0);
+        for face in self.mesh.triangles() {
+            let p = face.map(|v| self.position[v as usize]);
+            let m = [0, 1, 2].map(|k| self.middle(face[k], face[(k + 1) % 3]).0);
+            coarse += twice(p);
+            fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
+        }
+        0.5 * (4.0 * fine - coarse) / 3.0
+    }
+
+    /// The middle of the edge between two particles, lifted to the circle through them with their normals; and its normal.
+    pub(super) fn middle(&self, a: u32, b: u32) -> (Vec3, Vec3) {
+        let (p, n) = (self.position[a as usize], self.normal[a as usize]);
+        let (q, m) = (self.position[b as usize], self.normal[b as usize]);
+        let up = (n + m).normalize_or(n);
+        ((p + q) * 0.5 + up * (0.125 * (q - p).dot(m - n)), up)
+    }
+
+    /// Faces that look against the normal of a corner.
+    pub(super) fn inverted(&self) -> usize {
+        let is_inverted = |face: &[u32; 3]| {
+            let area = self.area_vector(*face);
+            // Written so that NaN counts.
+            !face.iter().all(|&v| area.dot(self.normal[v as usize]) > 0.0)
+        };
+        self.mesh.triangles().filter(is_inverted).count()
+    }
+}

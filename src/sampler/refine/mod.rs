@@ -1,0 +1,334 @@
+//! The refinement of a coarse front: order is made where particles are few, and kept where they are many.
+//!
+//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends them. But dividing every face of
+//! a mesh into four adds no defect: old particles keep their neighbours, and those on the middles of edges have six. So the
+//! front marches with a radius 2ᵏ times as large, is joined to a mesh and brought into order there, where a few hundred particles cost
+//! next to nothing; and then every edge is halved, k times, with a few sweeps at each level.
+//!
+//! * *Sweeps* move every particle by the springs to its neighbours, in the manner of Gauss and Seidel, and edges are flipped to
+//!   those of Delaunay.
+//! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even lattice has scars, lines of
+//!   particles with five and seven neighbours in turn, that grow as the spacing shrinks: M. J. Bowick, D. R. Nelson and A.
+//!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and
+//!   removes them where that lowers the energy.
+//! * *Lloyd's method*, at the last level and near defects only, evens out the cells that the springs leave too small at fives and
+//!   too large at sevens: Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
+//!
+//! Everything is in single precision and in a fixed order: the same bits natively and in WebAssembly, however a run is cut into
+//! steps.
+
+mod coarse;
+mod layer;
+mod recipe;
+mod rings;
+mod surgery;
+
+pub use coarse::Refusal;
+pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, levels, max_curvature};
+
+use crate::field::Field;
+use crate::math::{Bounds, SQRT_3};
+use crate::mesh::half_edge::{Part, Subdivision};
+use crate::particles::{Particles, Slots};
+use core::ops::RangeInclusive;
+use layer::{BLOCK, Block, Ground, Layer, Springs};
+use recipe::{Pass, Recipe};
+use rings::Rings;
+use surgery::{Aim, Surgeon};
+
+/// Area of the faces after a subdivision over that before: more where the surface is curved, and less only where it has lost
+/// something. Above, two sheets have been joined.
+const AREA_GAIN: RangeInclusive<f64> = 0.98..=1.15;
+
+/// Share of faces missing or too many from which on the first level tries every particle. Defects alone cannot make up for
+/// the front: where it leaves fives only, none would be inserted.
+const SLACK: f32 = 0.002;
+
+/// Units that a trial of surgery counts for: it moves some twenty particles four times.
+const TRIAL_UNITS: u32 = 64;
+/// Half-edges looked at for a unit.
+const HALF_EDGES_PER_UNIT: u32 = 12;
+
+/// What a refinement aims at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    /// Levels to come after the coarse one, k.
+    pub(crate) levels: u32,
+    /// Repulsion radius r of the particles of the last level.
+    pub(crate) radius: f32,
+    /// Particles of the last level.
+    pub(crate) count: Count,
+}
+
+/// How many particles the last level has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Count {
+    /// So many.
+    Total(f64),
+    /// So many per hexagonal cell 2√3 r².
+    PerCell(f64),
+}
+
+/// A refinement under way.
+#[derive(Clone, Debug)]
+pub(crate) struct Refinement {
+    target: Target,
+    layer: Layer,
+    block: Block,
+    surgeon: Surgeon,
+    /// Particles near defects, in ascending order.
+    near: Vec<u32>,
+    /// Levels still to come.
+    to_come: u32,
+    /// Wanted number of particles of the last level.
+    wanted: f64,
+    euler: i64,
+    /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
+    spacing: f32,
+    /// Faces of that lattice.
+    faces: f32,
+    recipe: Recipe,
+    work: Work,
+}
+
+/// What is being done.
+#[derive(Clone, Debug)]
+enum Work {
+    /// A pass of the recipe, come to `next` of the particles or half-edges below `end`.
+    Pass { pass: usize, next: u32, end: u32 },
+    /// The finished level is handed on.
+    Show(Rings),
+    /// Every face is divided into four.
+    Divide(Subdivision),
+    /// The particles of the finer level are put onto the surface, come to the number of those in its columns.
+    Lift { coarse: Box<Layer>, ends: Vec<[u32; 2]> },
+    /// Nothing.
+    Done,
+}
+
+impl Refinement {
+    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled.
+    ///
+    /// # Errors
+    ///
+    /// Why the front is not good enough.
+    pub(crate) fn new(particles: &Particles, bounds: &Bounds, target: Target) -> Result<Self, Refusal> {
+        Ok(Self::of_layer(coarse::join(particles, bounds)?, target))
+    }
+
+    fn of_layer(layer: Layer, target: Target) -> Self {
+        let wanted = match target.count {
+            Count::Total(count) => count,
+            Count::PerCell(packing) => {
+                packing * layer.area() / (2.0 * SQRT_3 * f64::from(target.radius) * f64::from(target.radius))
+            }
+        };
+        let mut refinement = Self {
+            target,
+            euler: layer.mesh.euler(),
+            layer,
+            block: Block::default(),
+            surgeon: Surgeon::default(),
+            to_come: target.levels,
+            wanted,
+            spacing: 0.0,
+            faces: 0.0,
+            recipe: Recipe::of(true, target.levels),
+            near: Vec::new(),
+            work: Work::Done,
+        };
+        refinement.measure();
+        refinement.work = refinement.begin_pass(0);
+        refinement
+    }
+
+    /// Evaluations of the field so far.
+    pub(crate) fn evaluations(&self) -> u64 {
+        self.block.evaluations
+    }
+
+    /// Whether there is nothing left to do.
+    pub(crate) fn is_done(&self) -> bool {
+        matches!(self.work, Work::Done)
+    }
+
+    /// Estimated share of the work that is done, that of the coarse front included.
+    pub(crate) fn fraction(&self) -> f64 {
+        let at = match self.work {
+            Work::Pass { pass, .. } => pass as f64 / self.recipe.passes() as f64,
+            _ => 1.0,
+        };
+        // From a quarter of the share of this level to all of it.
+        coarse_share(self.to_come) * (1.0 + 3.0 * at)
+    }
+
+    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays there
+    /// until the next one is. Returns the units done and whether `particles` has changed.
+    ///
+    /// # Errors
+    ///
+    /// Why the refinement cannot go on.
+    pub(crate) fn step(
+        &mut self,
+        field: &mut dyn Field,
+        particles: &mut Particles,
+        budget: u32,
+    ) -> Result<(u32, bool), Refusal> {
+        let (mut done, mut has_changed) = (0, false);
+        while done < budget && !self.is_done() {
+            let work = core::mem::replace(&mut self.work, Work::Done);
+            has_changed |= matches!(work, Work::Show(_));
+            let (next, units) = match work {
+                Work::Pass { pass, next, end } => self.pass(field, pass, next, end)?,
+                Work::Show(rings) => self.show(rings, particles),
+                Work::Divide(subdivision) => self.divide(subdivision),
+                Work::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
+                Work::Done => (Work::Done, 0),
+            };
+            self.work = next;
+            done += units;
+        }
+        Ok((done, has_changed))
+    }
+
+    /// The wanted numbers of this level, from the area of its faces.
+    fn measure(&mut self) {
+        let share = f64::from(1_u32 << (2 * self.to_come));
+        let euler = self.euler as f64;
+        // A closed surface has 2 (N − χ) faces, and a division makes four of each.
+        let faces = 2.0 * (self.wanted - euler) / share;
+        self.faces = faces as f32;
+        self.spacing = (2.0 * self.layer.area() / (SQRT_3 * (0.5 * faces + euler))).sqrt() as f32;
+    }
+
+    /// The start of a pass of the recipe, or what follows after the last one.
+    fn begin_pass(&mut self, pass: usize) -> Work {
+        let end = match self.recipe.pass(pass) {
+            None => return Work::Show(Rings::new(&self.layer)),
+            Some(Pass::Flip) => self.layer.mesh.half_edge_slots(),
+            Some(Pass::Find) => {
+                self.near.clear();
+                self.layer.mesh.vertex_slots()
+            }
+            Some(Pass::Centre) => self.near.len(),
+            Some(_) => self.layer.mesh.vertex_slots(),
+        };
+        Work::Pass { pass, next: 0, end: end as u32 }
+    }
+
+    /// Goes on with a pass for one block.
+    fn pass(
+        &mut self,
+        field: &mut dyn Field,
+        pass: usize,
+        next: u32,
+        end: u32,
+    ) -> Result<(Work, u32), Refusal> {
+        let Recipe { theta, omega, delta, .. } = self.recipe;
+        let springs = Springs { spacing: self.spacing, theta, omega };
+        let layer = &mut self.layer;
+        let mut ground = Ground { field, block: &mut self.block };
+        let kind = self.recipe.pass(pass);
+        let length = if kind == Some(Pass::Flip) { HALF_EDGES_PER_UNIT } else { 1 } * BLOCK as u32;
+        let last = end.min(next + length);
+        let mut units = BLOCK as u32;
+        match kind {
+            None => {}
+            Some(Pass::Sweep) => layer.relax(&mut ground, springs, next..last),
+            Some(Pass::Flip) => layer.flip(next..last),
+            Some(Pass::Mend) => {
+                let slack = if self.to_come == self.target.levels { SLACK } else { f32::INFINITY };
+                let aim = Aim { springs, delta, faces: self.faces, slack };
+                for v in next..last {
+                    units += TRIAL_UNITS * u32::from(self.surgeon.mend(layer, &mut ground, aim, v));
+                }
+            }
+            Some(Pass::Find) => {
+                let is_defect = |&v: &u32| layer.mesh.has_vertex(v) && layer.mesh.valence(v) != 6;
+                self.near.extend((next..last).filter(is_defect));
+                if last == end {
+                    self.surgeon.widen(&layer.mesh, &mut self.near);
+                }
+            }
+            Some(Pass::Centre) => {
+                let near = self.near[next as usize..last as usize].iter().copied();
+                layer.centre(&mut ground, springs, near);
+            }
+            Some(Pass::Land) => {
+                layer.land(&mut ground, self.spacing, next..last);
+            }
+        }
+        if last < end {
+            return Ok((Work::Pass { pass, next: last, end }, units));
+        }
+        if self.to_come == 0 && self.recipe.pass(pass + 1).is_none() && self.layer.inverted() > 0 {
+            return Err(Refusal::Folded);
+        }
+        Ok((self.begin_pass(pass + 1), units))
+    }
+
+    fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Work, u32) {
+        let radius = self.target.radius * (1_u32 << self.to_come) as f32;
+        let work = if !rings.step(&self.layer, radius, particles) {
+            Work::Show(rings)
+        } else if self.to_come > 0 {
+            Work::Divide(Subdivision::new(&self.layer.mesh))
+        } else {
+            Work::Done
+        };
+        (work, BLOCK as u32)
+    }
+
+    fn divide(&mut self, mut subdivision: Subdivision) -> (Work, u32) {
+        subdivision.step(&self.layer.mesh, BLOCK as u32);
+        if subdivision.part() != Part::Done {
+            return (Work::Divide(subdivision), BLOCK as u32);
+        }
+        let (mesh, ends) = subdivision.finish();
+        let coarse = Box::new(core::mem::replace(&mut self.layer, Layer::with_room(mesh, ends.len())));
+        (Work::Lift { coarse, ends }, BLOCK as u32)
+    }
+
+    fn lift(
+        &mut self,
+        field: &mut dyn Field,
+        coarse: Box<Layer>,
+        ends: Vec<[u32; 2]>,
+    ) -> Result<(Work, u32), Refusal> {
+        let layer = &mut self.layer;
+        let start = layer.position.len();
+        let end = ends.len().min(start + BLOCK);
+        for &[a, b] in &ends[start..end] {
+            let (position, normal) = if a == b {
+                (coarse.position[a as usize], coarse.normal[a as usize])
+            } else {
+                coarse.middle(a, b)
+            };
+            layer.position.push(position);
+            layer.normal.push(normal);
+            layer.slots.push(if a == b { coarse.slots[a as usize] } else { Slots::default() });
+        }
+        let mut ground = Ground { field, block: &mut self.block };
+        if layer.land(&mut ground, self.spacing, start as u32..end as u32) > 0 {
+            return Err(Refusal::Folded);
+        }
+        if end < ends.len() {
+            return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
+        }
+        let gain = layer.flat_area() / coarse.flat_area();
+        if !AREA_GAIN.contains(&gain) {
+            return Err(Refusal::Folded);
+        }
+        self.to_come -= 1;
+        self.recipe = Recipe::of(false, self.to_come);
+        self.surgeon.forget();
+        self.measure();
+        Ok((self.begin_pass(0), BLOCK as u32))
+    }
+}
+
+/// Share of the work that is done when a front is placed that has so many levels to come, each of which takes four times as
+/// long as the one before.
+pub(crate) fn coarse_share(levels: u32) -> f64 {
+    1.0 / f64::from(1_u32 << (2 * (levels + 1)))
+}

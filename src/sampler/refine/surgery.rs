@@ -1,0 +1,277 @@
+//! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept that pay.
+
+use super::layer::{Ground, Layer, Springs};
+use crate::mesh::half_edge::{HalfEdges, next, previous};
+use crate::particles::Slots;
+use glam::Vec3;
+
+/// Rings around a defect that it strains most.
+const RINGS: u32 = 2;
+/// Sweeps over the patch of a trial.
+const SWEEPS: u32 = 4;
+/// Their over-relaxation: less than in sweeps over all particles, since the patch must come to rest within a few.
+const OMEGA: f32 = 1.3;
+/// A trial is kept if it gains more than this, in units of the spacing squared: less is noise of the sweeps.
+const LEAST_GAIN: f32 = 5e-4;
+/// What a particle costs, in units of the spacing squared, for each share of faces above the wanted number.
+const COUNT_PRICE: f32 = 20.0;
+/// The valence of a particle without a defect.
+const SIX: i32 = 6;
+
+/// What a round of surgery aims at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Aim {
+    pub(super) springs: Springs,
+    /// Price δ of a defect, in units of the spacing squared: δ Σ (valence − 6)².
+    pub(super) delta: f32,
+    /// Wanted number of faces.
+    pub(super) faces: f32,
+    /// Share of faces missing or too many from which on particles without a defect are tried too.
+    pub(super) slack: f32,
+}
+
+/// What is tried.
+#[derive(Clone, Copy)]
+enum Operation {
+    /// Merge the particle at which the half-edge begins into the one at which it ends.
+    Collapse(u32),
+    /// Insert a particle into the face of the half-edge.
+    Insert(u32),
+}
+
+/// The memory of the trials.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Surgeon {
+    /// The particles that a trial moves.
+    patch: Vec<u32>,
+    /// Trial in which a particle was last in the patch.
+    stamp: Vec<u32>,
+    trial: u32,
+    /// Particles of the patch with place and normal before the trial.
+    saved: Vec<(u32, Vec3, Vec3)>,
+    /// A half-edge of every edge with an end in the patch.
+    edges: Vec<u32>,
+}
+
+impl Surgeon {
+    /// Forgets the particles of another level.
+    pub(super) fn forget(&mut self) {
+        self.stamp.clear();
+        self.trial = 0;
+    }
+
+    /// Tries to mend `v`, if it has not six neighbours: with fewer it is merged with the nearest of them, with more another one is
+    /// inserted into the widest of its faces. With six the count decides which. Returns whether it was tried.
+    pub(super) fn mend(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, v: u32) -> bool {
+        if !layer.mesh.has_vertex(v) || layer.mesh.is_border(v) {
+            return false;
+        }
+        let mesh = &layer.mesh;
+        let p = layer.position[v as usize];
+        let shortage = 1.0 - mesh.faces() as f32 / aim.faces;
+        let operation = match mesh.valence(v) {
+            6 if shortage.abs() < aim.slack => return false,
+            valence if valence < 6 || valence == 6 && shortage < 0.0 => {
+                let length = |h: u32| (layer.position[mesh.target(h) as usize] - p).length_squared();
+                let shortest = mesh.around(v).min_by(|&g, &h| length(g).total_cmp(&length(h)));
+                shortest.filter(|&h| mesh.can_collapse(h)).map(Operation::Collapse)
+            }
+            _ => {
+                let area = |h: u32| {
+                    layer.area_vector([h, next(h), previous(h)].map(|h| mesh.origin(h))).length_squared()
+                };
+                mesh.around(v).max_by(|&g, &h| area(g).total_cmp(&area(h))).map(Operation::Insert)
+            }
+        };
+        let Some(operation) = operation else { return false };
+        self.attempt(layer, ground, aim, operation);
+        true
+    }
+
+    /// Does the operation, relaxes what is around it, and takes all back unless that has paid.
+    fn attempt(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, operation: Operation) {
+        let a_sq = aim.springs.spacing * aim.springs.spacing;
+        self.gather(layer, operation);
+        let before = self.energy(layer, aim.springs);
+        let state = |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize]);
+        self.saved.clear();
+        self.saved.extend(self.patch.iter().map(state));
+        let slots = layer.position.len();
+        layer.mesh.begin();
+        let (mut defects, added) = self.operate(layer, operation);
+        self.collect_edges(layer);
+        defects += self.flip(layer);
+        let springs = Springs { omega: OMEGA, ..aim.springs };
+        for _ in 0..SWEEPS {
+            layer.relax(ground, springs, self.patch.iter().copied());
+            defects += self.flip(layer);
+        }
+        // Half-way through the operation, so that it and its opposite cost the same.
+        let excess = layer.mesh.faces() as f32 - added - aim.faces;
+        // On a surface of fixed area, a particle more lowers the energy of the springs by the first term.
+        let theta = springs.theta;
+        let potential = 3.0 * theta * (1.0 - theta) + COUNT_PRICE * excess / aim.faces;
+        let price = a_sq * (potential * added + aim.delta * defects as f32);
+        let gain = before - self.energy(layer, aim.springs) - price;
+        if gain > LEAST_GAIN * a_sq {
+            layer.mesh.keep();
+            return;
+        }
+        layer.mesh.undo();
+        for &(v, position, normal) in &self.saved {
+            layer.position[v as usize] = position;
+            layer.normal[v as usize] = normal;
+        }
+        layer.position.truncate(slots);
+        layer.normal.truncate(slots);
+        layer.slots.truncate(slots);
+    }
+
+    /// Adds [`RINGS`] rings to some particles; all are then in ascending order.
+    pub(super) fn widen(&mut self, mesh: &HalfEdges, particles: &mut Vec<u32>) {
+        self.stamp.resize(mesh.vertex_slots() + 1, 0);
+        core::mem::swap(&mut self.patch, particles);
+        self.trial += 1;
+        self.patch.iter().for_each(|&v| self.stamp[v as usize] = self.trial);
+        self.add_rings(mesh, RINGS);
+        self.patch.sort_unstable();
+        core::mem::swap(&mut self.patch, particles);
+    }
+
+    fn add_rings(&mut self, mesh: &HalfEdges, rings: u32) {
+        let mut first = 0;
+        for _ in 0..rings {
+            let end = self.patch.len();
+            for k in first..end {
+                for other in mesh.neighbours(self.patch[k]) {
+                    if self.stamp[other as usize] != self.trial {
+                        self.stamp[other as usize] = self.trial;
+                        self.patch.push(other);
+                    }
+                }
+            }
+            first = end;
+        }
+    }
+
+    /// Gathers the patch: [`RINGS`] rings around the particle that is merged or inserted.
+    fn gather(&mut self, layer: &Layer, operation: Operation) {
+        let mesh = &layer.mesh;
+        self.trial += 1;
+        self.patch.clear();
+        // One more than there are: an insertion may take it.
+        self.stamp.resize(mesh.vertex_slots() + 1, 0);
+        let rings = match operation {
+            Operation::Collapse(h) => {
+                self.patch.extend([mesh.origin(h), mesh.target(h)]);
+                RINGS
+            }
+            // The corners are the first ring.
+            Operation::Insert(h) => {
+                self.patch.extend([h, next(h), previous(h)].map(|h| mesh.origin(h)));
+                RINGS - 1
+            }
+        };
+        self.patch.iter().for_each(|&v| self.stamp[v as usize] = self.trial);
+        self.add_rings(mesh, rings);
+    }
+
+    fn is_in(&self, v: u32) -> bool {
+        self.stamp[v as usize] == self.trial
+    }
+
+    /// Energy of the edges with an end in the patch.
+    fn energy(&self, layer: &Layer, springs: Springs) -> f32 {
+        let rest = springs.rest();
+        let mut sum = 0.0;
+        for &v in self.patch.iter().filter(|&&v| layer.mesh.has_vertex(v)) {
+            let p = layer.position[v as usize];
+            for other in layer.mesh.neighbours(v) {
+                if other > v || !self.is_in(other) {
+                    let stretch = (layer.position[other as usize] - p).length() - rest;
+                    sum += stretch * stretch;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Does the operation. Returns the change of Σ (valence − 6)² and the number of particles added.
+    fn operate(&mut self, layer: &mut Layer, operation: Operation) -> (i32, f32) {
+        match operation {
+            Operation::Collapse(h) => {
+                let mesh = &mut layer.mesh;
+                let (a, b) = (mesh.origin(h), mesh.target(h));
+                let around = [b, mesh.origin(previous(h)), mesh.origin(previous(mesh.twin(h)))];
+                let before = badness(layer, around) + badness(layer, [a]);
+                layer.mesh.collapse(h);
+                layer.position[b as usize] = (layer.position[a as usize] + layer.position[b as usize]) * 0.5;
+                (badness(layer, around) - before, -1.0)
+            }
+            Operation::Insert(h) => {
+                let corners = [h, next(h), previous(h)].map(|h| layer.mesh.origin(h));
+                let before = badness(layer, corners);
+                let mean = |of: &[Vec3]| corners.iter().map(|&v| of[v as usize]).sum::<Vec3>() / 3.0;
+                let (position, normal) = (mean(&layer.position), mean(&layer.normal));
+                let v = layer.mesh.insert(h);
+                let at = v as usize;
+                if layer.position.len() == at {
+                    layer.position.push(position);
+                    layer.normal.push(normal);
+                    layer.slots.push(Slots::default());
+                }
+                layer.position[at] = position;
+                layer.normal[at] = normal.normalize_or(layer.normal[corners[0] as usize]);
+                layer.slots[at] = Slots::default();
+                self.stamp[at] = self.trial;
+                self.patch.push(v);
+                (badness(layer, corners) + badness(layer, [v]) - before, 1.0)
+            }
+        }
+    }
+
+    fn collect_edges(&mut self, layer: &Layer) {
+        self.edges.clear();
+        for &v in self.patch.iter().filter(|&&v| layer.mesh.has_vertex(v)) {
+            for h in layer.mesh.around(v) {
+                let other = layer.mesh.target(h);
+                if other > v || !self.is_in(other) {
+                    self.edges.push(h);
+                }
+            }
+        }
+    }
+
+    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence − 6)². An edge must keep an end in
+    /// the patch, else its energy would be lost.
+    fn flip(&mut self, layer: &mut Layer) -> i32 {
+        let mut change = 0;
+        for &h in &self.edges {
+            if !layer.wants_flip(h) {
+                continue;
+            }
+            let mesh = &layer.mesh;
+            let t = mesh.twin(h);
+            let (c, d) = (mesh.origin(previous(h)), mesh.origin(previous(t)));
+            if !self.is_in(c) && !self.is_in(d) {
+                continue;
+            }
+            let corners = [mesh.origin(h), mesh.origin(t), c, d];
+            let before = badness(layer, corners);
+            layer.mesh.flip(h);
+            change += badness(layer, corners) - before;
+        }
+        change
+    }
+}
+
+/// Σ (valence − 6)² over some particles.
+fn badness<const N: usize>(layer: &Layer, particles: [u32; N]) -> i32 {
+    particles
+        .iter()
+        .map(|&v| {
+            let excess = layer.mesh.valence(v) as i32 - SIX;
+            excess * excess
+        })
+        .sum()
+}
