@@ -1,4 +1,4 @@
-/** The page: an engine, and the interface over it. */
+/** Entry point of the page: creates the engine and mounts the interface on it. */
 import './ui/trusted.js';
 import { createEngine } from './engine/index.js';
 import { mountInterface } from './ui/app.js';
@@ -10,8 +10,9 @@ const mount = () => {
   if (!mounted) mountInterface(engine);
   mounted = true;
 };
-// The interface is measured; WebKit does not hold scripts back until the style sheet has come. Where it does not come, the window's
-// load tells. (Not awaited: an entry that waits is cut into many small files.)
+// The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has
+// loaded. // If the style sheet fails, the window's load event starts the interface. (A top-level await would make the
+// bundler split // the entry into many small files.)
 const link = /** @type {HTMLLinkElement | null} */ (document.querySelector('link[rel="stylesheet"]'));
 if (!link || link.sheet || document.readyState === 'complete') {
   mount();

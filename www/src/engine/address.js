@@ -1,5 +1,5 @@
 /**
- * The state in the address of the page: written a little after it changes, read when somebody follows a link.
+ * Keeps the state in the fragment of the page's address: writes it shortly after a change and reads it from a link.
  *
  * @module
  */
@@ -7,21 +7,21 @@ import { effect } from '@preact/signals-core';
 import { decode, encode } from './share/codec.js';
 import { description } from './store.js';
 
-/** The address follows the state at this pace; browsers refuse more than about 100 changes in half a minute. */
+/** Delay between a change and its write. Browsers refuse more than about 100 address changes in 30 seconds. */
 const ADDRESS_MS = 500;
 
 export class Address {
   /**
    * @param {object} parts
    * @param {import('./store.js').Store} parts.store
-   * @param {() => boolean} parts.hasFile  whether there is a file for a link to one
-   * @param {(state: import('./types.js').State) => void} parts.apply  takes a valid state for its own
+   * @param {() => boolean} parts.hasFile  whether a file is open, so that a link to it can be followed
+   * @param {(state: import('./types.js').State) => void} parts.apply  adopts a valid state and samples it
    */
   constructor({ store, hasFile, apply }) {
     this.store = store;
     this.hasFile = hasFile;
     this.apply = apply;
-    /** The fragment that we wrote, to tell it from one that somebody typed. */
+    /** The fragment last written by the page. Any other fragment comes from the user. */
     this.own = location.hash;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.timer = undefined;
@@ -32,12 +32,16 @@ export class Address {
     };
     addEventListener('hashchange', this.onHashChange);
     this.stop = effect(() => {
-      // The whole state is worth an address.
+      // Reading the whole state makes the effect run after any change of it.
       if (store.state.value) this.writeLater();
     });
   }
 
-  /** Takes the state of a link. @param {string} hash @param {boolean} [initial]  the first state of the page */
+  /**
+   * Reads a link and applies its state.
+   * @param {string} hash
+   * @param {boolean} [initial]  the first state of the page
+   */
   async load(hash, initial = false) {
     const { notice } = this.store;
     const { state, reset, problem } = await decode(hash, description(this.store), this.hasFile());
@@ -52,7 +56,7 @@ export class Address {
     this.apply(state);
   }
 
-  /** The address that shows the present state. */
+  /** Returns the address that restores the present state. */
   async url() {
     return location.origin + location.pathname + (await encode(this.store.state.value, description(this.store)));
   }

@@ -1,25 +1,24 @@
 /**
- * The particles on the main thread: one typed column per attribute, grown by doubling. This copy is what the exports write,
- * what the pointer picks from and what a lost graphics device is rebuilt from.
+ * Holds the particles on the main thread: one typed array (column) per attribute, grown by doubling. Exports, picking
+ * and the recovery of a lost graphics device read this copy.
  *
  * @module
  */
 
 /** Parent index of a seed, as the core writes it. */
 export const NO_PARENT = 0xffffffff;
-/** Slot fates as the core numbers them. */
+/** Codes of the slot fates, as in the core. */
 export const FATE = { open: 0, parent: 1, added: 2, matched: 3, notConverged: 4, outside: 5, undefined: 6, capped: 7 };
-/** Set in `slots` where the surface has a singular point within 2r of the particle. */
+/** Bit of `slots` that is set where a singular point of the surface lies within 2r of the particle. */
 export const SINGULAR = 1 << 30;
-/** Level of what is drawn with the particles and is none of them. */
+/** Generation level of discs that are drawn with the particles but are not particles, such as a model's points. */
 export const NO_LEVEL = 0xffffffff;
 
 /**
- * A piece of the columns as the worker posts it: particles `first … first + n`, or with `slots` alone newer fates of
- * particles from `slotsFrom` on.
- * @typedef {object} Piece
+ * A range of the columns, as the worker posts it: the attributes of particles `first … first + n`.
+ * @typedef {object} ColumnRange
  * @property {number} first
- * @property {number} total  particles after this piece
+ * @property {number} total  number of particles after this range is written
  * @property {Float32Array} positions
  * @property {Float32Array} normals
  * @property {Float32Array} radii
@@ -30,11 +29,13 @@ export const NO_LEVEL = 0xffffffff;
 export class Columns {
   constructor() {
     this.count = 0;
-    /** The last generation level that there is. */
+    /** The last generation level. */
     this.lastLevel = 0;
-    /** Whether these are the particles of an earlier field, shown for want of others: the present one has no surface. */
+    /**
+     * Whether the particles belong to an earlier field. They stay on the page because the present field has no surface.
+     */
     this.stale = false;
-    /** Whether the particles are of an adaptive run, which says how `slots` are to be read. */
+    /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
     this.positions = new Float32Array(0);
     this.normals = new Float32Array(0);
@@ -42,20 +43,23 @@ export class Columns {
     this.levels = new Uint32Array(0);
     this.parents = new Uint32Array(0);
     this.slots = new Uint32Array(0);
-    /** Per-particle figures of the report; null until it is there. @type {Uint8Array | null} */
+    /** Figures of the report, one value per particle; null until the report has arrived. @type {Uint8Array | null} */
     this.valence = null;
     /** @type {Float32Array | null} */
     this.nearest = null;
     /** @type {Float32Array | null} */
     this.residual = null;
-    /** Connected piece, 0 the largest. @type {Uint32Array | null} */
+    /** Index of the particle's component; 0 is the largest. @type {Uint32Array | null} */
     this.component = null;
-    /** Principal curvatures, two per particle, of the first `curved` particles; asked of the core only when they are shown. */
+    /**
+     * Principal curvatures of the first `curved` particles, two values each. They are requested from the core only
+     * while they are shown.
+     */
     this.curvature = new Float32Array(0);
     this.curved = 0;
   }
 
-  /** Another run begins. @param {boolean} [adaptive] */
+  /** Removes all particles, for a new run. @param {boolean} [adaptive] */
   clear(adaptive = false) {
     this.count = 0;
     this.lastLevel = 0;
@@ -65,7 +69,7 @@ export class Columns {
     this.forget();
   }
 
-  /** The figures of the report no longer hold. */
+  /** Drops the figures of the report, which no longer describe the particles. */
   forget() {
     this.valence = null;
     this.nearest = null;
@@ -73,7 +77,7 @@ export class Columns {
     this.component = null;
   }
 
-  /** Room for `n` particles; what is there stays. @param {number} n */
+  /** Grows the columns to hold at least `n` particles and keeps their contents. @param {number} n */
   reserve(n) {
     if (n <= this.radii.length) return;
     const room = Math.max(n, 2 * this.radii.length, 1024);
@@ -92,29 +96,33 @@ export class Columns {
   }
 
   /**
-   * Writes a piece. Pieces arrive in order, so that `first` never lies beyond the particles present.
-   * @param {Piece} piece
-   * @returns {boolean} false, and nothing written, when the piece does not fit what is here
+   * Writes a range. Ranges arrive in order, so `first` never exceeds the number of particles present.
+   * @param {ColumnRange} range
+   * @returns {boolean} false, without writing, if the range does not follow the particles present
    */
-  write(piece) {
-    const n = piece.radii.length;
-    const { first, total } = piece;
-    if (first > this.count || first + n > total || piece.positions.length !== 3 * n || piece.normals.length !== 3 * n)
+  write(range) {
+    const n = range.radii.length;
+    const { first, total } = range;
+    if (first > this.count || first + n > total || range.positions.length !== 3 * n || range.normals.length !== 3 * n)
       return false;
     this.reserve(total);
-    this.positions.set(piece.positions, 3 * first);
-    this.normals.set(piece.normals, 3 * first);
-    this.radii.set(piece.radii, first);
-    this.levels.set(piece.levels, first);
-    this.parents.set(piece.parents, first);
+    this.positions.set(range.positions, 3 * first);
+    this.normals.set(range.normals, 3 * first);
+    this.radii.set(range.radii, first);
+    this.levels.set(range.levels, first);
+    this.parents.set(range.parents, first);
     this.slots.fill(0, Math.max(first, this.count), first + n);
     this.count = total;
-    for (const level of piece.levels) if (level > this.lastLevel) this.lastLevel = level;
+    for (const level of range.levels) if (level > this.lastLevel) this.lastLevel = level;
     if (n > 0) this.forget();
     return true;
   }
 
-  /** Principal curvatures of particles from `from` on, which follow those that are known. @param {number} from @param {Float32Array} values */
+  /**
+   * Writes the principal curvatures of particles from `from` on. The curvatures before `from` must be known.
+   * @param {number} from
+   * @param {Float32Array} values
+   */
   writeCurvature(from, values) {
     if (from > this.curved || 2 * from + values.length > 2 * this.count) return;
     if (this.curvature.length < 2 * this.count) {
@@ -127,7 +135,7 @@ export class Columns {
   }
 
   /**
-   * The figures of the report, one value per particle. Those of other particles are left out.
+   * Writes the figures of the report, one value per particle. Figures for another number of particles are ignored.
    * @param {{valence: Uint8Array, nearest: Float32Array, residual: Float32Array, component: Uint32Array}} figures
    */
   writeFigures({ valence, nearest, residual, component }) {
@@ -138,13 +146,16 @@ export class Columns {
     this.component = component.length === this.count ? component : null;
   }
 
-  /** Newer fates of the slots of particles from `from` on. @param {number} from @param {Uint32Array} slots */
+  /** Writes newer slot fates of particles from `from` on. @param {number} from @param {Uint32Array} slots */
   writeSlots(from, slots) {
     if (from + slots.length > this.count) return;
     this.slots.set(slots, from);
   }
 
-  /** The smallest box around the particles with their discs, or null without any. @returns {import('./types.js').Bounds | null} */
+  /**
+   * Returns the smallest box around the discs of all particles, or null if there are none.
+   * @returns {import('./types.js').Bounds | null}
+   */
   bounds() {
     if (this.count === 0) return null;
     const min = [Infinity, Infinity, Infinity];

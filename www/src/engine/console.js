@@ -1,11 +1,11 @@
 /**
- * `window.marchingParticles`: the same page, driven from the console or from a test. See www/CONSOLE.md.
+ * Installs `window.marchingParticles`, which drives the page from the console or from a test. See www/CONSOLE.md.
  *
  * @module
  */
 import { effect } from '@preact/signals-core';
 
-/** The state follows the camera at this pace. */
+/** Delay between a motion of the camera and its entry in the state. */
 export const CAMERA_MS = 120;
 
 /**
@@ -15,7 +15,7 @@ export const CAMERA_MS = 120;
  */
 /**
  * @typedef {object} Console
- * @property {string} version  of the core; empty until it has arrived
+ * @property {string} version  of the core; empty until the core has loaded
  * @property {Promise<Report | null>} ready  resolves once the first run is done and on screen
  * @property {State} state
  * @property {(patch: object) => Promise<Report | null>} set  changes the state, samples, and resolves with the report
@@ -47,18 +47,19 @@ export const CAMERA_MS = 120;
  * @property {Float32Array | null} curvature  two per particle, only while they are shown
  */
 /**
- * Faults on purpose, for the tests.
+ * Faults that the tests provoke.
  * @typedef {object} Debug
  * @property {() => void} panic  traps the core in its worker
  * @property {() => void} overflow  overflows the worker's stack
  * @property {() => void} hang  sends the worker into an endless loop
  * @property {(reason?: string) => void} loseDevice
- * @property {(id: number) => void} stale  hands the page a message of another run
+ * @property {(id: number) => void} stale  delivers a message of another run to the page
  * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number}} counts
  */
 
 /**
- * Resolves with the report when nothing runs, the report is there (or there will be none) and the picture is up to date.
+ * Resolves with the report once no run is active, the report has arrived (or none is expected) and the picture is up to
+ * date.
  * @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer
  */
 const settled = (engine, viewer) =>
@@ -78,12 +79,12 @@ const settled = (engine, viewer) =>
       if ((!idle && !failed) || over) return;
       over = true;
       const report = engine.report.peek();
-      // The picture is up to date once no frame is asked for any more; the camera then tells the state where it is.
+      // The picture is up to date once no frame is requested. The camera is written to the state a little later.
       const show = () => {
         if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
         else setTimeout(() => resolve(report), CAMERA_MS + 10);
       };
-      // Not at once: a signal may change in the middle of a frame, before that frame has asked for the next.
+      // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
       setTimeout(show);
       queueMicrotask(() => stop());
     });
@@ -157,7 +158,7 @@ function debugOf({ engine, viewer, sampling }) {
 }
 
 /**
- * What the console reaches.
+ * The parts of the engine that the console uses.
  * @typedef {object} Parts
  * @property {Engine} engine
  * @property {import('./view/viewer.js').Viewer} viewer

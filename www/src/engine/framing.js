@@ -1,12 +1,12 @@
 /**
- * When the camera comes to the surface by itself: after a formula was typed or a link read, and where a surface goes or comes
- * back. Only while the camera follows the surface (`camera.fit`).
+ * Decides when the camera fits the surface automatically: after a formula was typed or a link was read, and when the
+ * surface disappears or reappears. It does so only while `camera.fit` is set.
  *
  * @module
  */
 import { effect } from '@preact/signals-core';
 
-/** After so long without a key the formula counts as written. */
+/** Pause in typing after which the formula counts as finished. */
 const TYPING_MS = 900;
 
 export class Framing {
@@ -20,21 +20,21 @@ export class Framing {
   constructor({ store, columns, viewer, look }) {
     this.store = store;
     this.viewer = viewer;
-    /** When the formula was changed or a link read, until the camera comes to the surface. */
+    /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
     this.writtenMs = NaN;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.timer = undefined;
-    /** The camera shows the whole box, for want of a surface. */
+    /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
     this.effects = [
       effect(() => {
         if (!this.rests() || Number.isNaN(this.writtenMs)) return;
         this.hold();
-        // Once the typing rests: the picture stands still meanwhile.
+        // The camera waits for a pause in typing, so that the picture does not move with every key.
         this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
       }),
       effect(() => {
-        // Where there is no surface the box is all there is to see; once there is one again, the camera comes back to it.
+        // Without a surface the camera shows the box. It returns to the surface when there is one again.
         const none = store.empty.value && columns.count === 0;
         const rests = !store.busy.value && !store.progress.value.live;
         if (!rests || none === boxShown) return;
@@ -47,12 +47,12 @@ export class Framing {
     ];
   }
 
-  /** The formula was changed or a link read. */
+  /** Notes that the formula changed or a link was read. */
   written() {
     this.writtenMs = performance.now();
   }
 
-  /** The camera does not come for what was written so far. */
+  /** Cancels the fit that the text typed so far would cause. */
   hold() {
     clearTimeout(this.timer);
   }
@@ -67,7 +67,10 @@ export class Framing {
     if (this.viewer.camera.state.fit) this.viewer.fit();
   }
 
-  /** Also where the last word was a mistake, or has no surface: what stays may be a surface typed on the way to it. */
+  /**
+   * Returns whether no run is active and the last one has a report or found no surface. A faulty formula makes no
+   * difference: the surface still shown may come from an earlier state of the same text.
+   */
   rests() {
     const { busy, report, empty } = this.store;
     return !busy.value && (report.value !== null || empty.value);

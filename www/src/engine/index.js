@@ -1,6 +1,6 @@
 /**
- * The engine of the page: samples in a worker, draws on a canvas, keeps the state. The interface reads its signals and calls
- * its commands; it needs nothing else of this folder but the types.
+ * The engine of the page samples in a worker, draws on a canvas and keeps the state. The interface reads its signals
+ * and calls its commands. Apart from those, the interface imports only types and constants from this folder.
  *
  * @module
  */
@@ -20,7 +20,7 @@ import { createStore, description } from './store.js';
 import { BACKENDS } from './view/backends.js';
 
 /**
- * What the engine is made of, and its commands act on.
+ * The parts of the engine, on which its commands act.
  * @typedef {object} Parts
  * @property {import('./store.js').Store} store
  * @property {Columns} columns
@@ -32,7 +32,7 @@ import { BACKENDS } from './view/backends.js';
  */
 
 /**
- * @param {{canvasHost: HTMLElement}} options  `canvasHost`, which is positioned, is filled with a canvas of its own size
+ * @param {{canvasHost: HTMLElement}} options  `canvasHost` must be positioned; a canvas fills it
  * @returns {import('./types.js').Engine}
  */
 export function createEngine({ canvasHost }) {
@@ -56,7 +56,7 @@ export function createEngine({ canvasHost }) {
   const look = new Look({ store, viewer, runs });
   const framing = new Framing({ store, columns, viewer, look });
 
-  /** Takes a whole state for the page's own, and samples it. @param {import('./types.js').State} state  a valid one */
+  /** Adopts a whole state and samples it. @param {import('./types.js').State} state  a valid state */
   function applyState(state) {
     store.state.value = state;
     const bounds = state.bounds ?? surfaceOf(store.description.value, state.surface)?.bounds;
@@ -65,7 +65,7 @@ export function createEngine({ canvasHost }) {
     viewer.camera.set(camera);
     if (camera.fit && runs.loader.ready()) viewer.fit(true);
     look.show();
-    // Where the link's surface cannot be had, the camera comes back to the one that stays.
+    // If the link's surface cannot be sampled, the camera fits the surface that stays.
     framing.written();
     runs.choose({ grow: true, fit: camera.fit });
   }
@@ -95,7 +95,7 @@ export function createEngine({ canvasHost }) {
       return reset;
     },
   });
-  // A dark page is dark from the start.
+  // The theme is applied before the first frame, so that a dark page does not flash.
   look.show();
   runs.sampling.start();
   void viewer.start();

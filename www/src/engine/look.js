@@ -1,5 +1,5 @@
 /**
- * How the state looks: the theme in force and what the viewer is told to draw.
+ * Derives the appearance from the state: the effective theme and the options of the viewer.
  *
  * @module
  */
@@ -32,7 +32,7 @@ export class Look {
     ];
   }
 
-  /** Tells the viewer how the state looks now. */
+  /** Passes the present appearance to the viewer. */
   show() {
     const { store, viewer } = this;
     const { view, bounds } = store.state.value;
@@ -50,7 +50,7 @@ export class Look {
     this.runs.sampling.showCurvature(view.colour === 'curvature');
   }
 
-  /** The points of the model on the page, where they are to be drawn. */
+  /** Returns the points of the model on the page, or null if they are not drawn. */
   points() {
     const { store } = this;
     const { loader, sampling } = this.runs;
@@ -58,7 +58,7 @@ export class Look {
     return loader.client.get(sampling.accepted?.field.points)?.centres ?? null;
   }
 
-  /** What is sampled anew is seen growing, all of it. */
+  /** Shows all generation levels again, because a new surface is shown as it grows. */
   allLevels() {
     if (this.store.state.value.view.level === null) return;
     changeView(this.store, { level: null });

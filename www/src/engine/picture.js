@@ -1,5 +1,5 @@
 /**
- * The picture on the page: the viewer, the hands on it, and what they tell the signals.
+ * Builds the picture on the page: the viewer, its input handlers, and their connection to the signals.
  *
  * @module
  */
@@ -18,7 +18,8 @@ import { Viewer } from './view/viewer.js';
 /**
  * @typedef {object} Picture
  * @property {Viewer} viewer
- * @property {(index: number | null, x: number, y: number) => void} hover  tells of a particle under a point of the host, or of none
+ * @property {(index: number | null, x: number, y: number) => void} hover  reports the particle under a point of the
+ *   host, or null for none
  * @property {() => void} close
  */
 
@@ -27,7 +28,7 @@ import { Viewer } from './view/viewer.js';
  * @param {HTMLElement} parts.host
  * @param {Store} parts.store
  * @param {Columns} parts.columns
- * @param {import('./view/backends.js').BackendKind | null} parts.first  the way of drawing to begin with
+ * @param {import('./view/backends.js').BackendKind | null} parts.first  the back end to try first
  * @returns {Picture}
  */
 export function createPicture({ host, store, columns, first }) {
@@ -85,7 +86,11 @@ export function createPicture({ host, store, columns, first }) {
   };
 }
 
-/** What a person is told of the graphics device. @param {Store} store @param {Columns} columns */
+/**
+ * Returns the handlers that report the state of the graphics device to the user.
+ * @param {Store} store
+ * @param {Columns} columns
+ */
 function deviceEvents(store, columns) {
   return {
     onDevice(/** @type {import('./view/backends.js').Device} */ { kind, renderer }) {
@@ -113,7 +118,7 @@ function deviceEvents(store, columns) {
       };
     },
     onFallback(/** @type {string} */ kind, /** @type {string} */ message) {
-      // At the start this is the ordinary way down the list of back ends; later on it is news.
+      // During the start a fallback is expected. A later one is reported to the user.
       if (store.backend.value === 'starting') return;
       store.notice.value = {
         id: 'fallback',
@@ -125,7 +130,7 @@ function deviceEvents(store, columns) {
   };
 }
 
-/** What there is to tell of one particle. @param {Columns} columns @param {number} index */
+/** Returns the attributes of one particle that the hover card shows. @param {Columns} columns @param {number} index */
 function particle(columns, index) {
   const triple = (/** @type {Float32Array} */ column) =>
     /** @type {Vec3} */ ([...column.subarray(3 * index, 3 * index + 3)]);

@@ -1,5 +1,5 @@
 /**
- * From the state to runs of the sampler: what is asked for, and when.
+ * Turns the state into runs of the sampler and decides when they start.
  *
  * @module
  */
@@ -15,9 +15,9 @@ import { change, description } from './store.js';
  * @typedef {{grow?: boolean, fit?: boolean, settings?: import('./types.js').Settings}} RunOptions
  */
 
-/** After a drag has rested this long the full run is made, also when the control never says that it was let go. */
+/** Pause in a drag after which the full run starts, even if the control does not report its release. */
 const REST_MS = 250;
-/** Ceiling for particles that a person may confirm. */
+/** Largest number of particles that the user can confirm. */
 const MOST_PARTICLES = 4_000_000;
 
 /** @returns {any} */
@@ -30,11 +30,14 @@ export class Runs {
    * @param {Store} parts.store
    * @param {import('./columns.js').Columns} parts.columns
    * @param {import('./sampling/presenter.js').Picture} parts.picture
-   * @param {() => void} parts.onReady  the core is there for the first time
+   * @param {() => void} parts.onReady  called when the core has loaded for the first time
    */
   constructor({ store, columns, picture, onReady }) {
     this.store = store;
-    /** The run that comes once a control or the typing rests. @type {ReturnType<typeof setTimeout> | undefined} */
+    /**
+     * Timer of the run that starts when a control or the typing pauses.
+     * @type {ReturnType<typeof setTimeout> | undefined}
+     */
     this.timer = undefined;
     this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (options) => this.resample(options) });
     this.sampling = new SamplingClient({
@@ -49,7 +52,11 @@ export class Runs {
     });
   }
 
-  /** What is asked of the sampler for the state as it is. @param {Partial<SampleRequest>} [options] @returns {SampleRequest} */
+  /**
+   * Returns the request that samples the present state.
+   * @param {Partial<SampleRequest>} [options]
+   * @returns {SampleRequest}
+   */
   request(options = {}) {
     const { loader } = this;
     const about = description(this.store);
@@ -65,19 +72,22 @@ export class Runs {
     };
   }
 
-  /** Samples the state as it is now. @param {RunOptions} [options] */
+  /** Samples the present state. @param {RunOptions} [options] */
   resample(options = {}) {
     if (this.begin(options)) this.sampling.sample(this.request(options));
   }
 
-  /** Samples the state while a control is dragged, coarse if it has to be, and whole once the control rests. */
+  /** Samples the present state during a drag, coarsely if necessary, and fully once the drag pauses. */
   resampleLive() {
     if (!this.begin({})) return;
     this.sampling.sampleLive(this.request(), this.diagonal());
     this.timer = setTimeout(() => this.sampling.sample(this.request()), REST_MS);
   }
 
-  /** Samples another surface: what was on its way is no longer wanted. @param {RunOptions} [options] */
+  /**
+   * Samples another surface. A model that is still loading for another choice is given up.
+   * @param {RunOptions} [options]
+   */
   choose(options) {
     const { store } = this;
     store.loadingError.value = null;
@@ -85,13 +95,13 @@ export class Runs {
     this.resample(options);
   }
 
-  /** The same after a pause, unless something else is asked for meanwhile. @param {number} pauseMs */
+  /** Does the same after a pause, unless another request comes first. @param {number} pauseMs */
   chooseLater(pauseMs) {
     this.forgetLater();
     this.timer = setTimeout(() => this.choose(), pauseMs);
   }
 
-  /** What was to come after a pause comes no more. */
+  /** Cancels the run that waits for a pause. */
   forgetLater() {
     clearTimeout(this.timer);
   }
@@ -102,7 +112,10 @@ export class Runs {
     this.sampling.stop();
   }
 
-  /** Whether the state can be sampled now; where its model is not solved yet, it will be. @param {RunOptions} options */
+  /**
+   * Returns whether the state can be sampled now. If its model is not solved yet, the solution is started.
+   * @param {RunOptions} options
+   */
   begin(options) {
     this.forgetLater();
     const { loader } = this;
@@ -115,14 +128,18 @@ export class Runs {
     return true;
   }
 
-  /** Diagonal of the clip box in force. */
+  /** Returns the diagonal of the present clip box. */
   diagonal() {
     const { state, field } = this.store;
     const bounds = state.value.bounds ?? field.value?.bounds;
     return bounds ? Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k])) : 0;
   }
 
-  /** Asks whether more particles than agreed are wanted. @param {number} predicted @param {SampleRequest} asked */
+  /**
+   * Asks the user to confirm a run with more particles than the limit.
+   * @param {number} predicted
+   * @param {SampleRequest} asked
+   */
   askSize(predicted, asked) {
     const { store } = this;
     const limit = Number(asked.settings.max_particles);

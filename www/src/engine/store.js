@@ -1,5 +1,5 @@
 /**
- * The engine's signals, writable; the interface sees them read-only.
+ * The engine's signals in their writable form. The interface sees them as read-only.
  *
  * @module
  */
@@ -66,12 +66,16 @@ export function change({ state }, patch) {
   state.value = { ...state.value, ...patch };
 }
 
-/** Changes how the state looks. @param {Store} store @param {Partial<import('./types.js').ViewState>} patch */
+/**
+ * Changes a part of the view in the state.
+ * @param {Store} store
+ * @param {Partial<import('./types.js').ViewState>} patch
+ */
 export function changeView(store, patch) {
   change(store, { view: { ...store.state.value.view, ...patch } });
 }
 
-/** What the core says of itself. @param {Store} store @throws before the core has arrived */
+/** Returns the core's description of itself. @param {Store} store @throws before the core has loaded */
 export function description({ description }) {
   if (!description.value) throw new Error('The core is not there yet.');
   return description.value;

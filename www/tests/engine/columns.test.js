@@ -77,10 +77,10 @@ describe('columns', () => {
     expect(columns.lastLevel).toBe(0);
   });
 
-  test('grow piece by piece and are overwritten in place', () => {
+  test('grow range by range and are overwritten in place', () => {
     const whole = sphere(5000);
     const columns = new Columns();
-    const piece = (/** @type {number} */ a, /** @type {number} */ b, total = b) => ({
+    const range = (/** @type {number} */ a, /** @type {number} */ b, total = b) => ({
       first: a,
       total,
       positions: whole.positions.slice(3 * a, 3 * b),
@@ -89,15 +89,15 @@ describe('columns', () => {
       levels: whole.levels.slice(a, b),
       parents: whole.parents.slice(a, b),
     });
-    for (let a = 0; a < 5000; a += 700) expect(columns.write(piece(a, Math.min(5000, a + 700)))).toBe(true);
+    for (let a = 0; a < 5000; a += 700) expect(columns.write(range(a, Math.min(5000, a + 700)))).toBe(true);
     expect(columns.count).toBe(5000);
     expect(columns.positions.subarray(0, 15_000)).toEqual(whole.positions.subarray(0, 15_000));
     expect(columns.levels.subarray(0, 5000)).toEqual(whole.levels.subarray(0, 5000));
-    expect(columns.write(piece(0, 100, 100))).toBe(true);
+    expect(columns.write(range(0, 100, 100))).toBe(true);
     expect(columns.count).toBe(100);
   });
 
-  test('a piece that does not fit is refused whole', () => {
+  test('a range that does not fit is refused whole', () => {
     const columns = sphere(10);
     const before = columns.positions.slice();
     const three = new Float32Array(3).fill(9);

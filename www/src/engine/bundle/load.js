@@ -1,17 +1,17 @@
 /**
- * Brings in the WebAssembly of a worker and names what went wrong when it does not come.
+ * Loads the WebAssembly module of a worker and classifies the cause if loading fails.
  *
  * @module
  */
 
 /** Why a bundle could not be loaded. @typedef {'missing' | 'blocked' | 'corrupt' | 'no_simd' | 'no_wasm' | 'init'} LoadFault */
 
-/** A module with one 128-bit constant: valid exactly where SIMD is. */
+/** A module that contains one 128-bit constant. It is valid exactly if the browser supports SIMD. */
 const SIMD_PROBE = new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ]);
 
-/** A load that failed, with its cause by name. */
+/** An error in loading, with its cause. */
 export class LoadError extends Error {
   /** @param {LoadFault} fault @param {string} message */
   constructor(fault, message) {
@@ -22,9 +22,9 @@ export class LoadError extends Error {
 }
 
 /**
- * Fetches and compiles. A host that serves the file under a wrong media type costs only the streaming.
+ * Fetches and compiles a module. If the server sends a wrong media type, the module is compiled without streaming.
  * @param {string | URL} url
- * @param {string} [what]  the module is, for the messages
+ * @param {string} [what]  name of the module in error messages
  * @param {{fetch: typeof fetch, wasm: typeof WebAssembly | undefined}} [env]
  * @returns {Promise<WebAssembly.Module>}
  */

@@ -6,7 +6,7 @@
 import { completeSettings } from '../share/state.js';
 import { description } from '../store.js';
 
-/** Relaxation steps that one command may ask for. */
+/** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
 
 /** @typedef {Pick<import('../types.js').EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */

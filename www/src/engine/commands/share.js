@@ -1,5 +1,5 @@
 /**
- * Commands that take something off the page: a link, a picture, a file.
+ * Commands that produce output: a link, a picture, a file.
  *
  * @module
  */
@@ -7,7 +7,7 @@ import { surfaceOf } from '../share/state.js';
 import { description } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
-/** Writing files is not part of the first picture: fetched once the sampler is there, so that it is there when it is wanted. */
+/** Fetches the code that writes files. The first picture does not need it, so it loads after the sampler. */
 export const fetchExports = () => import('../share/exports.js');
 
 /** @typedef {Pick<import('../types.js').EngineCommands, 'shareUrl' | 'loadUrl' | 'savePng' | 'exportFile'>} ShareCommands */
@@ -43,7 +43,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, addre
     },
   };
 
-  /** A field in words. @param {import('../types.js').FieldRequest} field */
+  /** Returns a description of a field for the header of a file. @param {import('../types.js').FieldRequest} field */
   function titleOf(field) {
     const model = field.points && runs.loader.client.get(field.points)?.info.info;
     if (model) return `${model.name}, interpolated from ${model.centres} points`;

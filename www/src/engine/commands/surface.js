@@ -8,7 +8,7 @@ import { fromPoints, modelOf, surfaceOf, validBounds, validSetting } from '../sh
 import { change, description } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
-/** After so long without a key a name that may be the beginning of another counts as written. */
+/** Pause in typing after which a name counts as finished, although it could be the beginning of a longer one. */
 const NAME_MS = 1000;
 
 /** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
@@ -27,7 +27,7 @@ export function surfaceCommands({ store, runs, look, framing }) {
       runs.choose({ grow: true, fit: true });
     },
     openFile(file) {
-      // A formula that waits for its end would take the file's place.
+      // A formula still waiting for its pause would replace the file.
       runs.forgetLater();
       return runs.loader.openFile(file);
     },
@@ -35,7 +35,7 @@ export function surfaceCommands({ store, runs, look, framing }) {
     setFormula(text, { unfinished = false } = {}) {
       const { surface, formula } = state.value;
       if (text === formula) return;
-      // A model has no formula to change: the one typed starts from the default surface.
+      // A model has no formula. A formula typed in its place starts from the default surface.
       const fresh = fromPoints(store.description.value, surface);
       change(store, fresh ? shapeOf(description(store).default_surface, text) : { formula: text });
       framing.written();

@@ -1,5 +1,6 @@
 /**
- * The page's side of models from points: one order at a time, the answers kept, so that a model chosen again is there at once.
+ * Runs the worker that solves models from points, one order at a time. It keeps the results, so that a model chosen
+ * again is available at once.
  *
  * @module
  */
@@ -10,7 +11,7 @@
  * @typedef {import('./protocol.js').Solved} Solved
  */
 /**
- * What the client needs of a worker, so that tests can hand it a scripted one.
+ * The part of the worker interface that the client uses. Tests pass a scripted worker.
  * @typedef {object} WorkerLike
  * @property {(message: Order) => void} postMessage
  * @property {() => void} terminate
@@ -18,11 +19,14 @@
  * @property {((event: {message?: string}) => void) | null} onerror
  */
 /** @typedef {{kind: string, message: string, line: number | null, details?: string}} Refusal */
-/** How an order ended; `givenUp` by the page. @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Outcome */
+/**
+ * How an order ended. `givenUp`: the page cancelled it.
+ * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Outcome
+ */
 
 /**
- * A worker that says nothing for so long is ended. Reading a large file is one step, and a person can give up at any time, so
- * this only catches what nobody waits for.
+ * Silence after which the worker is terminated. It is long, because reading a large file is one step without messages
+ * and the user can cancel at any time.
  */
 export const SILENCE_MS = 30_000;
 
@@ -43,17 +47,17 @@ export class PointsClient {
     this.clock = clock;
     /** @type {Map<string, Solved>} */
     this.solved = new Map();
-    /** Ends the order under way. @type {((outcome: Outcome) => void) | null} */
+    /** Ends the current order. @type {((outcome: Outcome) => void) | null} */
     this.end = null;
   }
 
-  /** The solved model of that name, if there is one. @param {string | undefined} key */
+  /** Returns the solved model under this key, if there is one. @param {string | undefined} key */
   get(key) {
     return key === undefined ? undefined : this.solved.get(key);
   }
 
   /**
-   * Solves a model and keeps it under `key`. An order under way is given up.
+   * Solves a model and keeps it under `key`. The current order is given up.
    * @param {string} key @param {Order} order
    * @returns {Promise<Outcome>}
    */

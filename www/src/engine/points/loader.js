@@ -1,6 +1,7 @@
 /**
- * From a wish for a model or a file to its surface. The state may name a built-in model that is not solved yet: it is ordered,
- * and sampled once it is there; where that fails the state goes back to the surface before. A file enters the state only when it is solved.
+ * Loads models and files and samples them once they are solved. The state may name a built-in model before it is
+ * solved; if solving fails, the state returns to the previous surface. A file enters the state only after it has been
+ * solved.
  *
  * @module
  */
@@ -16,7 +17,10 @@ import { PointsClient } from './client.js';
  * @typedef {import('./client.js').WorkerLike} WorkerLike
  * @typedef {import('./protocol.js').Order} Order
  */
-/** What of the state makes the surface. @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'bounds'>} Shape */
+/**
+ * The part of the state that determines the surface.
+ * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'bounds'>} Shape
+ */
 /** @typedef {{grow?: boolean, fit?: boolean}} SampleOptions */
 
 /** @param {string} surface @param {string} [formula] @returns {Shape} */
@@ -27,7 +31,7 @@ export class ModelLoader {
    * @param {object} options
    * @param {Store} options.store
    * @param {() => WorkerLike} options.spawn
-   * @param {(options: SampleOptions) => void} options.sample  samples the state as it is
+   * @param {(options: SampleOptions) => void} options.sample  samples the present state
    */
   constructor({ store, spawn, sample }) {
     this.store = store;
@@ -39,12 +43,12 @@ export class ModelLoader {
         if (loading.value) loading.value = { ...loading.value, stage, label, fraction };
       },
     });
-    /** The file opened last, by the name of its solved model. */
+    /** Key of the solved model of the file opened last. */
     this.fileKey = '';
     this.files = 0;
-    /** The shape that was sampled last. @type {Shape | null} */
+    /** The surface that was sampled last. @type {Shape | null} */
     this.last = null;
-    /** The order under way. */
+    /** Id of the current order. */
     this.orderId = 0;
   }
 
@@ -52,26 +56,26 @@ export class ModelLoader {
     return this.fileKey !== '';
   }
 
-  /** The name of the state's solved model; undefined for a formula. */
+  /** Returns the key of the state's model; undefined for a formula. */
   key() {
     const { surface } = this.store.state.value;
     if (!fromPoints(this.store.description.value, surface)) return undefined;
     return surface === FILE_SURFACE ? this.fileKey : surface;
   }
 
-  /** Whether the state's surface can be sampled now. */
+  /** Returns whether the state's surface can be sampled now. */
   ready() {
     const key = this.key();
     return key === undefined || this.client.get(key) !== undefined;
   }
 
-  /** The state's surface is being sampled: the one to go back to. */
+  /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
     const { surface, formula, parameters, declared, bounds } = this.store.state.value;
     this.last = { surface, formula, parameters, declared, bounds };
   }
 
-  /** The state, or as long as its model is on its way the state with the surface before. */
+  /** Returns the state; while its model is loading, the state with the previous surface. */
   present() {
     const { state } = this.store;
     return this.ready() ? state.value : { ...state.value, ...this.before() };
@@ -85,7 +89,7 @@ export class ModelLoader {
     return shapeOf(surface, formula);
   }
 
-  /** Orders the state's model and samples it once it is there. @param {SampleOptions} options */
+  /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
   async load(options) {
     const { state, loading, description } = this.store;
     const id = state.value.surface;
@@ -123,8 +127,8 @@ export class ModelLoader {
 
   /**
    * @param {string} id @param {string} name @param {string} key @param {Order} order
-   * @param {() => void} done  called when it is solved
-   * @returns {Promise<boolean>} whether it was
+   * @param {() => void} done  called once the model is solved
+   * @returns {Promise<boolean>} whether the model was solved
    */
   async order(id, name, key, order, done) {
     const { loading, loadingError } = this.store;
@@ -136,7 +140,7 @@ export class ModelLoader {
     });
     const outcome = await this.client.load(key, order);
     if (this.orderId !== mine) return false;
-    // In one go, so that nobody sees neither the loading nor the run.
+    // A batch, so that no effect runs between the end of the loading and the start of the run.
     batch(() => {
       loading.value = null;
       if ('solved' in outcome) done();
@@ -152,7 +156,7 @@ export class ModelLoader {
     notice.value = { id: 'file', kind: 'error', text: `${name}: ${message}`, ...(details ? { details } : {}) };
   }
 
-  /** Gives up the order under way. */
+  /** Gives up the current order. */
   cancel() {
     this.client.giveUp();
   }

@@ -1,6 +1,6 @@
 /**
- * What the page and the worker that turns points into a field say to each other. A worker lives for one model or file: its
- * memory, which a large file has filled, goes with it, and giving up is to end it.
+ * Messages between the page and the worker that turns points into a field. A worker handles one model or file and is
+ * then terminated, which releases the memory that a large file takes. Termination is also how an order is cancelled.
  *
  * @module
  */
@@ -11,9 +11,9 @@
  * @typedef {import('../types.js').Loading} Loading
  */
 
-/** A built-in model by its id, or a file. @typedef {{model: string} | {file: File}} Order */
+/** A request for a built-in model, by its id, or for a file. @typedef {{model: string} | {file: File}} Order */
 /**
- * A solved model: `field` is for the core, which reads it together with `info`; `centres` are three numbers each.
+ * A solved model. The core reads `field` together with `info`; `centres` has three coordinates per centre.
  * @typedef {{field: Uint8Array, info: {info: ModelInfo, bounds: Bounds}, centres: Float32Array}} Solved
  */
 /**

@@ -1,6 +1,6 @@
 /**
- * From an order to a solved model, step by step. Clock and pause are handed in, so that the loop runs in tests on a scripted
- * bundle.
+ * Solves the model of an order step by step. The clock and the pause are parameters, so that tests can run the loop on
+ * a scripted bundle.
  *
  * @module
  */
@@ -12,7 +12,7 @@ import { words } from '../bundle/load.js';
  * @typedef {import('./protocol.js').FromPoints} FromPoints
  */
 /**
- * The bundle's class as the loop uses it.
+ * The part of the bundle's class that the loop uses.
  * @typedef {object} PointsLike
  * @property {(id: string) => import('../types.js').PointsAnswer} model
  * @property {(name: string, bytes: Uint8Array, centres: number) => import('../types.js').PointsAnswer} file
@@ -22,10 +22,10 @@ import { words } from '../bundle/load.js';
  * @property {() => Float32Array} centres
  */
 
-/** A step takes about this long: the way to a thousand centres is then told in some hundred pieces. */
+/** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;
 const FIRST_BUDGET = 64;
-/** The bundle's own number of centres. */
+/** Selects the bundle's default number of centres. */
 const USUAL_CENTRES = 0;
 
 /**

@@ -1,5 +1,5 @@
 /**
- * The worker that turns points into a field: one order, one answer, then it waits to be ended.
+ * The worker that turns points into a field. It takes one order, answers it and waits to be terminated.
  *
  * @module
  */
@@ -16,7 +16,7 @@ import { solve } from './solve.js';
 /** @param {FromPoints} message @param {Transferable[]} [transfer] */
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
-/** The last words of the bundle's panic hook, which writes to the console. */
+/** The last message of the bundle's panic hook, which writes to the console. */
 let lastWords = '';
 const say = console.error.bind(console);
 console.error = (...parts) => {

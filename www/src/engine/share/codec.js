@@ -1,8 +1,9 @@
 /**
- * The state in the fragment of an address, so that a link is the whole document and no server is asked.
+ * Encodes the state in the fragment of an address, so that a link holds the whole state and no server is needed.
  *
- * `#v1.j.…` is base64url of UTF-8 JSON, `#v1.z.…` the same deflated, whichever is shorter. Only what differs from the defaults
- * is written. Reading is careful: length before decoding, size while inflating, every value afterwards.
+ * `#v1.j.…` is base64url of UTF-8 JSON, `#v1.z.…` the same after deflate; the shorter one is written. Only values that
+ * differ from the defaults are stored. Decoding checks the length of the fragment, the size of the inflated text and
+ * every value.
  *
  * @module
  */
@@ -14,18 +15,18 @@ import { completeSettings, defaultState, sanitize, surfaceOf } from './state.js'
  */
 
 const VERSION = 1;
-/** Longer fragments are not even decoded. */
+/** Largest length of a fragment that is decoded. */
 export const LONGEST_FRAGMENT = 65_536;
-/** Inflated JSON beyond this is no state of ours. */
+/** Largest size of the inflated JSON. No state written by the page comes near it. */
 export const LONGEST_JSON = 65_536;
-/** Below this, deflating only adds. */
+/** Length below which deflate makes the text longer. */
 const WORTH_DEFLATING = 256;
 
 /** @param {number} v @param {number} digits  significant ones */
 const short = (v, digits = 6) => Number(v.toPrecision(digits));
 
 /**
- * What differs from the defaults.
+ * Returns the values of a state that differ from the defaults.
  * @param {State} state
  * @param {Description} description
  */
@@ -56,7 +57,7 @@ export function difference(state, description) {
     pitch: short(camera.pitch, 5),
     fit: camera.fit,
   };
-  // A camera that fits the surface by itself is written only where it was turned.
+  // A camera that fits the surface automatically is stored only if it was turned.
   const turned =
     Math.abs(camera.yaw - home.view.camera.yaw) > 1e-3 || Math.abs(camera.pitch - home.view.camera.pitch) > 1e-3;
   if (!camera.fit || turned) look.camera = rounded;
@@ -103,7 +104,7 @@ async function through(bytes, stream, limit) {
 }
 
 /**
- * The fragment (with `#`) of a state; empty for the default one.
+ * Returns the fragment of a state, with `#`; empty for the default state.
  * @param {State} state
  * @param {Description} description
  */
@@ -122,9 +123,9 @@ export async function encode(state, description) {
  * Reads a fragment.
  * @param {string} fragment  with or without `#`
  * @param {Description} description
- * @param {boolean} [hasFile]  whether there is a file for a state that needs one
- * @returns {Promise<{state: State, reset: string[], problem: string | null}>} `problem`: why nothing of it could be used;
- *   `reset`: what of it could not
+ * @param {boolean} [hasFile]  whether a file is open, which the state may refer to
+ * @returns {Promise<{state: State, reset: string[], problem: string | null}>} `problem`: why nothing of the fragment
+ *   could be used; `reset`: the parts that could not
  */
 export async function decode(fragment, description, hasFile = false) {
   const text = fragment.startsWith('#') ? fragment.slice(1) : fragment;

@@ -1,6 +1,6 @@
 /**
- * The particles as files: PLY (binary, little endian) and CSV, and the picture as PNG. Columns that are not known yet are left
- * out.
+ * Writes the particles as PLY (binary, little endian) or CSV, and the picture as PNG. Columns that are not known yet
+ * are omitted.
  *
  * @module
  */
@@ -8,14 +8,14 @@ import { NO_PARENT, SINGULAR } from '../columns.js';
 
 /** @typedef {import('../columns.js').Columns} Columns */
 
-/** Rows of CSV text put together at a time. */
+/** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
 
 /**
- * One vertex per particle: position, normal, radius, generation level, parent (−1 for a seed), valence (only once the report
- * has counted it) and 1 next to a singular point.
+ * Returns a PLY file with one vertex per particle: position, normal, radius, generation level, parent (−1 for a seed),
+ * valence (once the report has it), and a flag that is 1 next to a singular point.
  * @param {Columns} columns
- * @param {{comment: string}} options  one line on what this is; line breaks are taken out
+ * @param {{comment: string}} options  one line that describes the contents; line breaks are removed
  * @returns {Blob}
  */
 export function ply(columns, { comment }) {
@@ -50,8 +50,8 @@ export function ply(columns, { comment }) {
 }
 
 /**
- * The same as text, one line per particle; valence, nearest distance and residual where the report has them. Numbers are
- * written so that reading them gives the same single-precision value.
+ * Returns the same data as CSV text, one line per particle, with valence, nearest distance and residual once the report
+ * has them. Reading a number back gives the same single-precision value.
  * @param {Columns} columns
  * @returns {Blob}
  */
@@ -81,14 +81,14 @@ export function csv(columns) {
   return new Blob(parts, { type: 'text/csv' });
 }
 
-/** Nine significant digits hold any single-precision number. @param {number} v */
+/** Rounds to nine significant digits, which identify any single-precision number. @param {number} v */
 const single = (v) => Number(v.toPrecision(9));
 
-/** Largest side of a picture. */
+/** Largest width or height of a saved picture. */
 export const LARGEST_PICTURE_PX = 8192;
 
 /**
- * A PNG of pixels, rows from the top, red, green, blue, opacity.
+ * Encodes RGBA pixels, rows from the top, as PNG.
  * @param {number} width @param {number} height @param {Uint8Array<ArrayBuffer>} pixels
  * @returns {Promise<Blob>}
  */

@@ -1,5 +1,5 @@
 /**
- * The shareable state: what is in it, its defaults, and how anything at all is turned into a valid one.
+ * The shareable state: its defaults, and the validation that turns any input into a valid state.
  *
  * @module
  */
@@ -17,13 +17,13 @@ import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
  * @typedef {import('../types.js').Parameter} Parameter
  */
 
-/** The core refuses longer formulas; a link may not carry one either. */
+/** Largest length of a formula, as in the core. */
 export const LONGEST_FORMULA = 4096;
-/** More sliders than a person can move. */
+/** Largest number of parameters in a state. */
 const MOST_PARAMETERS = 64;
-/** Coordinates beyond this leave single precision no room for a surface. */
+/** Largest coordinate of a clip box. Beyond it, single precision cannot resolve a surface. */
 const FARTHEST = 1e6;
-/** No run has so many generation levels. */
+/** Upper limit for generation levels in a state; no run reaches it. */
 const LAST_LEVEL = 1e6;
 const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
 
@@ -52,7 +52,7 @@ const homeView = () => ({
   camera: homeCamera(),
 });
 
-/** The state before the core has told which surfaces there are. @returns {State} */
+/** Returns the state before the core has described its surfaces. @returns {State} */
 export const emptyState = () => ({
   v: 1,
   surface: '',
@@ -73,7 +73,12 @@ export function defaultState(description) {
 /** @param {Description | null} description @param {string} id @returns {SurfaceInfo | undefined} */
 export const surfaceOf = (description, id) => description?.surfaces.find((s) => s.id === id);
 
-/** Every setting, with the defaults filled in. @param {Description} description @param {Settings} settings @returns {Settings} */
+/**
+ * Returns every setting, with defaults for the missing ones.
+ * @param {Description} description
+ * @param {Settings} settings
+ * @returns {Settings}
+ */
 export function completeSettings(description, settings) {
   /** @type {Settings} */
   const all = {};
@@ -81,7 +86,12 @@ export function completeSettings(description, settings) {
   return all;
 }
 
-/** Every number within the range of its setting. @param {Description} description @param {Settings} settings @returns {Settings} */
+/**
+ * Limits every number to the range of its setting.
+ * @param {Description} description
+ * @param {Settings} settings
+ * @returns {Settings}
+ */
 export function clampSettings(description, settings) {
   return Object.fromEntries(
     Object.entries(settings).map(([name, value]) => [name, validSetting(description, name, value) ?? value]),
@@ -91,13 +101,17 @@ export function clampSettings(description, settings) {
 /** @param {Description | null} description @param {string} id */
 export const modelOf = (description, id) => description?.models.find((model) => model.id === id);
 
-/** Whether a surface is made of points: a built-in model or a file. @param {Description | null} description @param {string} id */
+/**
+ * Returns whether a surface is made from points: a built-in model or a file.
+ * @param {Description | null} description
+ * @param {string} id
+ */
 export const fromPoints = (description, id) => id === FILE_SURFACE || modelOf(description, id) !== undefined;
 
 /**
- * What the core is told of the field.
+ * Returns the request that sets the state's field in the core.
  * @param {State} state @param {Description} description
- * @param {string} [points]  under which the model of the state is kept
+ * @param {string} [points]  key under which the state's solved model is kept
  * @returns {FieldRequest}
  */
 export function fieldRequest(state, description, points) {
@@ -112,7 +126,12 @@ export function fieldRequest(state, description, points) {
   return request;
 }
 
-/** A number within its range, or undefined for what is none. @param {unknown} v @param {number} min @param {number} max */
+/**
+ * Limits a number to its range; returns undefined for anything else.
+ * @param {unknown} v
+ * @param {number} min
+ * @param {number} max
+ */
 const within = (v, min, max) =>
   typeof v === 'number' && Number.isFinite(v) ? Math.min(max, Math.max(min, v)) : undefined;
 
@@ -152,7 +171,8 @@ function validParameter(v) {
 }
 
 /**
- * A valid state out of anything: what cannot be used takes its default and is named in `reset`, in words for a person.
+ * Makes a valid state from any input. An unusable value gets its default and is named in `reset`, in words for the
+ * user.
  * @param {unknown} raw
  * @param {Description} description
  * @param {boolean} [hasFile]  whether there is a file for a state that needs one
@@ -164,7 +184,8 @@ export function sanitize(raw, description, hasFile = false) {
   const state = defaultState(description);
   if (!isRecord(raw)) return { state, reset: ['everything'] };
   if (raw.surface === FILE_SURFACE && !hasFile) {
-    // What belongs to the surface goes with it; the settings and the look do for another.
+    // Formula, parameters and box belong to the unknown surface and are dropped. Settings and view apply to any
+    // surface.
     const { camera: _, ...view } = isRecord(raw.view) ? raw.view : {};
     const rest = sanitize({ settings: raw.settings, view }, description);
     return { state: rest.state, reset: ['the surface, whose points are in a file', ...rest.reset] };
@@ -225,7 +246,7 @@ export function sanitize(raw, description, hasFile = false) {
 }
 
 /**
- * A state with some of it changed: another surface, or a formula in place of a model, brings its own parameters and box.
+ * Applies a patch to a state. Another surface, or a formula that replaces a model, brings its own parameters and box.
  * @param {State} now @param {Record<string, unknown>} patch @param {Description} description @param {boolean} hasFile
  * @returns {{state: State, reset: string[]}}
  */
@@ -237,7 +258,7 @@ export function mergeState(now, patch, description, hasFile) {
   const base = another ? { ...defaultState(description), view: now.view, settings: now.settings } : now;
   const raw = {
     ...base,
-    // The surface named brings its own.
+    // A surface named in the patch brings its own formula.
     formula: patch.surface ? undefined : now.formula,
     ...patch,
     view: { ...now.view, .../** @type {object} */ (patch.view ?? {}) },
@@ -246,7 +267,8 @@ export function mergeState(now, patch, description, hasFile) {
 }
 
 /**
- * The value a setting would take, or undefined when there is no such setting or no way to read the value.
+ * Returns the valid value of a setting that is nearest to `value`; undefined if the setting or the value is not
+ * recognised.
  * @param {Description} description @param {string} name @param {unknown} value
  * @returns {number | string | undefined}
  */
