@@ -9,7 +9,7 @@
 //! A kink has the derivative of one of its sides: abs has slope 0 at 0, min and max take the slope of the first operand
 //! at a tie, floor and sign have slope 0 everywhere.
 
-use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
+use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use super::program::cost;
 
@@ -270,7 +270,7 @@ fn binary(graph: &mut Graph, operation: Binary, a: Id, b: Id, id: Id, adjoint: I
 /// are ½ − w in a, ½ + w in b and u²/2 − |u|³/3 − 1/6 in k. The form needs no branch and is smooth at a = b.
 fn smin(graph: &mut Graph, a: Id, b: Id, k: Id, adjoint: Id) -> [Option<(Id, Id)>; 3] {
     let (of_a, of_b, of_k) = (!graph.is_uniform(a), !graph.is_uniform(b), !graph.is_uniform(k));
-    let least = graph.constant(SMIN_LEAST_WIDTH);
+    let least = graph.constant(MIN_BLEND_WIDTH);
     let width = graph.binary(Binary::Max, k, least);
     let difference = graph.sub(a, b);
     let ratio = graph.div(difference, width);

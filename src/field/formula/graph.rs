@@ -94,12 +94,12 @@ pub(super) fn power(x: f64, n: i32) -> f64 {
 }
 
 /// Smallest blend width of a smooth minimum. Smaller and negative widths are raised to it.
-pub(super) const SMIN_LEAST_WIDTH: f64 = 1e-9;
+pub(super) const MIN_BLEND_WIDTH: f64 = 1e-9;
 
 /// Smooth minimum min(a, b) − k (1 − |u|)³/6 with u = (a − b)/k clamped to −1 … 1. It is twice continuously
 /// differentiable and equals the minimum where |a − b| ≥ k.
 pub(super) fn smin(a: f64, b: f64, k: f64) -> f64 {
-    let k = Binary::Max.evaluate(k, SMIN_LEAST_WIDTH);
+    let k = Binary::Max.evaluate(k, MIN_BLEND_WIDTH);
     let gap = 1.0 - Binary::Min.evaluate(((a - b) / k).abs(), 1.0);
     Binary::Min.evaluate(a, b) - k * (gap * gap * gap) / 6.0
 }
@@ -373,13 +373,13 @@ impl Graph {
         }
         if let Some(exponent) = self.as_constant(b) {
             if exponent == libm::trunc(exponent) && exponent.abs() <= f64::from(i32::MAX) {
-                #[expect(clippy::cast_possible_truncation, reason = "a whole number within the range")]
+                #[expect(clippy::cast_possible_truncation, reason = "an integer within the range")]
                 return self.power(a, exponent as i32);
             }
             let twice = 2.0 * exponent;
             if twice == libm::trunc(twice) && exponent.abs() <= MAX_HALF_INTEGER {
                 let root = self.unary(Unary::Sqrt, a);
-                #[expect(clippy::cast_possible_truncation, reason = "a whole number within the range")]
+                #[expect(clippy::cast_possible_truncation, reason = "an integer within the range")]
                 return self.power(root, twice as i32);
             }
         }

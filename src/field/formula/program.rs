@@ -6,7 +6,7 @@
 //! roundings, but one pass over memory). A register is reused as soon as its value is dead, so that a block of points
 //! stays in the first-level cache.
 
-use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH};
+use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
 use crate::math::sort_few;
 use core::cmp::Reverse;
@@ -149,7 +149,7 @@ fn expand_smooth_minima(graph: &mut Graph, outputs: &[Id]) -> Vec<Id> {
         let node = graph.nodes()[id].mapped(|operand| map[operand as usize]);
         map[id] = if let Node::Smin(a, b, k) = node {
             let (one, minus_one) = (graph.constant(1.0), graph.constant(-1.0));
-            let least = graph.constant(SMIN_LEAST_WIDTH);
+            let least = graph.constant(MIN_BLEND_WIDTH);
             let width = graph.binary(Binary::Max, k, least);
             let difference = graph.sub(a, b);
             let ratio = graph.div(difference, width);

@@ -2,7 +2,7 @@
 //!
 //! Forward accumulation shares no code with the graphs of the derivatives, so that tests can check one by the other.
 
-use super::graph::{Graph, Id, Node, SMIN_LEAST_WIDTH, power, smin};
+use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node, power, smin};
 use super::operations::{Binary, Unary};
 use crate::field::Jet;
 use crate::math::Sym3;
@@ -188,7 +188,7 @@ fn binary(operation: Binary, (a, of_a): (Order2, u8), (b, of_b): (Order2, u8), a
 /// smaller of a and b.
 fn smooth_minimum(a: &Order2, b: &Order2, k: &Order2, axes: u8) -> Order2 {
     let value = smin(a.value, b.value, k.value);
-    let k = if k.value > SMIN_LEAST_WIDTH { *k } else { Order2::uniform(SMIN_LEAST_WIDTH) };
+    let k = if k.value > MIN_BLEND_WIDTH { *k } else { Order2::uniform(MIN_BLEND_WIDTH) };
     let difference = a.add(&b.scale(-1.0));
     let u = difference.mul(&k.reciprocal(axes));
     if u.value >= 1.0 {

@@ -1,7 +1,7 @@
 //! A single interval, with the operations that are too rare or too long for [rows](super::rows).
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use crate::field::formula::graph::{SMIN_LEAST_WIDTH, smin};
+use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
 use crate::field::formula::operations::{Binary, Unary, sign};
 
 /// Bounds of the values of an operation over a box, with its [other properties](super::flags).
@@ -306,8 +306,8 @@ impl Range {
             return NOTHING;
         }
         let flags = joined(joined(a.flags, b.flags), k.flags);
-        let widest = k.hi.max(SMIN_LEAST_WIDTH);
-        let narrowest = k.lo.max(SMIN_LEAST_WIDTH);
+        let widest = k.hi.max(MIN_BLEND_WIDTH);
+        let narrowest = k.lo.max(MIN_BLEND_WIDTH);
         if !widest.is_finite() {
             return Self::everything(0);
         }
