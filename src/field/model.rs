@@ -1,70 +1,71 @@
-//! What is known of models from points, beside their functions: what the built-in ones are, where points come from and how
-//! well they are met. The points themselves and the fitting are in the module `points`, which the core does without.
+//! Descriptions of models from points: the built-in ones, and reports of fits.
+//!
+//! The points themselves and the fitting are in the module `pointcloud`, which the core of the page is built without.
 
 use crate::math::Bounds;
 use serde::{Deserialize, Serialize};
 
-/// Where the normals of a model's points come from.
+/// Origin of the normals of a model's points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NormalSource {
-    /// They came with the points.
+    /// The normals were given with the points.
     #[default]
     Given,
-    /// From the faces around each point, weighted by area.
+    /// The normals are area-weighted means of those of the faces around each point.
     FromMesh,
-    /// From each point's neighbours.
+    /// The normals were estimated from the neighbours of each point.
     Estimated,
 }
 
-/// A model from points, as it is reported.
+/// Report of a model from points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelInfo {
-    /// What it is called: a built-in model's name or the file's.
+    /// Name of the built-in model or of the file.
     pub name: String,
-    /// Whom to thank for the points; empty for a file.
+    /// Credit for the points; empty for a file.
     pub credit: String,
-    /// Points that were read.
+    /// Number of points read.
     pub points: u32,
-    /// Points that the function interpolates.
+    /// Number of points that the function interpolates.
     pub centres: u32,
-    /// Estimate of the condition number of the system that was solved.
+    /// Estimated condition number of the system.
     pub condition: f64,
-    /// Mean distance of all points from the surface, |f|/|∇f|, as a share of the diagonal of the points' box.
+    /// Mean residual |f|/|∇f| of all points, as a share of the diagonal of their box.
     pub residual_mean: f64,
-    /// The largest such distance.
+    /// Maximum residual, as a share of that diagonal.
     pub residual_max: f64,
-    /// Where the normals come from.
+    /// Origin of the normals.
     pub normals: NormalSource,
-    /// Things the user should know, in words.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// What goes with a solved system from where it was solved to where it is sampled.
+/// Report and box that accompany a solved system to the session that samples it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolvedModel {
-    /// What is known of the model.
+    /// Report of the model.
     pub info: ModelInfo,
-    /// The box to sample in.
+    /// Box to sample in.
     pub bounds: Bounds,
 }
 
 /// A built-in model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Model {
-    /// Identifier: lower case, words joined by hyphens; no gallery surface has the same.
+    /// Identifier: lower case, words joined by hyphens. No gallery surface has the same one.
     pub id: &'static str,
-    /// Name for a person.
+    /// Name for the user.
     pub name: &'static str,
-    /// Two sentences about it.
+    /// Two sentences about the model.
     pub story: &'static str,
-    /// Whom to thank for the points.
+    /// Credit for the points.
     pub credit: &'static str,
     /// Number of points.
     pub points: u32,
 }
 
-/// To be named wherever the bunny is shown, by the terms of its scan.
+/// Credit that the terms of the scan require wherever the bunny is shown.
 const STANFORD: &str = "Stanford Computer Graphics Laboratory";
 
 /// The built-in models.
@@ -103,7 +104,7 @@ pub static MODELS: &[Model] = &[
     },
 ];
 
-/// The built-in model with this identifier.
+/// Built-in model with the identifier `id`.
 #[must_use]
 pub fn find(id: &str) -> Option<&'static Model> {
     MODELS.iter().find(|model| model.id == id)

@@ -107,14 +107,14 @@ impl JobError {
     }
 }
 
-/// What is wrong with a model or a file, as the page shows it.
+/// Error of a job, as the page shows it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
-    /// A word for the kind of mistake.
+    /// Kind of error as a word in snake case.
     pub kind: &'static str,
-    /// One sentence for a person; plain text.
+    /// One sentence for the user, in plain text.
     pub message: String,
-    /// Number of the line of a text file that is wrong, from 1.
+    /// Number, from 1, of the line of a text file that is in error.
     pub line: Option<u64>,
 }
 

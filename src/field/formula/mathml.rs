@@ -1,29 +1,29 @@
-//! A formula as presentation MathML: fractions, roots, powers and Greek letters, as one would write it by hand.
+//! Presentation MathML of a formula, with fractions, roots, powers and Greek letters.
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
 use super::display::{Level, level};
 use crate::math::shortest_text;
 use serde::Serialize;
 
-/// An element of MathML Core that holds others.
+/// Element of MathML Core with child elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MathGroup {
-    /// Elements side by side, two or more.
+    /// Two or more elements side by side.
     Mrow,
     /// A numerator and a denominator.
     Mfrac,
-    /// A base and an exponent.
+    /// A base and a superscript.
     Msup,
-    /// A base and an index.
+    /// A base and a subscript.
     Msub,
-    /// What stands under a square root: one or more elements side by side.
+    /// The radicand of a square root: one or more elements side by side.
     Msqrt,
-    /// What stands under a root, and its index.
+    /// The radicand of a root, and its degree.
     Mroot,
 }
 
-/// An element of MathML Core that holds text.
+/// Element of MathML Core with text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MathToken {
@@ -35,27 +35,27 @@ pub enum MathToken {
     Mo,
 }
 
-/// An element of MathML and what it holds.
+/// MathML element with its content.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum MathNode {
-    /// Text.
+    /// An element with text.
     Token {
         /// Name of the element.
         tag: MathToken,
-        /// The text, as a reader sees it.
+        /// The text, not escaped.
         text: String,
     },
-    /// Other elements.
+    /// An element with child elements.
     Group {
         /// Name of the element.
         tag: MathGroup,
-        /// What it holds, in order.
+        /// The child elements, in order.
         children: Vec<MathNode>,
     },
 }
 
-/// The equation as a row; a formula without `=` gets `= 0`.
+/// Content of the `math` element for an equation. A formula without `=` gets `= 0`.
 pub(super) fn equation(equation: &Equation) -> MathNode {
     let right = equation.right.as_ref().map_or_else(|| mn("0"), expression);
     row([expression(&equation.left), mo("="), right])
@@ -90,7 +90,7 @@ fn msup(base: MathNode, exponent: MathNode) -> MathNode {
     group(MathGroup::Msup, [base, exponent])
 }
 
-/// A row of one element between two fences.
+/// Row of an element between two fences.
 fn fenced([open, close]: [&str; 2], inner: MathNode) -> MathNode {
     row([mo(open), inner, mo(close)])
 }
@@ -99,7 +99,7 @@ fn bracketed(inner: MathNode) -> MathNode {
     fenced(["(", ")"], inner)
 }
 
-/// `expr` as one element, in brackets if it binds weaker than `least`.
+/// `expr` as one element, in brackets if its precedence is below `least`.
 fn at(expr: &Expr, least: Level) -> MathNode {
     if level(&expr.kind) < least { bracketed(expression(expr)) } else { expression(expr) }
 }
@@ -140,7 +140,7 @@ fn sum(terms: &[(Sign, Expr)]) -> MathNode {
     row(out)
 }
 
-/// Factors from left to right; a division puts everything before it over the divisor.
+/// Product of the factors, where a division has everything before it as numerator.
 fn product(factors: &[(Factor, Expr)]) -> MathNode {
     let Some(last) = factors.iter().rposition(|(relation, _)| *relation == Factor::Over) else {
         return match factors {
@@ -155,7 +155,7 @@ fn product(factors: &[(Factor, Expr)]) -> MathNode {
     }
 }
 
-/// Factors one after the other, after the one that stands `before` them.
+/// Factors side by side, after the element `before` them.
 fn side_by_side(factors: &[(Factor, Expr)], before: Option<MathNode>) -> Vec<MathNode> {
     let mut out: Vec<MathNode> = before.into_iter().collect();
     for (_, factor) in factors {
@@ -168,7 +168,7 @@ fn side_by_side(factors: &[(Factor, Expr)], before: Option<MathNode>) -> Vec<Mat
 }
 
 fn power(base: &Expr, exponent: &Expr) -> MathNode {
-    // sin²(x), as it is written by hand.
+    // The power of a function is written sin²(x).
     if let (Kind::Call(function, inputs), Kind::Number(n)) = (&base.kind, &exponent.kind)
         && let Some(name) = plain_name(*function)
         && *n >= 2.0
@@ -222,7 +222,8 @@ fn separated(elements: impl Iterator<Item = MathNode>, operator: &str) -> Vec<Ma
     out
 }
 
-/// A parameter's name: Greek letters by their names, digits at the end and what follows `_` as an index.
+/// Name of a parameter. The name of a Greek letter becomes the letter; trailing digits, or what follows `_`, become a
+/// subscript.
 fn parameter(name: &str) -> MathNode {
     let (stem, index) = match name.split_once('_') {
         Some((stem, index)) if !index.is_empty() => (stem, index),
@@ -248,7 +249,7 @@ fn constant_letter(constant: Constant) -> &'static str {
     }
 }
 
-/// The name in front of the brackets, for functions that are written so.
+/// Name of a function that is written with its name and brackets; `None` for one with a notation of its own.
 fn plain_name(function: Function) -> Option<&'static str> {
     Some(match function {
         Function::Sqrt
@@ -266,7 +267,7 @@ fn plain_name(function: Function) -> Option<&'static str> {
     })
 }
 
-/// Whether the leftmost symbol of `expr`, as it is set, is a digit.
+/// Whether the typeset `expr` begins with a digit.
 fn starts_with_digit(expr: &Expr) -> bool {
     match &expr.kind {
         Kind::Number(_) => true,
@@ -276,7 +277,7 @@ fn starts_with_digit(expr: &Expr) -> bool {
     }
 }
 
-/// The Greek letter of this name.
+/// Greek letter with the given name.
 fn greek(name: &str) -> Option<&'static str> {
     Some(match name {
         "alpha" => "α",

@@ -198,7 +198,7 @@ impl FormulaField {
         self.equation == other.equation
     }
 
-    /// What a MathML `math` element holds for the formula.
+    /// Formula in presentation MathML: the content of a `math` element.
     #[must_use]
     pub fn mathml(&self) -> MathNode {
         mathml::equation(&self.equation)
