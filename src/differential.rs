@@ -29,53 +29,53 @@ pub struct Curvature<T = f32, V = Vec3> {
 }
 
 impl<T: Real + PartialEq, V> Curvature<T, V> {
-    /// Mean curvature (κ₁ + κ₂)/2.
+    /// Returns the mean curvature (κ₁ + κ₂)/2.
     #[must_use]
     pub fn mean(&self) -> T {
         T::of(0.5) * (self.k1 + self.k2)
     }
 
-    /// Gaussian curvature κ₁ κ₂.
+    /// Returns the Gaussian curvature κ₁ κ₂.
     #[must_use]
     pub fn gaussian(&self) -> T {
         self.k1 * self.k2
     }
 
-    /// max(|κ₁|, |κ₂|), the curvature of the most curved normal section.
+    /// Returns max(|κ₁|, |κ₂|), the curvature of the most curved normal section.
     #[must_use]
     pub fn max_abs(&self) -> T {
-        // |a + b|/2 + |a − b|/2 is the larger magnitude, without a comparison.
+        // The larger magnitude is |a + b|/2 + |a − b|/2, without a comparison.
         T::of(0.5) * ((self.k1 + self.k2).abs() + (self.k1 - self.k2).abs())
     }
 
-    /// Whether the surface has a curvature here.
+    /// Returns whether the curvature is defined.
     #[must_use]
     pub fn is_defined(&self) -> bool {
-        // NaN alone is not equal to itself.
+        // Only NaN is not equal to itself.
         #[expect(clippy::eq_op, reason = "the test for NaN that every kind of number has")]
         let defined = self.k1 == self.k1;
         defined
     }
 }
 
-/// The curvature of the surface through a point with this gradient and Hessian.
+/// Returns the curvature of the surface through a point with this gradient and Hessian.
 #[must_use]
 pub fn curvature(gradient: Vec3, hessian: &Sym3<f32>) -> Curvature {
     let [k1, k2, x, y, z] = principal(gradient.to_array(), hessian);
     Curvature { k1, k2, direction: Vec3::new(x, y, z) }
 }
 
-/// The same in double precision: the oracle of the others.
+/// Returns the curvature in double precision: the oracle of the other functions.
 #[must_use]
 pub fn exact_curvature(jet: &Jet) -> Curvature<f64, DVec3> {
     let [k1, k2, x, y, z] = principal(jet.gradient.to_array(), &jet.hessian);
     Curvature { k1, k2, direction: DVec3::new(x, y, z) }
 }
 
-/// Points per call of the field: enough to hide the cost of a call, within the first-level cache.
+/// Points in a call of the field: enough to hide the cost of a call, and few enough for the first-level cache.
 const BATCH: usize = 128;
 
-/// The curvature at each of the `points`, of the surface of the field's constant value through it.
+/// Computes the curvature at each of the `points`, of the level set of the field through it.
 ///
 /// # Panics
 ///
@@ -91,7 +91,7 @@ pub fn curvatures(field: &mut dyn Field, points: &[Vec3], out: &mut [Curvature])
     }
 }
 
-/// [`curvature`] of each pair of a gradient and a Hessian, with the same bits, in lanes.
+/// Computes the [`curvature`] for each pair of a gradient and a Hessian in lanes, with the same bits.
 ///
 /// # Panics
 ///
@@ -101,7 +101,7 @@ pub fn curvatures_of(gradient: &[Vec3], hessian: &[Sym3<f32>], out: &mut [Curvat
     for (first, out) in (0..).step_by(LANES).zip(out.chunks_mut(LANES)) {
         let mut entries = [[0.0; LANES]; 9];
         for k in 0..LANES {
-            // The last chunk is filled up with its first point.
+            // The first point fills up the last chunk.
             let i = first + if k < out.len() { k } else { 0 };
             let (g, h) = (&gradient[i], &hessian[i]);
             let of_point = [g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz];
@@ -118,11 +118,11 @@ pub fn curvatures_of(gradient: &[Vec3], hessian: &[Sym3<f32>], out: &mut [Curvat
     }
 }
 
-/// κ₁, κ₂ and the direction of κ₁.
+/// Returns κ₁, κ₂ and the direction of κ₁.
 fn principal<T: Real>(gradient: [T; 3], hessian: &Sym3<T>) -> [T; 5] {
     let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let slope_sq = dot(gradient, gradient);
-    // Of 0/0 and ∞/∞, NaN in all that follows.
+    // 0/0 and ∞/∞ give NaN in all that follows.
     let inverse_slope = slope_sq.sqrt() / slope_sq;
     let (u, v) = frame_of(gradient.map(|g| g * inverse_slope));
     let (hu, hv) = (hessian.times(u), hessian.times(v));
@@ -130,14 +130,14 @@ fn principal<T: Real>(gradient: [T; 3], hessian: &Sym3<T>) -> [T; 5] {
     let half = T::of(0.5);
     let (mean, h) = (half * (a + c), half * (a - c));
     let root = (h * h + b * b).sqrt();
-    // Of the two ways to write the eigenvector of the larger eigenvalue in (u, v), the one without cancellation.
+    // There are two forms of the eigenvector of the larger eigenvalue in (u, v); this is the one without cancellation.
     let long = root + h.abs();
     let (s, t) = (h.positive(long, b), h.positive(b, long));
     let length = (s * s + t * t).sqrt();
     let (s, t) = (length.positive(s / length, T::of(1.0)), length.positive(t / length, T::of(0.0)));
     let k = [(mean + root) * inverse_slope, (mean - root) * inverse_slope];
     let d: [T; 3] = core::array::from_fn(|i| u[i] * s + v[i] * t);
-    // 0, or NaN for all where one is not finite.
+    // The guard is 0, or NaN if any entry is not finite.
     let guard = (k[0] + k[1] + d[0] + d[1] + d[2]) * T::of(0.0);
     [k[0] + guard, k[1] + guard, d[0] + guard, d[1] + guard, d[2] + guard]
 }

@@ -1,5 +1,5 @@
-//! The particles of one run, as a structure of arrays: one column per attribute, all of the same length, in the
-//! order in which a front placed them, so that its generation levels are contiguous; particles that fill gaps come last.
+//! The particles of a run as a structure of arrays: one column for each attribute, all of the same length. Particles are in the order
+//! in which the front placed them, so generation levels are contiguous; particles that fill gaps come last.
 
 use glam::Vec3;
 
@@ -16,23 +16,24 @@ pub struct Particles {
     pub parent: Vec<u32>,
     /// Generation level: 0 for a seed, the parent's level + 1 otherwise.
     pub level: Vec<u32>,
-    /// What became of the slots around the particle: see [`SlotFate`].
+    /// Fates of the slots around the particle: see [`SlotFate`].
     pub slots: Vec<Slots>,
 }
 
-/// What became of one of the slots around a particle: six in hexagons (paper §4.4), up to ten where the radii vary (§5), in the order of their angles.
+/// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten where radii vary
+/// (§5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum SlotFate {
-    /// Not decided: the front has not come to it.
+    /// The front has not reached the slot.
     Open = 0,
-    /// Slot 0 of every particle but a seed: the parent sits there.
+    /// The parent is there: slot 0 of every particle but a seed.
     Parent = 1,
     /// A new particle was placed.
     Added = 2,
-    /// An existing particle of the same sheet sits there.
+    /// An existing particle of the same sheet is there.
     Matched = 3,
-    /// The root finder met no point of the surface on the circle.
+    /// The root finder has found no point of the surface on the circle.
     NotConverged = 4,
     /// The point lies outside the clip box.
     Outside = 5,
@@ -56,23 +57,23 @@ impl SlotFate {
     ];
 }
 
-/// The fates of up to ten slots, three bits each; slot `k` at bits `3k..3k + 3`.
+/// Fates of up to ten slots, in three bits each: slot `k` has the bits `3k..3k + 3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Slots(pub u32);
 
 impl Slots {
-    /// Set where the surface has a singular point within 2r: one without a gradient. The highest bit but one; the slots take
-    /// those below.
+    /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the slots take the
+    /// bits below it.
     pub const SINGULAR: u32 = 1 << 30;
 
-    /// Whether the surface has a singular point within 2r of the particle.
+    /// Returns whether the surface has a singular point within 2r of the particle.
     #[must_use]
     pub fn is_singular(self) -> bool {
         self.0 & Self::SINGULAR != 0
     }
 
-    /// Fate of slot `k < 10`.
+    /// Returns the fate of slot `k < 10`.
     #[must_use]
     pub fn get(self, k: usize) -> SlotFate {
         SlotFate::ALL[(self.0 >> (3 * k) & 7) as usize]
@@ -88,19 +89,19 @@ impl Particles {
     /// Parent index of a seed.
     pub const NO_PARENT: u32 = u32::MAX;
 
-    /// Number of particles.
+    /// Returns the number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.position.len()
     }
 
-    /// Whether there is no particle.
+    /// Returns whether there are no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
     }
 
-    /// Makes room for exactly `count` particles in all.
+    /// Reserves memory for exactly `count` particles in all.
     pub fn reserve(&mut self, count: usize) {
         let more = count.saturating_sub(self.len());
         self.position.reserve_exact(more);
@@ -111,7 +112,7 @@ impl Particles {
         self.slots.reserve_exact(more);
     }
 
-    /// Gives back the room for more particles than there are.
+    /// Frees the memory that the particles do not use.
     pub(crate) fn shrink(&mut self) {
         self.position.shrink_to_fit();
         self.normal.shrink_to_fit();
@@ -141,7 +142,7 @@ impl Particles {
         self.slots.truncate(len);
     }
 
-    /// Removes every particle and keeps the memory.
+    /// Removes all particles and keeps the memory.
     pub fn clear(&mut self) {
         self.position.clear();
         self.normal.clear();
@@ -151,7 +152,7 @@ impl Particles {
         self.slots.clear();
     }
 
-    /// FNV-1a hash of the bits of every column: equal digests mean equal runs, on any machine.
+    /// Returns the FNV-1a hash of the bits of all columns. Equal digests mean equal runs, on any machine.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;

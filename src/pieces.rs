@@ -1,29 +1,29 @@
-//! Long work, done a bounded piece at a time.
+//! Long computations in slices of bounded length.
 //!
-//! The work is an `async` function that awaits [`piece`] wherever it may be left: the compiler makes the state machine of it.
-//! Nothing in it waits for anything, so nobody is ever woken. Whoever holds it does as many pieces as there is time for, and
-//! gives it up by dropping it; what comes out does not depend on how the pieces were grouped.
+//! A computation is an `async` function that awaits [`piece`] wherever it may be interrupted, so the compiler makes its state
+//! machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time for, and cancels
+//! the computation by dropping it. The result does not depend on how slices were grouped.
 
 use core::future::poll_fn;
 use core::ops::Range;
 use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 
-/// Work under way.
+/// A computation under way.
 pub(crate) type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
 
-/// Ends a piece of the work: some 10 to 50 microseconds' worth natively.
+/// Ends a slice of work. A slice should take 10 to 50 µs natively.
 pub(crate) fn piece() -> impl Future<Output = ()> + Send {
     let mut is_over = false;
     poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })
 }
 
-/// 0 .. `count` in ranges of `size`, for a piece each.
+/// Divides 0..`count` into ranges of `size`, one for each slice.
 pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<usize>> + Send {
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
-/// Does up to `budget` pieces; the result, once the last one is done. The work must not be asked again then.
+/// Does up to `budget` slices and returns the result, if the last one is done. The computation must not be advanced after that.
 pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     (0..budget).find_map(|_| match work.as_mut().poll(&mut context) {
@@ -32,7 +32,7 @@ pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>,
     })
 }
 
-/// Does all pieces.
+/// Does all slices and returns the result.
 pub(crate) fn complete<T>(work: impl Future<Output = T>) -> T {
     let mut work = pin!(work);
     loop {

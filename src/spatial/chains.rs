@@ -1,30 +1,30 @@
-//! Points in linked lists by cell, made in one pass and in little memory. The points stay where they are; the lists hold their
-//! indices.
+//! Linked lists of points by cell, which are made in one pass and take little memory. The points stay in their columns; the lists
+//! hold their indices.
 
 use super::{NONE, coordinate};
 use glam::Vec3;
 
-/// Points per list head, over all cells: of more heads most would stay empty, of fewer many would be shared.
+/// Points for each list head. With more heads most would stay empty, with fewer many cells would share one.
 const POINTS_PER_HEAD: usize = 4;
 
-/// Multiplied by these, the coordinates of neighbouring cells are spread over all 32-bit numbers: primes near 2³² times the
-/// powers of the inverse of 1.2207, the root of x⁴ = x + 1, whose multiples are spread evenly in three dimensions.
+/// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all 32-bit numbers. They are primes near
+/// 2³² times the powers of 1/1.2207, where 1.2207 is the root of x⁴ = x + 1, whose multiples are evenly spread in three dimensions.
 const FACTORS: [u32; 3] = [0xd1b5_4a45, 0xabc9_839f, 0x8cb9_2bad];
 
-/// Linked lists of points, each for the cells with one hash. Points can be kept in *layers* of cells of different sizes.
+/// Linked lists of points, one for all cells with the same hash. Points can be in *layers* with cells of different sizes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chains {
-    /// One over the side of the cells, by layer.
+    /// 1 over the side of the cells, for each layer.
     inverse_side: Vec<f32>,
     head: Vec<u32>,
-    /// The point after each in its list.
+    /// For each point the one after it in its list.
     next: Vec<u32>,
-    /// Heads of the visit under way.
+    /// Buffer for the heads of a visit.
     wanted: Vec<u32>,
 }
 
 impl Chains {
-    /// Forgets all points; up to `points` will be added. Fast for queries with a radius of half the `sides`.
+    /// Empties the lists for up to `points` points, in layers with cells of these `sides`. Queries are fast for radii of half a side.
     pub(crate) fn reset(&mut self, sides: impl IntoIterator<Item = f32>, points: usize) {
         self.inverse_side.clear();
         self.inverse_side.extend(sides.into_iter().map(|side| 1.0 / side));
@@ -35,7 +35,7 @@ impl Chains {
         self.next.resize(points, NONE);
     }
 
-    /// Adds a point to a layer; `index` is below the number of points, and its own.
+    /// Adds a point to a layer. Its `index` must be below the number of points, and no other point may have it.
     pub(crate) fn insert(&mut self, layer: usize, point: Vec3, index: u32) {
         let inverse_side = self.inverse_side[layer];
         let [x, y, z] = point.to_array().map(|c| coordinate(c * inverse_side));
@@ -44,7 +44,7 @@ impl Chains {
         self.head[head as usize] = index;
     }
 
-    /// Those of `points` that were added to the cell of `place` in a layer and are there now, if they are `meant`.
+    /// Returns those of `points` that were added to the cell of `place` in a layer, are in it now and pass `meant`.
     pub(crate) fn beside(
         &self,
         points: &[Vec3],
@@ -59,8 +59,8 @@ impl Chains {
         list.filter(move |&index| meant(index) && cell(points[index as usize]) == [x, y, z])
     }
 
-    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some beyond, none
-    /// twice.
+    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some points beyond. No point is
+    /// visited twice.
     pub(crate) fn visit(
         &mut self,
         [lo, hi]: [Vec3; 2],
@@ -80,14 +80,14 @@ impl Chains {
                 }
             }
         }
-        // Cells share lists.
+        // Several cells may share a list.
         wanted.sort_unstable();
         wanted.dedup();
         wanted.iter().for_each(|&head| self.list(head).for_each(&mut visit));
         self.wanted = wanted;
     }
 
-    /// The points of a list.
+    /// Returns the points of a list.
     fn list(&self, head: u32) -> impl Iterator<Item = u32> {
         let mut index = self.head[head as usize];
         core::iter::from_fn(move || {

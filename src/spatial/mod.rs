@@ -1,10 +1,10 @@
-//! A sparse cell grid over points in space: insertion one by one, and all points within a radius. For points that are all
-//! there at once and spread unevenly, a tree.
+//! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell for points that stay in their
+//! columns, and a tree for points that are known from the start and spread unevenly.
 //!
-//! Cells are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, found through an open-addressing hash table;
-//! a cell holds its points in blocks of eight, coordinates and all, so that a query reads a few contiguous blocks
-//! and compares eight distances at a time. Memory is proportional to the occupied cells and a query costs the same
-//! at 10³ and 10⁶ points.
+//! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a hash table with open addressing
+//! finds. A cell stores its points in blocks of eight with their coordinates, so a query reads a few contiguous blocks and
+//! compares eight distances at a time. Memory is proportional to the number of occupied cells, and a query costs the same among
+//! 10³ and 10⁶ points.
 
 pub(crate) mod chains;
 pub(crate) mod tree;
@@ -12,23 +12,23 @@ pub(crate) mod tree;
 use crate::math::{LANES, Lanes, push_gently};
 use glam::{Vec3, Vec4};
 
-/// No block.
+/// Marks that there is no block.
 const NONE: u32 = u32::MAX;
-/// Cell coordinates are kept in 21 bits each, so that three of them make one hash key.
+/// Bits of a cell coordinate: three coordinates form one hash key.
 const COORDINATE_BITS: u32 = 21;
 const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
-/// Points in a block of eight, on average over a surface, where the last block of each cell is partly empty; less than
-/// was measured (5.5) at the cell side that the sampler uses.
+/// Mean number of points in a block of eight for points on a surface, whose last blocks in each cell are partly empty. It is less
+/// than the 5.5 measured with the cell side that the sampler uses.
 const POINTS_PER_BLOCK: usize = 5;
-/// The golden ratio in 64 bits: multiplied by it, consecutive keys are spread well in the top bits.
+/// The golden ratio in 64 bits: multiplication by it spreads consecutive keys well over the top bits.
 const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
-/// Key of an empty table entry: no brick has it, because a packed key uses 63 bits.
+/// Key of an empty table entry. No brick has it, because keys have 63 bits.
 const EMPTY: u64 = u64::MAX;
 
 #[derive(Clone, Copy)]
 struct Brick {
     key: u64,
-    /// Which of the eight cells have a block, a bit each.
+    /// One bit for each of the eight cells: whether it has a block.
     occupied: u32,
     /// First block of each of the eight cells.
     head: [u32; 8],
@@ -46,7 +46,7 @@ struct Block {
     len: u32,
 }
 
-/// Where a point sits in the grid; valid until the grid is cleared.
+/// Handle of a point in the grid; valid until the grid is reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellHandle(u32);
 
@@ -57,25 +57,25 @@ pub struct Neighbour {
     pub index: u32,
     /// Squared distance from the centre of the query.
     pub distance_sq: f32,
-    /// Point minus centre.
+    /// Position of the point less the centre of the query.
     pub offset: Vec3,
 }
 
-/// Places of points that a query has found.
+/// Points that a query has found, by their handles.
 struct Hits {
     len: usize,
     places: [u32; 8 * LANES],
 }
 
-/// The lanes of a set of lanes, given as bits, and their number.
+/// The indices of the lanes in a set of lanes, and their number.
 #[derive(Clone, Copy)]
 struct LanesOf {
     lane: [u32; LANES],
     count: usize,
 }
 
-/// For every set: all lanes are written down and the number added, since a loop over those in the set would end at a place
-/// that no branch prediction foresees.
+/// The lanes of every set, which is given as bits. A query copies all entries and advances by their number: the end of a loop over
+/// the set alone would be mispredicted.
 static LANES_OF: [LanesOf; 1 << LANES] = {
     let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
     let mut set = 0;
@@ -103,9 +103,7 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// An empty grid whose cells have the given side.
-    ///
-    /// Fast for query radii near 0.8 of the side.
+    /// Returns an empty grid with cells of the given side. Queries are fast for radii near 0.8 of it.
     ///
     /// # Panics
     ///
@@ -117,7 +115,7 @@ impl CellGrid {
         grid
     }
 
-    /// Removes every point, keeps the memory and sets a new side.
+    /// Removes all points and sets a new side. The memory is kept.
     ///
     /// # Panics
     ///
@@ -133,24 +131,24 @@ impl CellGrid {
         self.blocks.clear();
     }
 
-    /// Makes room for `points` that lie on a surface, so that the blocks need not grow by doubling.
+    /// Reserves memory for this many points on a surface, so that the blocks need not grow.
     pub fn reserve(&mut self, points: usize) {
         self.blocks.reserve_exact((points / POINTS_PER_BLOCK).saturating_sub(self.blocks.len()));
     }
 
-    /// Gives all memory back; the grid stays usable after [`CellGrid::reset`].
+    /// Frees all memory. The grid can be used again after [`CellGrid::reset`].
     pub fn release(&mut self) {
         self.table = Vec::new();
         self.blocks = Vec::new();
         self.bricks = 0;
     }
 
-    /// Cell coordinate of `x`.
+    /// Returns the cell coordinate of `x`.
     fn coordinate(&self, x: f32) -> u32 {
         coordinate(x * self.inverse_cell)
     }
 
-    /// Inserts a point and returns its place. `index` is handed back by queries.
+    /// Inserts a point and returns its handle. Queries return `index`.
     pub fn insert(&mut self, point: Vec3, index: u32) -> CellHandle {
         let (brick_key, cell) = self.cell_of(point);
         if 2 * (self.bricks + 1) > self.table.len() {
@@ -182,13 +180,13 @@ impl CellGrid {
         CellHandle(head * LANES as u32 + lane as u32)
     }
 
-    /// Takes the point at `place` out of all further queries. Its lane is not used again.
+    /// Removes the point with this handle. Its memory is not used again before the grid is reset.
     pub fn remove(&mut self, place: CellHandle) {
         let block = &mut self.blocks[place.0 as usize / LANES];
         block.x.0[place.0 as usize % LANES] = f32::INFINITY;
     }
 
-    /// Moves the point at `place` to `point` under a new index.
+    /// Moves the point with this handle to `point`, under a new index.
     pub fn update(&mut self, place: CellHandle, point: Vec3, index: u32) {
         let (b, lane) = (place.0 as usize / LANES, place.0 as usize % LANES);
         let block = &mut self.blocks[b];
@@ -206,14 +204,14 @@ impl CellGrid {
         }
     }
 
-    /// Collects every point within `radius` of `centre` (boundary included), in an order that depends only on the
-    /// history of insertions. Replaces the content of `found`.
+    /// Replaces the content of `found` by all points within `radius` of `centre`, the boundary included. Their order depends only on
+    /// the history of insertions.
     pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         found.clear();
         self.gather_more(centre, radius, found);
     }
 
-    /// [`CellGrid::gather`], added to what `found` holds.
+    /// Does what [`CellGrid::gather`] does, but appends to `found`.
     pub fn gather_more(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         let mut hits = Hits { len: 0, places: [0; 8 * LANES] };
         let lo = (centre - radius).to_array().map(|x| self.coordinate(x));
@@ -237,7 +235,7 @@ impl CellGrid {
         self.take(&mut hits, centre, found);
     }
 
-    /// Notes the points of a cell within the radius in `hits`, and what was noted in `found` before the room ends.
+    /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found` whenever it is full.
     #[inline]
     fn gather_cell(&self, head: u32, ball: (Vec3, f32), hits: &mut Hits, found: &mut Vec<Neighbour>) {
         let (centre, radius) = ball;
@@ -263,7 +261,7 @@ impl CellGrid {
         }
     }
 
-    /// Moves what was noted to `found`.
+    /// Moves the content of `hits` to `found`.
     fn take(&self, hits: &mut Hits, centre: Vec3, found: &mut Vec<Neighbour>) {
         found.extend(hits.places[..hits.len].iter().map(|&place| {
             let (block, lane) = (&self.blocks[place as usize / LANES], place as usize % LANES);
@@ -321,7 +319,7 @@ impl CellGrid {
         }
     }
 
-    /// Bytes held.
+    /// Returns the number of bytes allocated.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.table.capacity() * size_of::<Brick>() + self.blocks.capacity() * size_of::<Block>()

@@ -1,16 +1,16 @@
-//! A balanced box tree over points: nearest neighbours at a cost that depends neither on how the points are spread
-//! nor on stray ones far away.
+//! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the points are
+//! distributed nor on distant outliers.
 
 use crate::math::sort_few;
 use crate::pieces::{self, piece};
 use glam::Vec3;
 
-/// Most points in a leaf. Leaves hold half as many to this many, so that the candidates of a whole leaf are
-/// gathered once and scanned together; 16 was fastest of 8, 16 and 32 for the cells of 50,000 points.
+/// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be gathered once.
+/// 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
 const LEAF: usize = 16;
-/// Points whose nodes are made in one piece of work.
+/// Points whose nodes are made in one slice of work.
 const PIECE: usize = 1024;
-/// Depth of the traversal stack: a balanced tree over 2³² points is less than 33 levels deep.
+/// Depth of the traversal stack: a balanced tree over 2³² points has fewer than 33 levels.
 const STACK: usize = 64;
 
 #[derive(Clone, Copy, Debug)]
@@ -24,38 +24,38 @@ struct Node {
 }
 
 impl Node {
-    /// Squared distance from `p` to the box, 0 inside.
+    /// Returns the squared distance from `p` to the box; 0 inside.
     #[inline]
     fn distance_sq(&self, p: Vec3) -> f32 {
         (self.lo - p).max(p - self.hi).max(Vec3::ZERO).length_squared()
     }
 }
 
-/// Points in tree order: those of a leaf are contiguous, and near leaves are near in memory.
+/// Points in tree order: the points of a leaf are contiguous, and leaves near one another are near in memory.
 #[derive(Debug)]
 pub(crate) struct Tree {
     /// The points, in tree order.
     pub(crate) position: Vec<Vec3>,
-    /// Tree order → index given.
+    /// For each point in tree order, its index as given.
     pub(crate) origin: Vec<u32>,
     nodes: Vec<Node>,
 }
 
-/// A squared distance and a point: ordered by distance, ties by index.
+/// Packs a squared distance and a point into a key, which is ordered by distance, and at equal distances by index.
 #[inline]
 pub(crate) fn key(distance_sq: f32, index: u32) -> u64 {
     // Non-negative floats are ordered like their bits.
     u64::from(distance_sq.to_bits()) << 32 | u64::from(index)
 }
 
-/// The parts of a [`key`].
+/// Returns the squared distance and the point of a [`key`].
 #[inline]
 pub(crate) fn unkey(key: u64) -> (f32, u32) {
     (f32::from_bits((key >> 32) as u32), key as u32)
 }
 
 impl Tree {
-    /// The tree over `points`, which must be finite.
+    /// Makes the tree over `points`, which must be finite.
     pub(crate) fn new(points: &[Vec3]) -> Self {
         Self::of(points.iter().copied().zip(0..).collect())
     }
@@ -65,11 +65,11 @@ impl Tree {
         pieces::complete(Self::in_pieces(items))
     }
 
-    /// The tree over points with their indices, made a piece at a time; the largest piece takes as long as a look at all of
-    /// them. The points must be finite; the result depends on them and their indices alone.
+    /// Makes the tree over points with their indices in slices of work, the largest of which visits all points once. The points must
+    /// be finite. The result depends only on them and their indices.
     pub(crate) async fn in_pieces(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
-        // Ranges still to become nodes, and the node whose second child each one is.
+        // Ranges that are still to become nodes, each with the node whose second child it is.
         let mut open = vec![(0..items.len(), None)];
         let mut seen = 0;
         while let Some((range, parent)) = open.pop().filter(|(range, _)| !range.is_empty()) {
@@ -85,7 +85,7 @@ impl Tree {
                 open.push((middle..range.end, Some(node)));
                 open.push((range.start..middle, None));
             } else {
-                // The median search leaves an order that is the library's business; this one, by index, is ours.
+                // The median search leaves an unspecified order; sorting by index makes it our own.
                 sort_few(&mut items[range], |a, b| a.1 < b.1);
             }
             if seen >= PIECE {
@@ -97,12 +97,12 @@ impl Tree {
         Self { position, origin, nodes }
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub(crate) fn len(&self) -> usize {
         self.position.len()
     }
 
-    /// Every leaf, in order: its range of points and its box.
+    /// Returns all leaves in order, each as its range of points and its box.
     pub(crate) fn leaves(&self) -> impl Iterator<Item = (core::ops::Range<usize>, Vec3, Vec3)> {
         self.nodes
             .iter()
@@ -110,8 +110,8 @@ impl Tree {
             .map(|node| (node.first as usize..node.end as usize, node.lo, node.hi))
     }
 
-    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `*bound_sq` round `p`,
-    /// nearer ones first; `visit` may shrink the bound.
+    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq` around `p`, nearer ones first. `visit`
+    /// may shrink the bound.
     #[inline]
     fn search(&self, p: Vec3, mut bound_sq: f32, mut visit: impl FnMut(u32, u32, &mut f32)) {
         if self.nodes.is_empty() {
@@ -140,8 +140,8 @@ impl Tree {
         }
     }
 
-    /// The nearest point to `p` other than `except` and its squared distance, if that is below `bound_sq`; else `bound_sq` and
-    /// `except`.
+    /// Returns the squared distance from `p` to the nearest point other than `except`, and that point, if the distance is below
+    /// `bound_sq`; otherwise `bound_sq` and `except`.
     pub(crate) fn nearest(&self, p: Vec3, except: u32, bound_sq: f32) -> (f32, u32) {
         let mut best = (bound_sq, except);
         self.search(p, bound_sq, |first, end, bound| {
@@ -156,12 +156,12 @@ impl Tree {
         best
     }
 
-    /// The distance alone of [`Tree::nearest`].
+    /// Returns the squared distance of [`Tree::nearest`].
     pub(crate) fn nearest_sq(&self, p: Vec3, except: u32, bound_sq: f32) -> f32 {
         self.nearest(p, except, bound_sq).0
     }
 
-    /// The `count` nearest points to `p` that pass `accept`, nearest first, as keys in `out`.
+    /// Replaces `out` by the keys of the `count` nearest points to `p` that pass `accept`, nearest first.
     pub(crate) fn nearest_many(
         &self,
         p: Vec3,
@@ -217,7 +217,7 @@ impl Tree {
     }
 }
 
-/// The node over `items`, which begin at `first`, as a leaf.
+/// Returns the node over `items`, which begin at `first`, as a leaf.
 fn node_of(items: &[(Vec3, u32)], first: usize) -> Node {
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
@@ -228,7 +228,7 @@ fn node_of(items: &[(Vec3, u32)], first: usize) -> Node {
     Node { lo, hi, first: first as u32, end: (first + items.len()) as u32, second: 0 }
 }
 
-/// Parts the `items` of `node` at the median of its longest side; where the second part begins.
+/// Splits the `items` of `node` at the median along its longest side. Returns where the second part begins.
 fn split(items: &mut [(Vec3, u32)], node: &Node) -> usize {
     let side = node.hi - node.lo;
     let axis = if side.x >= side.y && side.x >= side.z {
