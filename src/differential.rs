@@ -6,7 +6,8 @@
 //!
 //! # Outcomes
 //!
-//! * *Umbilics* (κ₁ = κ₂: spheres, planes): every tangent direction is principal; the first one of the tangent basis is given.
+//! * *Umbilics* (κ₁ = κ₂: spheres, planes): every tangent direction is principal; the first one of the tangent basis is
+//!   given.
 //! * *Undefined*: where ∇f vanishes, where anything is not finite, and where |∇f|² leaves the range of the numbers (in
 //!   single precision |∇f| below 10⁻¹⁹ or above 10¹⁹), every entry is NaN; see [`Curvature::is_defined`].
 

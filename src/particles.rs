@@ -1,5 +1,6 @@
-//! The particles of a run as a structure of arrays: one column for each attribute, all of the same length. Particles are in the order
-//! in which the front placed them, so generation levels are contiguous; particles that fill gaps come last.
+//! The particles of a run as a structure of arrays: one column for each attribute, all of the same length. Particles
+//! are in the order in which the front placed them, so generation levels are contiguous; particles that fill gaps come
+//! last.
 
 use glam::Vec3;
 
@@ -20,8 +21,8 @@ pub struct Particles {
     pub slots: Vec<Slots>,
 }
 
-/// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten where radii vary
-/// (§5).
+/// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
+/// where radii vary (§5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum SlotFate {
@@ -63,8 +64,8 @@ impl SlotFate {
 pub struct Slots(pub u32);
 
 impl Slots {
-    /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the slots take the
-    /// bits below it.
+    /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the
+    /// slots take the bits below it.
     pub const SINGULAR: u32 = 1 << 30;
 
     /// Returns whether the surface has a singular point within 2r of the particle.

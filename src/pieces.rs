@@ -1,8 +1,8 @@
 //! Long computations in slices of bounded length.
 //!
-//! A computation is an `async` function that awaits [`piece`] wherever it may be interrupted, so the compiler makes its state
-//! machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time for, and cancels
-//! the computation by dropping it. The result does not depend on how slices were grouped.
+//! A computation is an `async` function that awaits [`piece`] wherever it may be interrupted, so the compiler makes its
+//! state machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time
+//! for, and cancels the computation by dropping it. The result does not depend on how slices were grouped.
 
 use core::future::poll_fn;
 use core::ops::Range;
@@ -23,7 +23,8 @@ pub(crate) fn ranges(count: usize, size: usize) -> impl Iterator<Item = Range<us
     (0..count).step_by(size).map(move |first| first..(first + size).min(count))
 }
 
-/// Does up to `budget` slices and returns the result, if the last one is done. The computation must not be advanced after that.
+/// Does up to `budget` slices and returns the result, if the last one is done. The computation must not be advanced
+/// after that.
 pub(crate) fn advance<T>(mut work: Pin<&mut (impl Future<Output = T> + ?Sized)>, budget: u32) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     (0..budget).find_map(|_| match work.as_mut().poll(&mut context) {

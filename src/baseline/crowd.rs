@@ -6,12 +6,12 @@ use glam::Vec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// Side of a grid cell over the mean reach of a particle. Compared with 1.25 an iteration takes 5 % fewer instructions with Witkin and
-/// Heckbert's scheme and 13 % fewer with forces. Values up to 3.2 make no difference to the former.
+/// Side of a grid cell over the mean reach of a particle. Compared with 1.25 an iteration takes 5 % fewer instructions
+/// with Witkin and Heckbert's scheme and 13 % fewer with forces. Values up to 3.2 make no difference to the former.
 const CELL: f32 = 1.6;
 
-/// Reach, in cells, beyond which all particles are searched instead of the grid. Only a few particles at a time, which have few
-/// neighbours, reach so far.
+/// Reach, in cells, beyond which all particles are searched instead of the grid. Only a few particles at a time, which
+/// have few neighbours, reach so far.
 const FARTHEST: f32 = 4.0;
 
 /// A particle, and what an iteration computes for it.
@@ -82,8 +82,8 @@ impl Neighbourhood {
         }
     }
 
-    /// Returns whether there are lists of these particles and they hold all neighbours within the `reach` of each. No particle may
-    /// have divided or died since they were made.
+    /// Returns whether there are lists of these particles and they hold all neighbours within the `reach` of each. No
+    /// particle may have divided or died since they were made.
     pub(crate) fn serves(&self, particles: &[Particle], reach: impl Fn(f32) -> f32) -> bool {
         let moved = |(listed, particle): (&Listed, &Particle)| (particle.position - listed.position).length();
         let farthest = self.listed.iter().zip(particles).map(moved).fold(0.0, f32::max);
@@ -93,8 +93,8 @@ impl Neighbourhood {
             })
     }
 
-    /// Empties the grid and fits its cells to the mean `reach` of the particles. With `to_last`, lists are made that serve for more
-    /// than this iteration.
+    /// Empties the grid and fits its cells to the mean `reach` of the particles. With `to_last`, lists are made that
+    /// serve for more than this iteration.
     pub(crate) fn reset(&mut self, particles: &[Particle], reach: impl Fn(f32) -> f32, to_last: bool) {
         let sum: f64 = particles.iter().map(|p| f64::from(reach(p.radius))).sum();
         let mean = (sum / particles.len() as f64) as f32;
@@ -109,8 +109,8 @@ impl Neighbourhood {
         self.grid.insert(particles[i].position, i as u32);
     }
 
-    /// Returns the particles within `reach` of particle `i`, itself among them, from its list or else from the grid. Lists are made
-    /// at the same time, so particles must be queried in their order.
+    /// Returns the particles within `reach` of particle `i`, itself among them, from its list or else from the grid.
+    /// Lists are made at the same time, so particles must be queried in their order.
     pub(crate) fn around(&mut self, particles: &[Particle], i: usize, reach: f32) -> &[Neighbour] {
         let centre = particles[i].position;
         if let Some(listed) = self.listed.get(i) {

@@ -1,20 +1,21 @@
-//! The scheme of forces with which the paper compares its adaptive sampling (§6, Table 1): discs whose radii follow the curvature
-//! push each other apart where they overlap, and "we split a particle when no force is applied on it".
+//! The scheme of forces with which the paper compares its adaptive sampling (§6, Table 1): discs whose radii follow the
+//! curvature push each other apart where they overlap, and "we split a particle when no force is applied on it".
 //!
-//! The forces, the radii and the projection onto the surface are those of our own relaxation, [`Overlap`]: "we used the same code
-//! for the relaxations of our methods and for the comparative techniques (with the exception of the split criterion)".
+//! The forces, the radii and the projection onto the surface are those of our own relaxation, [`Overlap`]: "we used the
+//! same code for the relaxations of our methods and for the comparative techniques (with the exception of the split
+//! criterion)".
 //!
 //! # Differs from the paper
 //!
-//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in
-//!   a lattice with δ = 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's scheme, so that
-//!   a particle squeezed into the last gap is removed again.
-//! * Two particles repel each other with the weight 1 if their normals are within 90°, and not at all otherwise. In our own
-//!   relaxation the weight falls from 1 to 0 between 60° and 120°.
+//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as
+//!   much as in a lattice with δ = 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's
+//!   scheme, so that a particle squeezed into the last gap is removed again.
+//! * Two particles repel each other with the weight 1 if their normals are within 90°, and not at all otherwise. In our
+//!   own relaxation the weight falls from 1 to 0 between 60° and 120°.
 //! * "No force" has a tolerance, [`Settings::free_load`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's scheme.
-//! * The children are placed half a radius to either side of their parent in a random direction, on the surface, with the radii
-//!   there.
+//! * The children are placed half a radius to either side of their parent in a random direction, on the surface, with
+//!   the radii there.
 
 use super::crowd::Particle;
 use super::{Settings, SurfaceContext};
@@ -27,8 +28,8 @@ use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec3, Vec4};
 
-/// A particle that has moved by less than this share of its radius in an iteration counts as at rest. This is γΔt of Witkin and
-/// Heckbert, with γ = 4 and Δt = 0.03.
+/// A particle that has moved by less than this share of its radius in an iteration counts as at rest. This is γΔt of
+/// Witkin and Heckbert, with γ = 4 and Δt = 0.03.
 const REST: f32 = 0.12;
 
 /// The scheme, with the constants of a run.
@@ -67,7 +68,8 @@ impl Forces {
         Overlap::RANGE * radius
     }
 
-    /// Adds the forces between particle `i` and those neighbours that have a smaller radius or, at equal radii, a smaller index.
+    /// Adds the forces between particle `i` and those neighbours that have a smaller radius or, at equal radii, a
+    /// smaller index.
     pub(crate) fn repel(&self, particles: &mut [Particle], i: usize, near: &[Neighbour]) {
         let Particle { normal, radius, .. } = particles[i];
         let law = self.law();
@@ -141,7 +143,8 @@ impl Forces {
         particle.moved < REST && particle.load < self.free
     }
 
-    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the surface.
+    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the
+    /// surface.
     pub(crate) fn children(
         &self,
         surface: &mut SurfaceContext,
@@ -157,8 +160,8 @@ impl Forces {
         landed.filter(|children| children.iter().all(is_good))
     }
 
-    /// Returns the particles on the surface, with the radii there; `None` if one does not come to it. A Newton correction shorter than
-    /// `trust` radii is not checked.
+    /// Returns the particles on the surface, with the radii there; `None` if one does not come to it. A Newton
+    /// correction shorter than `trust` radii is not checked.
     pub(crate) fn land<const N: usize>(
         &self,
         surface: &mut SurfaceContext,
@@ -181,8 +184,8 @@ impl Forces {
         })
     }
 
-    /// Returns the particle on the surface within the tolerance. Where rounding hides the surface the particle stays as it is: it has
-    /// always been on the surface.
+    /// Returns the particle on the surface within the tolerance. Where rounding hides the surface the particle stays as
+    /// it is: it has always been on the surface.
     pub(crate) fn landed(&self, surface: &mut SurfaceContext, particle: &Particle) -> Particle {
         match self.land(surface, [*particle], 0.0) {
             Some([landed]) if self.bounds.contains(landed.position) => landed,

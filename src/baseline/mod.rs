@@ -1,22 +1,24 @@
-//! The methods that the paper compares its own with (§3 and §6, Table 1): particle systems that start from one particle and cover
-//! the surface by fission and death.
+//! The methods that the paper compares its own with (§3 and §6, Table 1): particle systems that start from one particle
+//! and cover the surface by fission and death.
 //!
-//! For particles of one size this is the system of Witkin and Heckbert (`witkin_heckbert`); for particles whose size follows the
-//! curvature it is a scheme of forces (`forces`). An iteration of either (paper §3) computes forces and energies, moves the
-//! particles, and lets them divide or die. A run ends when nothing happens any more, or after a given number of iterations.
+//! For particles of one size this is the system of Witkin and Heckbert (`witkin_heckbert`); for particles whose size
+//! follows the curvature it is a scheme of forces (`forces`). An iteration of either (paper §3) computes forces and
+//! energies, moves the particles, and lets them divide or die. A run ends when nothing happens any more, or after a
+//! given number of iterations.
 //!
-//! The implementations are meant to be strong opponents. Neighbours come from the grid of the front, so an iteration is linear in
-//! the number of particles, and from lists that serve for several iterations once no particle divides or dies. A particle takes
-//! one evaluation of the field in an iteration, in batches. The survey, the radius law, the forces between discs and the
-//! projection onto the surface are those of the sampler. The module is not part of the page.
+//! The implementations are meant to be strong opponents. Neighbours come from the grid of the front, so an iteration is
+//! linear in the number of particles, and from lists that serve for several iterations once no particle divides or
+//! dies. A particle takes one evaluation of the field in an iteration, in batches. The survey, the radius law, the
+//! forces between discs and the projection onto the surface are those of the sampler. The module is not part of the
+//! page.
 //!
 //! # Differs from the paper
 //!
-//! * The paper detects convergence by the number of particles and their residual motion and gives no numbers (§3). Here a run has
-//!   settled after [`Settings::quiet_iterations`] consecutive iterations without fission and death and with a mean motion of at
-//!   most [`Settings::rest`].
-//! * At the end all particles are brought onto the surface within the tolerance of the sampler, and those that are far from it
-//!   are dropped.
+//! * The paper detects convergence by the number of particles and their residual motion and gives no numbers (§3). Here
+//!   a run has settled after [`Settings::quiet_iterations`] consecutive iterations without fission and death and with a
+//!   mean motion of at most [`Settings::rest`].
+//! * At the end all particles are brought onto the surface within the tolerance of the sampler, and those that are far
+//!   from it are dropped.
 
 mod crowd;
 mod forces;
@@ -240,7 +242,8 @@ impl Baseline {
         })
     }
 
-    /// Returns the wanted repulsion radius σ̂. If radii follow the curvature, it is that of as many particles of one size.
+    /// Returns the wanted repulsion radius σ̂. If radii follow the curvature, it is that of as many particles of one
+    /// size.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -283,8 +286,8 @@ impl Baseline {
         }
     }
 
-    /// Does up to `budget` units of work; a unit is a particle in one phase. Returns early at the end of an iteration, so that each
-    /// can be looked at. How a run is divided into steps does not change it.
+    /// Does up to `budget` units of work; a unit is a particle in one phase. Returns early at the end of an iteration,
+    /// so that each can be looked at. How a run is divided into steps does not change it.
     pub fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> Progress {
         let field = &mut Scaled::new(field, self.factor);
         let iteration = self.progress.iterations;

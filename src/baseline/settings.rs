@@ -6,10 +6,11 @@ use serde::Serialize;
 /// Settings of a baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Settings {
-    /// Wanted sizes, as for the sampler. The sampling chooses the scheme: [`Uniform`](crate::sampler::Sampling::Uniform) is that of
-    /// Witkin and Heckbert, [`Adaptive`](crate::sampler::Sampling::Adaptive) that of forces. A count stands for the radius with which
-    /// so many particles cover the surface in perfect hexagons. The seed chooses the first particle and everything that is random,
-    /// and the limit on particles applies. Settings of the front and the relaxation have no meaning here.
+    /// Wanted sizes, as for the sampler. The sampling chooses the scheme:
+    /// [`Uniform`](crate::sampler::Sampling::Uniform) is that of Witkin and Heckbert,
+    /// [`Adaptive`](crate::sampler::Sampling::Adaptive) that of forces. A count stands for the radius with which so
+    /// many particles cover the surface in perfect hexagons. The seed chooses the first particle and everything that is
+    /// random, and the limit on particles applies. Settings of the front and the relaxation have no meaning here.
     pub sizes: Sizes,
     /// Largest number of iterations.
     pub max_iterations: u32,
@@ -33,9 +34,9 @@ pub struct Settings {
     pub equilibrium_speed: f64,
     /// ν: share of the wanted energy above which a particle larger than the wanted radius divides.
     pub fission_energy: f64,
-    /// Σ (overlap / mean radius)² below which a particle counts as free of forces and divides, for the scheme of forces. 0.01 is one
-    /// overlap of a twentieth of the spacing. A larger value gives more particles: with 0.5, at which a lattice of the wanted
-    /// spacing is hardly compressed, about a third more.
+    /// Σ (overlap / mean radius)² below which a particle counts as free of forces and divides, for the scheme of
+    /// forces. 0.01 is one overlap of a twentieth of the spacing. A larger value gives more particles: with 0.5, at
+    /// which a lattice of the wanted spacing is hardly compressed, about a third more.
     pub free_load: f64,
     /// δ: share of the wanted radius below which a particle may die, or that its compression corresponds to.
     pub death_radius: f64,

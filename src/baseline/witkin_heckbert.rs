@@ -1,27 +1,27 @@
 //! The particles of one size of A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control Implicit
 //! Surfaces* (SIGGRAPH 1994), §4: Gaussian repulsion, adaptive radii, fission and death.
 //!
-//! Particle i has the radius σᵢ, and E_ij = α exp(−|r_ij|²/2σᵢ²) is its energy due to particle j, where r_ij = p_i − p_j.
-//! It moves with the velocity
+//! Particle i has the radius σᵢ, and E_ij = α exp(−|r_ij|²/2σᵢ²) is its energy due to particle j, where r_ij = p_i −
+//! p_j. It moves with the velocity
 //!
 //! P_i = σᵢ² Σⱼ r_ij (E_ij/σᵢ² + E_ji/σⱼ²),
 //!
-//! of which the part along the surface is taken, less φ f ∇f/|∇f|² as feedback towards it. (Their equation 9 subtracts the two
-//! terms as printed; the erratum adds them.) The radius changes so that the energy D_i = Σⱼ E_ij approaches Ê,
+//! of which the part along the surface is taken, less φ f ∇f/|∇f|² as feedback towards it. (Their equation 9 subtracts
+//! the two terms as printed; the erratum adds them.) The radius changes so that the energy D_i = Σⱼ E_ij approaches Ê,
 //!
 //! σ̇ᵢ = −ρ (D_i − Ê) / (σᵢ⁻³ Σⱼ |r_ij|² E_ij + β).
 //!
-//! A particle near equilibrium, |ṗ| < γσ, divides into two of radius σ/√2 if σ > σ_max, or if D > νÊ and σ > σ̂. It dies if σ < δσ̂
-//! and a random number exceeds σ/(δσ̂).
+//! A particle near equilibrium, |ṗ| < γσ, divides into two of radius σ/√2 if σ > σ_max, or if D > νÊ and σ > σ̂. It
+//! dies if σ < δσ̂ and a random number exceeds σ/(δσ̂).
 //!
 //! # Differs from the source
 //!
 //! * Energies are cut off at 3σ, where they are 1.1 % of α, so that a grid finds all neighbours.
 //! * Particles whose normals are 90° or more apart do not repel each other: they are on opposite sides of a thin part.
-//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box around the
-//!   surface, √3 times the diameter of a sphere, and no less than 2σ̂.
-//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a finite Δt a
-//!   pair that has just divided could leave the surface, or get negative radii.
+//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box
+//!   around the surface, √3 times the diameter of a sphere, and no less than 2σ̂.
+//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a
+//!   finite Δt a pair that has just divided could leave the surface, or get negative radii.
 //! * The children are placed σ/2 to either side of their parent in a random direction, on the surface.
 
 use super::crowd::Particle;
@@ -64,7 +64,8 @@ pub(crate) struct WitkinHeckbert {
 }
 
 impl WitkinHeckbert {
-    /// Returns the scheme for particles of the radius `wanted` on a surface of this diameter, which must not be below theirs.
+    /// Returns the scheme for particles of the radius `wanted` on a surface of this diameter, which must not be below
+    /// theirs.
     pub(crate) fn new(
         settings: &Settings,
         tolerance: Tolerance,
@@ -95,8 +96,8 @@ impl WitkinHeckbert {
         GAUSSIAN_RANGE * radius
     }
 
-    /// Adds the energies E_ij of particle `i` due to its neighbours, and their contributions to the velocities of both. Each pair
-    /// is visited twice, once with the radius of either particle.
+    /// Adds the energies E_ij of particle `i` due to its neighbours, and their contributions to the velocities of both.
+    /// Each pair is visited twice, once with the radius of either particle.
     pub(crate) fn repel(&self, particles: &mut [Particle], i: usize, near: &[Neighbour]) {
         let Particle { normal, radius, .. } = particles[i];
         let inverse_sq = 1.0 / (radius * radius);
@@ -199,7 +200,8 @@ impl WitkinHeckbert {
         self.is_near_equilibrium(particle) && (particle.radius >= self.largest || is_large)
     }
 
-    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the surface.
+    /// Returns the two children of a particle, on either side of it in `direction`; `None` if one does not come to the
+    /// surface.
     pub(crate) fn children(
         &self,
         surface: &mut SurfaceContext,
@@ -216,7 +218,8 @@ impl WitkinHeckbert {
         is_good.then(|| [0, 1].map(|k| Particle::new(position[k], normal[k], radius)))
     }
 
-    /// Returns the particle on the surface; `None` if it is far from it. Where rounding hides the surface it stays as it is.
+    /// Returns the particle on the surface; `None` if it is far from it. Where rounding hides the surface it stays as
+    /// it is.
     pub(crate) fn landed(&self, surface: &mut SurfaceContext, particle: &Particle) -> Option<Particle> {
         let (mut position, mut normal, mut ok) = ([particle.position], [Vec3::ZERO], [false]);
         self.land(surface, &mut position, &mut normal, &mut ok, (particle.radius, 0.0));
@@ -227,7 +230,8 @@ impl WitkinHeckbert {
         }
     }
 
-    /// Moves positions onto the surface, if that is within `radius`. A Newton correction shorter than `trust` radii is not checked.
+    /// Moves positions onto the surface, if that is within `radius`. A Newton correction shorter than `trust` radii is
+    /// not checked.
     fn land(
         &self,
         surface: &mut SurfaceContext,

@@ -69,9 +69,10 @@ impl Bounds {
         p.cmpge(self.lo()).all() && p.cmple(self.hi()).all()
     }
 
-    /// Whether particles, whose places are in single precision, can be put in the box: every side has positive length, the
-    /// diagonal lies between 10⁻¹² and 10¹², so that squares of radii are normal numbers, and no corner is farther from the
-    /// origin than 1,000 diagonals, where rounding already moves a particle of the default radius by a hundredth of it.
+    /// Whether particles, whose places are in single precision, can be put in the box: every side has positive length,
+    /// the diagonal lies between 10⁻¹² and 10¹², so that squares of radii are normal numbers, and no corner is farther
+    /// from the origin than 1,000 diagonals, where rounding already moves a particle of the default radius by a
+    /// hundredth of it.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         const FARTHEST: f64 = 1e3;

@@ -8,13 +8,13 @@ use glam::{DVec3, Vec3};
 
 /// Points nearer to the border than this many d_hex are left out of the figures per point: their neighbourhood is cut.
 const MARGIN: f64 = 4.0;
-/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 % farther away than it is, at
-/// the distance of the margin.
+/// Step of the grid on a face, in d_hex. A border that is sampled this densely seems at most 0.05 % farther away than
+/// it is, at the distance of the margin.
 const STEP: f64 = 0.25;
 /// Largest number of cells of that grid along a side, which limits the evaluations to two million for each face.
 const MOST_CELLS: f64 = 1500.0;
-/// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that touches its box from inside is
-/// whole.
+/// Distance that the surface must reach beyond a face to count as cut, in d_hex: a surface that touches its box from
+/// inside is whole.
 const BEYOND: f64 = 0.05;
 
 /// The curves along which the surface leaves a box, as points on them.
@@ -26,7 +26,8 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have a spacing of about `d_hex`.
+    /// Finds the border on those faces of `bounds` that are near a point of `tree`; the points have a spacing of about
+    /// `d_hex`.
     pub(super) async fn new(field: &mut dyn Field, bounds: &Bounds, tree: &Tree, d_hex: f64) -> Self {
         let margin = MARGIN * d_hex;
         let mut curve = Vec::new();
@@ -143,8 +144,9 @@ impl Face {
 
 /// Returns whether the surface passes `p` within a cell of length `step` and continues beyond the face there.
 ///
-/// The surface is approximated to second order. From `p` along the unit tangent t that rises fastest beyond the face, whose outward
-/// normal is e, the height over the face is s (t·e) − s² κ (n·e)/2, where κ is the normal curvature along t.
+/// The surface is approximated to second order. From `p` along the unit tangent t that rises fastest beyond the face,
+/// whose outward normal is e, the height over the face is s (t·e) − s² κ (n·e)/2, where κ is the normal curvature along
+/// t.
 fn is_cut(field: &mut dyn Field, p: DVec3, step: f64, axis: usize, sign: f64, d_hex: f64) -> bool {
     let jet = field.jet(p);
     let slope = jet.gradient.length();

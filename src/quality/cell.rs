@@ -6,12 +6,13 @@ use glam::DVec2;
 const CORNERS: usize = 208;
 /// Label of an edge of the starting square.
 const SQUARE: u32 = u32::MAX;
-/// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share is far above the rounding of
-/// the corners in double precision (they are cut from a square many times larger) and far below that of positions in single
-/// precision. So four exactly cocircular points share one corner and no edge.
+/// A bisector that cuts off less than this share of |q| counts as not touching the cell. The share is far above the
+/// rounding of the corners in double precision (they are cut from a square many times larger) and far below that of
+/// positions in single precision. So four exactly cocircular points share one corner and no edge.
 const TOUCH: f64 = 1e-10;
 
-/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are in counter-clockwise order.
+/// The Voronoi cell of the origin, which is clipped by one bisector after another. Its corners are in counter-clockwise
+/// order.
 #[derive(Debug)]
 pub(super) struct VoronoiCell {
     corner: [DVec2; CORNERS],
@@ -45,7 +46,8 @@ impl VoronoiCell {
         self.reach_sq = 2.0 * half * half;
     }
 
-    /// Returns the squared distance of the farthest corner. A point farther away than twice that distance cannot change the cell.
+    /// Returns the squared distance of the farthest corner. A point farther away than twice that distance cannot change
+    /// the cell.
     #[inline]
     pub(super) fn reach_sq(&self) -> f64 {
         self.reach_sq
@@ -107,9 +109,9 @@ impl VoronoiCell {
             self.corner[..self.count].iter().fold(0.0, |reach: f64, v| reach.max(v.length_squared()));
     }
 
-    /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end is certain. A corner is
-    /// certain if it belongs to the cell among all points, provided that the cell was clipped by every point nearer than
-    /// √`known_sq`. Edges of the starting square are left out, and corners on them are not certain.
+    /// Returns every edge in counter-clockwise order: its label, and whether the corner at its end is certain. A corner
+    /// is certain if it belongs to the cell among all points, provided that the cell was clipped by every point nearer
+    /// than √`known_sq`. Edges of the starting square are left out, and corners on them are not certain.
     pub(super) fn edges(&self, known_sq: f64) -> impl Iterator<Item = (u32, bool)> {
         (0..self.count).filter(|&k| self.label[k] != SQUARE).map(move |k| {
             let next = if k + 1 == self.count { 0 } else { k + 1 };

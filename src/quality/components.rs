@@ -5,13 +5,13 @@ use super::triangles::find;
 use crate::math::sort_few;
 use crate::pieces::{piece, ranges};
 
-/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no triangle, and if
-/// their distance is at most this many times the spacing at either. The limit is for the gaps that a clip box cuts: triangles
-/// across them join points of different components.
+/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no
+/// triangle, and if their distance is at most this many times the spacing at either. The limit is for the gaps that a
+/// clip box cuts: triangles across them join points of different components.
 const NEAR: f32 = 2.0;
 
-/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times the distance of
-/// the nearest.
+/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times the
+/// distance of the nearest.
 const RANK: usize = 3;
 const FARTHEST: f32 = 3.0;
 
@@ -21,8 +21,8 @@ const SLICE: usize = 512;
 /// Label of a point that belongs to no component because its position is not finite.
 pub(super) const NO_LABEL: u32 = u32::MAX;
 
-/// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points; ties are in
-/// the order of the points as given.
+/// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points;
+/// ties are in the order of the points as given.
 pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
     let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);

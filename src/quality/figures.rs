@@ -49,7 +49,8 @@ pub struct Figures {
     pub agree: f64,
     /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
     pub euler: i64,
-    /// Connected pieces of the surface by the natural neighbours: those of the same triangles, and points far from all of them.
+    /// Connected pieces of the surface by the natural neighbours: those of the same triangles, and points far from all
+    /// of them.
     pub components: usize,
     /// Smallest angle of any triangle, in degrees.
     pub ang_min: f64,
@@ -67,9 +68,9 @@ pub struct Figures {
     pub edge_cv: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
     pub size_cv: f64,
-    /// Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii there
-    /// (the mean of those of the points around the hole), all scaled by one factor so that the cells have the area. 1 is
-    /// ideal, and where all radii are equal this is `cover`.
+    /// Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii
+    /// there (the mean of those of the points around the hole), all scaled by one factor so that the cells have the
+    /// area. 1 is ideal, and where all radii are equal this is `cover`.
     pub cover_local: f64,
     /// Smallest distance of natural neighbours over the sum of their wanted radii, in which a duplicate has 0. 1 where
     /// particles just touch.

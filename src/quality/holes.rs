@@ -159,8 +159,8 @@ impl HoleSearch {
         batch.clear();
     }
 
-    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their area, and
-    /// projected onto the surface.
+    /// Takes in about `count` random samples: uniform on the triangles, one in each of `count` equal shares of their
+    /// area, and projected onto the surface.
     pub(super) async fn add_samples(
         &mut self,
         field: &mut dyn Field,
@@ -184,7 +184,8 @@ impl HoleSearch {
                 // The sample is uniform in the triangle: the square root undoes the crowding towards `a`.
                 let (s, t) = (unit().sqrt(), unit());
                 let p = a + ((b - a) * (1.0 - t) + (c - a) * t) * s;
-                // The nearest point is no farther than the nearest corner, and the projection moves the sample by less than that.
+                // The nearest point is no farther than the nearest corner, and the projection moves the sample by less
+                // than that.
                 let corner = (p - a).length().min((p - b).length()).min((p - c).length());
                 batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
                 if batch.position.len() == BATCH {
@@ -233,8 +234,8 @@ pub(super) struct Uncovered {
     pub(super) largest: LargestHoles,
 }
 
-/// Measures what the triangles cannot show: components without a point, and regions where the points end. `spanned` are the
-/// largest holes on the triangles.
+/// Measures what the triangles cannot show: components without a point, and regions where the points end. `spanned` are
+/// the largest holes on the triangles.
 pub(super) async fn uncovered(
     cover: &Cover<'_>,
     field: &mut dyn Field,

@@ -1,14 +1,15 @@
 //! Quality of a set of particles: residual, spacing, holes, order and triangles, with one definition for each figure.
 //!
-//! The figures depend on the points and the field alone, not on the sampler that made the points, so that any two samplers can
-//! be compared. Lengths are in units of d_hex = √(2A / (√3 N)), the spacing of a perfect hexagonal lattice of N points on the
-//! area A, unless stated otherwise.
+//! The figures depend on the points and the field alone, not on the sampler that made the points, so that any two
+//! samplers can be compared. Lengths are in units of d_hex = √(2A / (√3 N)), the spacing of a perfect hexagonal lattice
+//! of N points on the area A, unless stated otherwise.
 //!
-//! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated into the tangent plane of a
-//! point, at their true distances, and its natural neighbours are those whose Voronoi cells share an edge with its own. Two points
-//! are on the same sheet if their normals are within 90° and the line between them leaves one tangent plane about as it arrives
-//! at the other, which separates sheets that face the same way. The cell is clipped by the nearest points until no farther one
-//! can matter. The result is the same as from the convex hull of the inverted points q/|q|², without a hull.
+//! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated into the tangent
+//! plane of a point, at their true distances, and its natural neighbours are those whose Voronoi cells share an edge
+//! with its own. Two points are on the same sheet if their normals are within 90° and the line between them leaves one
+//! tangent plane about as it arrives at the other, which separates sheets that face the same way. The cell is clipped
+//! by the nearest points until no farther one can matter. The result is the same as from the convex hull of the
+//! inverted points q/|q|², without a hull.
 //!
 //! The whole report costs a few microseconds for each particle. It is deterministic, with the same bits natively and in
 //! WebAssembly if the field has the same bits.
@@ -50,7 +51,8 @@ use scene::{Prepared, Scene};
 use sizes::{EdgeRatios, Wanted};
 use triangles::{TriangleAngles, euler_number};
 
-/// Largest number of random samples for `quant`: the error falls with the root of the number, the time grows with the number.
+/// Largest number of random samples for `quant`: the error falls with the root of the number, the time grows with the
+/// number.
 const MOST_SAMPLES: usize = 262_144;
 /// Mean squared distance to the nearest point of a hexagonal lattice, over its area per point: 5 / (18 √3).
 const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
@@ -64,16 +66,16 @@ const WIDE: f64 = 2.0;
 pub struct Report {
     /// The figures.
     pub figures: Figures,
-    /// Number of natural neighbours; 0 for a duplicate or a non-finite position. At the border of a clipped surface the Voronoi
-    /// cell is open, and the neighbours that were found are counted.
+    /// Number of natural neighbours; 0 for a duplicate or a non-finite position. At the border of a clipped surface the
+    /// Voronoi cell is open, and the neighbours that were found are counted.
     pub valence: Vec<u8>,
     /// Distance to the nearest other particle, of any sheet, in the field's units; infinite for a lone one, NaN for a
     /// non-finite position.
     pub nearest: Vec<f32>,
     /// First-order distance to the surface |f|/|∇f|, in the field's units; NaN where that is undefined.
     pub residual: Vec<f32>,
-    /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is on the
-    /// component of the particle that it equals; a non-finite position has `u32::MAX`.
+    /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is
+    /// on the component of the particle that it equals; a non-finite position has `u32::MAX`.
     pub component: Vec<u32>,
     /// Histogram of `nearest` / d_hex.
     pub histogram: Histogram,
@@ -81,13 +83,14 @@ pub struct Report {
 
 /// Measures the particles at `position` with outward unit normals `normal` on the surface of `field`.
 ///
-/// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface continues beyond the box, are
-/// left out of every figure but the residual, the normals, the area and the topology. Random lines through the box find what the
-/// particles have missed, for `cover` and `quant`. Without `bounds` only the triangles are sampled. The given normals are used
-/// where the gradient is undefined, and are themselves measured against it; the slice may be shorter than `position`.
+/// `bounds` is the box that was sampled. Particles within 4 d_hex of the border, where the surface continues beyond the
+/// box, are left out of every figure but the residual, the normals, the area and the topology. Random lines through the
+/// box find what the particles have missed, for `cover` and `quant`. Without `bounds` only the triangles are sampled.
+/// The given normals are used where the gradient is undefined, and are themselves measured against it; the slice may be
+/// shorter than `position`.
 ///
-/// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic: what is undefined (the spacing
-/// of one particle, angles without triangles) is NaN, and non-finite positions are counted and left out.
+/// The cost is linear, about 2 µs for each particle natively on a formula. No input causes a panic: what is undefined
+/// (the spacing of one particle, angles without triangles) is NaN, and non-finite positions are counted and left out.
 #[must_use]
 pub fn measure(
     position: &[Vec3],
@@ -140,9 +143,9 @@ pub(crate) async fn in_pieces(
 
 /// Returns the triangles of the particles as triples of indices, counter-clockwise seen from outside.
 ///
-/// They are the triangles of natural neighbours that at least two of their three corners agree on. Conflicts about nearly
-/// cocircular points are resolved, so that every directed edge belongs to at most one triangle. Input and cost are those of
-/// [`measure`], of which this is a part.
+/// They are the triangles of natural neighbours that at least two of their three corners agree on. Conflicts about
+/// nearly cocircular points are resolved, so that every directed edge belongs to at most one triangle. Input and cost
+/// are those of [`measure`], of which this is a part.
 #[must_use]
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
     let factor = comfortable_factor(field, position.iter().copied());

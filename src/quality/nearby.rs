@@ -4,8 +4,8 @@ use crate::math::{LANES, Lanes};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 
-/// Half-width of the box that is gathered around a query, in units of the query's own width: the queries that follow lie in it
-/// too.
+/// Half-width of the box that is gathered around a query, in units of the query's own width: the queries that follow
+/// lie in it too.
 const REACH: f32 = 4.0;
 
 /// The points of a tree in a box.
@@ -45,8 +45,9 @@ impl Nearby {
         })
     }
 
-    /// Returns the squared distance from `p` to the nearest point of `tree`, at most `bound_sq`. The box is gathered anew if it does
-    /// not hold all points within that bound; `width` is the distance within which there are a few points.
+    /// Returns the squared distance from `p` to the nearest point of `tree`, at most `bound_sq`. The box is gathered
+    /// anew if it does not hold all points within that bound; `width` is the distance within which there are a few
+    /// points.
     pub(super) fn nearest_sq(&mut self, tree: &Tree, p: Vec3, bound_sq: f32, width: f32) -> f32 {
         let bound = bound_sq.sqrt();
         if !((p - bound).cmpge(self.lo).all() && (p + bound).cmple(self.hi).all()) {

@@ -8,15 +8,15 @@ use crate::spatial::tree::{Tree, key, unkey};
 use core::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Numbers of nearest points that are tried in turn while a cell is not proven complete. The first try takes the points in a
-/// ball that holds about 24 of them. A complete cell does not depend on the try that completed it.
+/// Numbers of nearest points that are tried in turn while a cell is not proven complete. The first try takes the points
+/// in a ball that holds about 24 of them. A complete cell does not depend on the try that completed it.
 const TRIES: [usize; 3] = [24, 64, 200];
-/// Radius of the ball of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans 3 to
-/// 5 d, so the radius is about 2.5 d and the ball holds 22 points of a perfect lattice.
+/// Radius of the ball of the first try over the diagonal of the leaf's box. A leaf of 8 to 16 points of spacing d spans
+/// 3 to 5 d, so the radius is about 2.5 d and the ball holds 22 points of a perfect lattice.
 const BALL: f32 = 0.45;
-/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the two are
-/// on one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of curvature: the
-/// mean is 1/12 where the curvature changes by its own size between the points.
+/// Largest height of one point over the other's tangent plane, as the mean of both heights over the distance, if the
+/// two are on one sheet. On a smooth surface the two heights cancel to second order in the distance over the radius of
+/// curvature: the mean is 1/12 where the curvature changes by its own size between the points.
 const MAX_LIFT: f32 = 0.2;
 /// Marks, in [`OneRings::neighbour`], that the Voronoi corner between this neighbour and the next one is proven.
 const PROVEN: u32 = 1 << 31;
@@ -133,7 +133,8 @@ impl OneRings {
         self.entries(i).iter().map(|&entry| (entry & !PROVEN) as usize)
     }
 
-    /// Returns the pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair form a triangle.
+    /// Returns the pairs of consecutive natural neighbours of `i` whose common corner is proven: `i` and each pair form
+    /// a triangle.
     pub(super) fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let entries = self.entries(i);
         (0..entries.len()).filter(|&k| entries[k] & PROVEN != 0).map(move |k| {
@@ -142,8 +143,8 @@ impl OneRings {
         })
     }
 
-    /// Returns whether `i` sees the triangle of itself, `a` and `b`. The orientation does not matter: points of two sheets may
-    /// see the triangle from opposite sides.
+    /// Returns whether `i` sees the triangle of itself, `a` and `b`. The orientation does not matter: points of two
+    /// sheets may see the triangle from opposite sides.
     pub(super) fn sees(&self, i: usize, a: usize, b: usize) -> bool {
         self.pairs(i).any(|pair| pair == (a, b) || pair == (b, a))
     }
@@ -154,15 +155,16 @@ impl OneRings {
     }
 }
 
-/// Returns whether two points at this distance count as being on one sheet: their normals are within 90°, and the line between
-/// them rises from one tangent plane about as much as it falls below the other.
+/// Returns whether two points at this distance count as being on one sheet: their normals are within 90°, and the line
+/// between them rises from one tangent plane about as much as it falls below the other.
 #[inline]
 fn is_one_sheet(tree: &Tree, normal: &[Vec3], i: usize, j: usize, distance_sq: f32) -> bool {
     let rise = (tree.position[j] - tree.position[i]).dot(normal[i] + normal[j]);
     normal[i].dot(normal[j]) > 0.0 && rise * rise <= (2.0 * MAX_LIFT) * (2.0 * MAX_LIFT) * distance_sq
 }
 
-/// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one perpendicular to the plane.
+/// Rotates an offset into the plane spanned by `u` and `v`, which keeps its length; `None` for one perpendicular to the
+/// plane.
 #[inline]
 pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     let flat = DVec2::new(offset.dot(u), offset.dot(v));
@@ -170,8 +172,8 @@ pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Clips the cell of point `i` by the points of the sorted `keys`, until no farther one can matter. Returns whether the cell is
-/// closed and proven complete, if every point nearer than √`known_sq` is among them.
+/// Clips the cell of point `i` by the points of the sorted `keys`, until no farther one can matter. Returns whether the
+/// cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
 fn fill(cell: &mut VoronoiCell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64], known_sq: f64) -> bool {
     let p = tree.position[i].as_dvec3();
     let (u, v) = tangent_frame(normal);

@@ -1,7 +1,7 @@
 //! What the caller knows beside the points.
 
-/// The wanted radius of each particle, for [`Figures::size_cv`](super::Figures::size_cv), [`cover_local`](super::Figures::cover_local) and
-/// [`overlap_min`](super::Figures::overlap_min).
+/// The wanted radius of each particle, for [`Figures::size_cv`](super::Figures::size_cv),
+/// [`cover_local`](super::Figures::cover_local) and [`overlap_min`](super::Figures::overlap_min).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Sizes<'a> {
     /// There are no wanted radii, and those figures are NaN.
@@ -25,11 +25,13 @@ pub enum Sizes<'a> {
 pub struct Options<'a> {
     /// Exact area of the surface (inside the box); by default the area of the triangles found.
     pub area: Option<f64>,
-    /// Euler number of the surface, for [`Figures::tri_ok`](super::Figures::tri_ok); by default that of the triangles found.
+    /// Euler number of the surface, for [`Figures::tri_ok`](super::Figures::tri_ok); by default that of the triangles
+    /// found.
     pub euler: Option<i64>,
     /// Wanted radii.
     pub sizes: Sizes<'a>,
-    /// Smallest number of random samples for [`Figures::quant`](super::Figures::quant). There is at least one for each particle, and there are at most 262,144.
+    /// Smallest number of random samples for [`Figures::quant`](super::Figures::quant). There is at least one for each
+    /// particle, and there are at most 262,144.
     pub samples: usize,
     /// Seed of the random samples.
     pub seed: u64,

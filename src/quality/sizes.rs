@@ -20,8 +20,8 @@ const SLICE: usize = 64;
 /// The wanted radii, in tree order; NaN for a point without one.
 pub(super) struct Wanted {
     radius: Vec<f64>,
-    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the area of the
-    /// surface.
+    /// Radius of an ideal hole over the wanted radius, if all radii are scaled so that their hexagonal cells have the
+    /// area of the surface.
     hole: f64,
 }
 

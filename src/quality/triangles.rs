@@ -56,10 +56,10 @@ impl Triangles {
 
     /// Returns triangles without conflicts: no directed edge belongs to two of them.
     ///
-    /// Four nearly cocircular points may disagree about the diagonal, because each sees the others in its own tangent plane.
-    /// Where two of them disagree with the other two, the triangles that count overlap or leave a gap. Here the unanimous
-    /// triangles stay. Those of a majority follow, in the order of their longest edge, if their directed edges are free; then
-    /// those that only one corner sees, if at least two of their sides are still open.
+    /// Four nearly cocircular points may disagree about the diagonal, because each sees the others in its own tangent
+    /// plane. Where two of them disagree with the other two, the triangles that count overlap or leave a gap. Here the
+    /// unanimous triangles stay. Those of a majority follow, in the order of their longest edge, if their directed
+    /// edges are free; then those that only one corner sees, if at least two of their sides are still open.
     pub(super) fn settled(&self, position: &[Vec3]) -> Vec<[u32; 3]> {
         let mut mesh = self.unanimous.clone();
         if self.majority.is_empty() && self.single.is_empty() {
@@ -169,7 +169,8 @@ impl TriangleAngles {
         // At each corner the product of the sides is |a||b| cos; |a||b| sin is twice the area.
         let cosines: [f64; 3] =
             core::array::from_fn(|k| (corner[(k + 1) % 3] - corner[k]).dot(corner[(k + 2) % 3] - corner[k]));
-        // The sine term is the same at all corners, so the smallest angle has the largest cosine. It is below 30° if tan < 1/√3.
+        // The sine term is the same at all corners, so the smallest angle has the largest cosine. It is below 30° if
+        // tan < 1/√3.
         let sharp = cosines.iter().filter(|&&c| twice_area * SQRT_3 < c).count();
         let blunt = cosines.iter().filter(|&&c| c < 0.0).count();
         self.count += 1;

@@ -1,12 +1,13 @@
-//! Projection of points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or along the
-//! gradient (for seeds and the relaxation). Points are projected in batches, so that the field is evaluated in SIMD lanes.
+//! Projection of points onto the surface: on a circle around the parent, which keeps the distance (paper §4.3), or
+//! along the gradient (for seeds and the relaxation). Points are projected in batches, so that the field is evaluated
+//! in SIMD lanes.
 
 use crate::field::Field;
 use crate::math::sort_few;
 use glam::Vec3;
 
-/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the first-level
-/// cache. The result for a point does not depend on it.
+/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the
+/// first-level cache. The result for a point does not depend on it.
 pub(crate) const BATCH: usize = 128;
 
 /// Largest number of Newton steps on a circle; a good guess takes two evaluations.
@@ -85,8 +86,8 @@ pub(crate) struct Tolerance {
 }
 
 impl Tolerance {
-    /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as it does beside a pole, where any
-    /// value would be small against it.
+    /// Returns whether |∇f| can be divided by: it does not count as zero, and does not overflow, as it does beside a
+    /// pole, where any value would be small against it.
     pub(crate) fn is_slope(&self, slope: f32) -> bool {
         slope > self.min_gradient && slope < f32::INFINITY
     }
@@ -99,8 +100,8 @@ pub(crate) struct Descent {
     pub(crate) residual: f32,
     /// Largest distance from the starting point; a point that moves farther is given up.
     pub(crate) reach: f32,
-    /// Length of a correction below which the point is not evaluated again. Newton's method converges quadratically, so the residual
-    /// is then below the order of the tolerance. The normal is that of the point before the correction.
+    /// Length of a correction below which the point is not evaluated again. Newton's method converges quadratically, so
+    /// the residual is then below the order of the tolerance. The normal is that of the point before the correction.
     pub(crate) trust: f32,
 }
 
@@ -177,10 +178,11 @@ impl Projector {
         (&self.value[..n], &self.gradient[..n])
     }
 
-    /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs to `circles[i]`.
+    /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs
+    /// to `circles[i]`.
     ///
-    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not converge, a bracketed search follows.
-    /// Both together take at most 50 steps, so the search ends on any field.
+    /// Newton's method in θ takes two evaluations where the guess is good. Where it does not converge, a bracketed
+    /// search follows. Both together take at most 50 steps, so the search ends on any field.
     pub(crate) fn land_on_circles(
         &mut self,
         field: &mut dyn Field,
@@ -282,8 +284,8 @@ impl Projector {
         if count == 0 && undefined > ARC_SAMPLES / 2 { Landing::Undefined } else { Landing::NotConverged }
     }
 
-    /// Finds the root in the bracket that begins at `turn` and has the values `fa` and `fb` at its ends; `None` if the sign changes at a
-    /// pole or a jump.
+    /// Finds the root in the bracket that begins at `turn` and has the values `fa` and `fb` at its ends; `None` if the
+    /// sign changes at a pole or a jump.
     fn illinois(
         &mut self,
         field: &mut dyn Field,
@@ -337,9 +339,9 @@ impl Projector {
 
     /// Moves each of at most [`BATCH`] points onto the surface along the gradient, by Newton's method.
     ///
-    /// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of `descents`. A point
-    /// is given up after `max_steps` evaluations, when it has moved too far, and where the field is undefined or its gradient is not
-    /// above `min_gradient`.
+    /// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of
+    /// `descents`. A point is given up after `max_steps` evaluations, when it has moved too far, and where the field is
+    /// undefined or its gradient is not above `min_gradient`.
     #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
     pub(crate) fn land_along_gradient(
         &mut self,
@@ -411,9 +413,9 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     [cos * c - sin * s, sin * c + cos * s]
 }
 
-/// Returns the tolerance for particles of a radius: |f|/|∇f| ≤ 10⁻⁴ r, but not below `resolution`, the distance that single precision
-/// resolves on this field. The paper stops "when the child has converged" (§4.3) and gives no number. A gradient below a
-/// millionth of the usual `gradient_scale` is cancellation noise at a singular point.
+/// Returns the tolerance for particles of a radius: |f|/|∇f| ≤ 10⁻⁴ r, but not below `resolution`, the distance that
+/// single precision resolves on this field. The paper stops "when the child has converged" (§4.3) and gives no number.
+/// A gradient below a millionth of the usual `gradient_scale` is cancellation noise at a singular point.
 pub(crate) fn tolerance(radius: f32, resolution: f32, gradient_scale: f32) -> Tolerance {
     Tolerance { residual: (1e-4 * radius).max(resolution), min_gradient: 1e-6 * gradient_scale }
 }

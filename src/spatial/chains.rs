@@ -1,5 +1,5 @@
-//! Linked lists of points by cell, which are made in one pass and take little memory. The points stay in their columns; the lists
-//! hold their indices.
+//! Linked lists of points by cell, which are made in one pass and take little memory. The points stay in their columns;
+//! the lists hold their indices.
 
 use super::{NONE, coordinate};
 use glam::Vec3;
@@ -7,11 +7,13 @@ use glam::Vec3;
 /// Points for each list head. With more heads most would stay empty, with fewer many cells would share one.
 const POINTS_PER_HEAD: usize = 4;
 
-/// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all 32-bit numbers. They are primes near
-/// 2³² times the powers of 1/1.2207, where 1.2207 is the root of x⁴ = x + 1, whose multiples are evenly spread in three dimensions.
+/// Hash factors of the coordinates: multiplication by them spreads neighbouring cells over all 32-bit numbers. They are
+/// primes near 2³² times the powers of 1/1.2207, where 1.2207 is the root of x⁴ = x + 1, whose multiples are evenly
+/// spread in three dimensions.
 const FACTORS: [u32; 3] = [0xd1b5_4a45, 0xabc9_839f, 0x8cb9_2bad];
 
-/// Linked lists of points, one for all cells with the same hash. Points can be in *layers* with cells of different sizes.
+/// Linked lists of points, one for all cells with the same hash. Points can be in *layers* with cells of different
+/// sizes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chains {
     /// 1 over the side of the cells, for each layer.
@@ -24,7 +26,8 @@ pub(crate) struct Chains {
 }
 
 impl Chains {
-    /// Empties the lists for up to `points` points, in layers with cells of these `sides`. Queries are fast for radii of half a side.
+    /// Empties the lists for up to `points` points, in layers with cells of these `sides`. Queries are fast for radii
+    /// of half a side.
     pub(crate) fn reset(&mut self, sides: impl IntoIterator<Item = f32>, points: usize) {
         self.inverse_side.clear();
         self.inverse_side.extend(sides.into_iter().map(|side| 1.0 / side));
@@ -59,8 +62,8 @@ impl Chains {
         list.filter(move |&index| meant(index) && cell(points[index as usize]) == [x, y, z])
     }
 
-    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some points beyond. No point is
-    /// visited twice.
+    /// Visits every point that was added to layer k within `reach[k]` of the box from `lo` to `hi`, and some points
+    /// beyond. No point is visited twice.
     pub(crate) fn visit(
         &mut self,
         [lo, hi]: [Vec3; 2],

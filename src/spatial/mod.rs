@@ -1,10 +1,10 @@
-//! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell for points that stay in their
-//! columns, and a tree for points that are known from the start and spread unevenly.
+//! Neighbour search: a sparse grid for points that are inserted one by one, linked lists by cell for points that stay
+//! in their columns, and a tree for points that are known from the start and spread unevenly.
 //!
-//! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a hash table with open addressing
-//! finds. A cell stores its points in blocks of eight with their coordinates, so a query reads a few contiguous blocks and
-//! compares eight distances at a time. Memory is proportional to the number of occupied cells, and a query costs the same among
-//! 10³ and 10⁶ points.
+//! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a hash table with open
+//! addressing finds. A cell stores its points in blocks of eight with their coordinates, so a query reads a few
+//! contiguous blocks and compares eight distances at a time. Memory is proportional to the number of occupied cells,
+//! and a query costs the same among 10³ and 10⁶ points.
 
 pub(crate) mod chains;
 pub(crate) mod tree;
@@ -17,8 +17,8 @@ const NONE: u32 = u32::MAX;
 /// Bits of a cell coordinate: three coordinates form one hash key.
 const COORDINATE_BITS: u32 = 21;
 const COORDINATE_MASK: u64 = (1 << COORDINATE_BITS) - 1;
-/// Mean number of points in a block of eight for points on a surface, whose last blocks in each cell are partly empty. It is less
-/// than the 5.5 measured with the cell side that the sampler uses.
+/// Mean number of points in a block of eight for points on a surface, whose last blocks in each cell are partly empty.
+/// It is less than the 5.5 measured with the cell side that the sampler uses.
 const POINTS_PER_BLOCK: usize = 5;
 /// The golden ratio in 64 bits: multiplication by it spreads consecutive keys well over the top bits.
 const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -74,8 +74,8 @@ struct LanesOf {
     count: usize,
 }
 
-/// The lanes of every set, which is given as bits. A query copies all entries and advances by their number: the end of a loop over
-/// the set alone would be mispredicted.
+/// The lanes of every set, which is given as bits. A query copies all entries and advances by their number: the end of
+/// a loop over the set alone would be mispredicted.
 static LANES_OF: [LanesOf; 1 << LANES] = {
     let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
     let mut set = 0;
@@ -204,8 +204,8 @@ impl CellGrid {
         }
     }
 
-    /// Replaces the content of `found` by all points within `radius` of `centre`, the boundary included. Their order depends only on
-    /// the history of insertions.
+    /// Replaces the content of `found` by all points within `radius` of `centre`, the boundary included. Their order
+    /// depends only on the history of insertions.
     pub fn gather(&self, centre: Vec3, radius: f32, found: &mut Vec<Neighbour>) {
         found.clear();
         self.gather_more(centre, radius, found);
@@ -235,7 +235,8 @@ impl CellGrid {
         self.take(&mut hits, centre, found);
     }
 
-    /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found` whenever it is full.
+    /// Appends the points of a cell that are within the radius to `hits`, which is moved to `found` whenever it is
+    /// full.
     #[inline]
     fn gather_cell(&self, head: u32, ball: (Vec3, f32), hits: &mut Hits, found: &mut Vec<Neighbour>) {
         let (centre, radius) = ball;

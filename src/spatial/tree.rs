@@ -1,12 +1,12 @@
-//! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the points are
-//! distributed nor on distant outliers.
+//! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the
+//! points are distributed nor on distant outliers.
 
 use crate::math::sort_few;
 use crate::pieces::{self, piece};
 use glam::Vec3;
 
-/// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be gathered once.
-/// 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
+/// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be
+/// gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
 const LEAF: usize = 16;
 /// Points whose nodes are made in one slice of work.
 const PIECE: usize = 1024;
@@ -65,8 +65,8 @@ impl Tree {
         pieces::complete(Self::in_pieces(items))
     }
 
-    /// Makes the tree over points with their indices in slices of work, the largest of which visits all points once. The points must
-    /// be finite. The result depends only on them and their indices.
+    /// Makes the tree over points with their indices in slices of work, the largest of which visits all points once.
+    /// The points must be finite. The result depends only on them and their indices.
     pub(crate) async fn in_pieces(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
         // Ranges that are still to become nodes, each with the node whose second child it is.
@@ -110,8 +110,8 @@ impl Tree {
             .map(|node| (node.first as usize..node.end as usize, node.lo, node.hi))
     }
 
-    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq` around `p`, nearer ones first. `visit`
-    /// may shrink the bound.
+    /// Calls `visit` with the range of every leaf that meets the ball of squared radius `bound_sq` around `p`, nearer
+    /// ones first. `visit` may shrink the bound.
     #[inline]
     fn search(&self, p: Vec3, mut bound_sq: f32, mut visit: impl FnMut(u32, u32, &mut f32)) {
         if self.nodes.is_empty() {
@@ -140,8 +140,8 @@ impl Tree {
         }
     }
 
-    /// Returns the squared distance from `p` to the nearest point other than `except`, and that point, if the distance is below
-    /// `bound_sq`; otherwise `bound_sq` and `except`.
+    /// Returns the squared distance from `p` to the nearest point other than `except`, and that point, if the distance
+    /// is below `bound_sq`; otherwise `bound_sq` and `except`.
     pub(crate) fn nearest(&self, p: Vec3, except: u32, bound_sq: f32) -> (f32, u32) {
         let mut best = (bound_sq, except);
         self.search(p, bound_sq, |first, end, bound| {

@@ -1,8 +1,9 @@
-//! Evaluation in single precision, in two ways that give the same bits: at one point, with SIMD lanes over the coefficients of a
-//! cell's polynomial and over its near centres, and at eight points of one cell, with lanes over the points.
+//! Evaluation in single precision, in two ways that give the same bits: at one point, with SIMD lanes over the
+//! coefficients of a cell's polynomial and over its near centres, and at eight points of one cell, with lanes over the
+//! points.
 //!
-//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. A single point in eight lanes would
-//! cost several times as much.
+//! Consecutive points of a front or of a relaxation step mostly share a cell, but not all do. A single point in eight
+//! lanes would cost several times as much.
 
 use super::coefficients::{Centre, DEGREE, Rows};
 use crate::math::{LANES, Lanes};
@@ -61,8 +62,9 @@ pub(super) struct LocalPoint {
 
 /// Returns f and ∇f, and for `N` = 10 also ∇∇f (xx, xy, xz, yy, yz, zz), in local units.
 ///
-/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own only where they come in and go
-/// out by memory. Inlined, they and those of [`sums_of_eight`] make a uniform run on the bunny take 39 % more instructions.
+/// The functions that it calls are not inlined: the compiler keeps lanes in registers of their own only where they come
+/// in and go out by memory. Inlined, they and those of [`sums_of_eight`] make a uniform run on the bunny take 39 % more
+/// instructions.
 pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoint) -> [f32; N] {
     let [x, y, z] = point.offset.map(Lanes::splat);
     let mut planes = [Lanes::splat(0.0); 6];
@@ -75,8 +77,8 @@ pub(super) fn sums<const N: usize>(rows: &Rows, near: &[Near], point: &LocalPoin
     sums.map(Lanes::sum)
 }
 
-/// Evaluates the polynomial and its derivatives by x and z by Horner's rule along both: f, ∂x, ∂z, ½ ∂xx, ∂xz, ½ ∂zz. The
-/// lanes hold the powers of y, which are still to be summed.
+/// Evaluates the polynomial and its derivatives by x and z by Horner's rule along both: f, ∂x, ∂z, ½ ∂xx, ∂xz, ½ ∂zz.
+/// The lanes hold the powers of y, which are still to be summed.
 // Not inlined, for the registers: see `sums`.
 #[inline(never)]
 fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z: &Lanes) {
@@ -91,8 +93,8 @@ fn polynomial<const N: usize>(planes: &mut [Lanes; 6], rows: &Rows, x: &Lanes, z
     *planes = nested;
 }
 
-/// Does one step of Horner's rule along z. `row` are the coefficients of the polynomial in x of the next smaller power of z, from
-/// the largest power of x down.
+/// Does one step of Horner's rule along z. `row` are the coefficients of the polynomial in x of the next smaller power
+/// of z, from the largest power of x down.
 // Inlined, so that the lanes stay in registers from call to call.
 #[inline(always)]
 fn nest<const N: usize>(planes: &mut [Lanes; 6], x: Lanes, z: Lanes, row: impl Iterator<Item = Lanes>) {
@@ -203,7 +205,8 @@ fn add_term<const N: usize>(sums: &mut [Lanes; N], &[x, y, z]: &[Lanes; 3], near
 
 /// Does what [`sums`] does for eight points of one cell, with the same bits, at less than twice the cost of one.
 ///
-/// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are added in the same order.
+/// The lanes are the points here. The eight lanes of [`sums`] are eight partial sums, which are added in the same
+/// order.
 pub(super) fn sums_of_eight<const N: usize>(
     rows: &Rows,
     near: &[Near],

@@ -1,12 +1,12 @@
-//! How far the neighbour lists reach. The fronts write the first lists and the relaxation renews them, so both have to use the
-//! same figures.
+//! How far the neighbour lists reach. The fronts write the first lists and the relaxation renews them, so both have to
+//! use the same figures.
 
 /// Range of the Gaussian repulsion, in radii.
 pub(crate) const GAUSSIAN_RANGE: f32 = 3.0;
 
-/// Verlet skin of the lists of particles of one size, in radii: the lists reach this much beyond the range, so that they
-/// serve while particles move. Instruction counts have chosen it: a wider skin makes every list longer, a narrower one has
-/// more lists renewed.
+/// Verlet skin of the lists of particles of one size, in radii: the lists reach this much beyond the range, so that
+/// they serve while particles move. Instruction counts have chosen it: a wider skin makes every list longer, a narrower
+/// one has more lists renewed.
 pub(crate) const GAUSSIAN_SKIN: f32 = 0.4;
 
 /// Distance at which two discs of the overlap repulsion stop pushing, over the sum of their radii.
@@ -24,9 +24,10 @@ pub(crate) const MAX_TURN: f32 = 0.1;
 /// Pairs whose normals have a cosine above this have the weight 1 until one of their lists is stale.
 pub(crate) const FULL_COSINE: f32 = 0.5 + 2.0 * MAX_TURN;
 
-/// Pairs whose normals have a cosine below this have the weight 0 until one of their lists is stale, and are not listed.
+/// Pairs whose normals have a cosine below this have the weight 0 until one of their lists is stale, and are not
+/// listed.
 pub(crate) const LISTED_COSINE: f32 = -0.5 - 2.0 * MAX_TURN;
 
-/// Side of a grid's cells over the radius of the usual query. Instruction counts hardly change from 1.2 to 2.5; larger cells
-/// fill their blocks better and so take less memory.
+/// Side of a grid's cells over the radius of the usual query. Instruction counts hardly change from 1.2 to 2.5; larger
+/// cells fill their blocks better and so take less memory.
 pub(crate) const CELL_PER_REACH: f32 = 2.0;

@@ -1,13 +1,13 @@
-//! Grids for particles of different radii. Each range of radii has a layer with cells of its own size, so that a query among
-//! small particles does not read cells made for large ones.
+//! Grids for particles of different radii. Each range of radii has a layer with cells of its own size, so that a query
+//! among small particles does not read cells made for large ones.
 
 use crate::sampler::neighbours::constants::CELL_PER_REACH;
 use crate::spatial::chains::Chains;
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use glam::Vec3;
 
-/// Ratio of the largest to the smallest radius of a layer. On a tanglecube with radii in the ratio 1 : 16 the front takes
-/// 2.7 µs per particle with 4, 2.75 µs with 2, and 4.5 µs with one grid for all radii.
+/// Ratio of the largest to the smallest radius of a layer. On a tanglecube with radii in the ratio 1 : 16 the front
+/// takes 2.7 µs per particle with 4, 2.75 µs with 2, and 4.5 µs with one grid for all radii.
 const RATIO: f32 = 4.0;
 
 /// Largest number of layers; the last one holds all larger radii too.
@@ -137,8 +137,8 @@ impl RadiusChains {
         Self { chains: Chains::default(), layers: Layers::between(1.0, 1.0) }
     }
 
-    /// Empties the lists for up to `particles` particles with radii from `smallest` to `largest`; the usual query reaches
-    /// `reach` radii.
+    /// Empties the lists for up to `particles` particles with radii from `smallest` to `largest`; the usual query
+    /// reaches `reach` radii.
     pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32, particles: usize) {
         self.layers = Layers::between(smallest, largest);
         self.chains.reset(self.layers.sides(reach), particles);
@@ -149,7 +149,8 @@ impl RadiusChains {
         self.chains.insert(layer, position, index);
     }
 
-    /// Returns the particles in the layer of `radius` that were put into the cell of `position`, are in it now and pass `meant`.
+    /// Returns the particles in the layer of `radius` that were put into the cell of `position`, are in it now and pass
+    /// `meant`.
     pub(crate) fn beside(
         &self,
         positions: &[Vec3],

@@ -1,8 +1,8 @@
 //! Renewal of neighbour lists (Verlet lists): which of them are stale, and how they are made anew.
 //!
-//! A list reaches farther than the repulsion, by a *skin*. It holds every neighbour in range until its particle has travelled
-//! half of that skin; then it is *stale*. Stale lists are renewed for a group of particles in one cell at a time, because
-//! these share most of their neighbours.
+//! A list reaches farther than the repulsion, by a *skin*. It holds every neighbour in range until its particle has
+//! travelled half of that skin; then it is *stale*. Stale lists are renewed for a group of particles in one cell at a
+//! time, because these share most of their neighbours.
 
 use crate::math::{larger, refill};
 use crate::particles::Particles;
@@ -117,8 +117,8 @@ impl NeighbourLists {
         self.grid_travel < slack
     }
 
-    /// Empties the grid for this many particles with radii from `smallest` to `largest`. Those within `reach` mean radii will
-    /// be listed, and before the grid is emptied again they may move by `slack` more.
+    /// Empties the grid for this many particles with radii from `smallest` to `largest`. Those within `reach` mean
+    /// radii will be listed, and before the grid is emptied again they may move by `slack` more.
     pub(crate) fn empty_grid(
         &mut self,
         (smallest, largest): (f32, f32),
@@ -140,10 +140,11 @@ impl NeighbourLists {
         pairs.drop_far(|i| self.is_stale(i));
     }
 
-    /// Renews the list of particle `i` and other stale lists in its cell. Returns the particles whose lists were renewed.
+    /// Renews the list of particle `i` and other stale lists in its cell. Returns the particles whose lists were
+    /// renewed.
     ///
-    /// A list holds the particles of the same sheet and of a smaller index within the reach. Particles of a larger index get
-    /// `i` into their own lists.
+    /// A list holds the particles of the same sheet and of a smaller index within the reach. Particles of a larger
+    /// index get `i` into their own lists.
     pub(crate) fn renew(&mut self, pairs: &mut PackedNeighbours, particles: &Particles, i: usize) -> &[u32] {
         self.gather(particles, i);
         for k in 0..self.group.len() {

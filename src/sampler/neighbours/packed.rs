@@ -4,8 +4,8 @@ use crate::math::push_gently;
 use crate::sampler::projection::BATCH;
 use core::ops::Range;
 
-/// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the relaxation, half
-/// of them with a smaller index; one particle in a hundred has more than eight of these.
+/// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the
+/// relaxation, half of them with a smaller index; one particle in a hundred has more than eight of these.
 pub(crate) const ROOM: usize = 8;
 
 /// Particles that share a mark in [`PackedNeighbours::note_weighted`]: those that land in one batch.
@@ -13,15 +13,15 @@ const BLOCK: usize = BATCH;
 
 /// The neighbour lists of all particles.
 ///
-/// A neighbour is stored as the difference of the indices. The front numbers particles level by level, so neighbours are of
-/// the same level or of one shortly before, and the difference fits into 16 bits. Other pairs are *far* pairs and are stored
-/// with both indices.
+/// A neighbour is stored as the difference of the indices. The front numbers particles level by level, so neighbours
+/// are of the same level or of one shortly before, and the difference fits into 16 bits. Other pairs are *far* pairs
+/// and are stored with both indices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PackedNeighbours {
     /// Differences of the indices to those of the neighbours; 0 after the last.
     near: Vec<[u16; ROOM]>,
-    /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose indices
-    /// are far apart.
+    /// Larger and smaller index of the far pairs: in crowds, whose lists are full, and where two fronts meet whose
+    /// indices are far apart.
     far: Vec<[u32; 2]>,
     /// For each block of particles, whether one may have a pair of a weight below 1.
     is_weighted: Vec<bool>,
@@ -39,7 +39,8 @@ impl PackedNeighbours {
         self.near.reserve_exact(particles.saturating_sub(self.near.len()));
     }
 
-    /// Notes that particle `i` may have a pair of a weight below 1: its normal may differ from a neighbour's by more than 60°.
+    /// Notes that particle `i` may have a pair of a weight below 1: its normal may differ from a neighbour's by more
+    /// than 60°.
     #[cold]
     pub(crate) fn note_weighted(&mut self, i: usize) {
         let block = i / BLOCK;
@@ -84,8 +85,8 @@ impl PackedNeighbours {
         self.fill(i, candidates);
     }
 
-    /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are paired with
-    /// `true`.
+    /// Replaces the list of particle `i`, which must have no [far](Self::far) pairs, by the `candidates` that are
+    /// paired with `true`.
     #[inline]
     pub(crate) fn fill(&mut self, i: usize, candidates: impl IntoIterator<Item = (u32, bool)>) {
         let mut list = [0; ROOM + 1];
@@ -104,8 +105,8 @@ impl PackedNeighbours {
         self.near[i].copy_from_slice(&list[..ROOM]);
     }
 
-    /// Adds `j` to the list of particle `i`, unless it is in it. The two must not be a [far](Self::far) pair: a renewal drops
-    /// those of `j` first.
+    /// Adds `j` to the list of particle `i`, unless it is in it. The two must not be a [far](Self::far) pair: a renewal
+    /// drops those of `j` first.
     pub(crate) fn insert(&mut self, i: usize, j: u32) {
         let back = i as u32 - j;
         if let Ok(back) = u16::try_from(back) {

@@ -32,7 +32,8 @@ struct PairBatch {
 /// The force on every particle.
 #[derive(Clone)]
 pub(super) struct Forces {
-    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are added in one instruction.
+    /// Sum of `offset * weight` over the pairs of a particle, in x, y and z; w is 0. Four lanes are added in one
+    /// instruction.
     force: Vec<Vec4>,
     batch: Box<PairBatch>,
 }
@@ -127,7 +128,8 @@ impl PairBatch {
         for (end, i) in ends.iter_mut().zip(range) {
             let p = particles.position[i].extend(0.0);
             for j in pairs.near(i) {
-                // A list holds at most ROOM neighbours, so the remainder is the count itself; it spares the bounds checks.
+                // A list holds at most ROOM neighbours, so the remainder is the count itself; it spares the bounds
+                // checks.
                 let k = count % MOST_PAIRS;
                 self.offset[k] = p - particles.position[j].extend(0.0);
                 self.other[k] = j as u32;

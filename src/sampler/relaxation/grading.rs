@@ -1,9 +1,9 @@
-//! Grading: no radius exceeds that of a neighbour on the same sheet by more than the slope of the radius field times their
-//! distance.
+//! Grading: no radius exceeds that of a neighbour on the same sheet by more than the slope of the radius field times
+//! their distance.
 //!
-//! The radius field has this slope by construction, but a radius is brought up to date only after its particle has travelled
-//! some way. A pass over all pairs lowers the radii that are too large; passes are repeated until one changes nothing, which
-//! happens because radii only fall and the smallest never does.
+//! The radius field has this slope by construction, but a radius is brought up to date only after its particle has
+//! travelled some way. A pass over all pairs lowers the radii that are too large; passes are repeated until one changes
+//! nothing, which happens because radii only fall and the smallest never does.
 
 use crate::particles::Particles;
 use crate::sampler::neighbours::packed::PackedNeighbours;
@@ -34,8 +34,8 @@ pub(super) fn grade_far(slope: f32, pairs: &PackedNeighbours, particles: &mut Pa
     has_lowered
 }
 
-/// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles are on one sheet (normals
-/// within 90°). Returns whether it was lowered.
+/// Lowers the larger of two radii to what the slope allows beside the smaller, if the particles are on one sheet
+/// (normals within 90°). Returns whether it was lowered.
 fn grade(slope: f32, particles: &mut Particles, i: usize, j: usize) -> bool {
     let rise = slope * (particles.position[i] - particles.position[j]).length();
     let (a, b) = (particles.radius[i], particles.radius[j]);

@@ -1,8 +1,8 @@
-//! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane and is brought back onto
-//! the surface, a given number of times (paper §4.5 and the end of §5).
+//! Relaxation: every particle moves against the repulsion of its neighbours in the tangent plane and is brought back
+//! onto the surface, a given number of times (paper §4.5 and the end of §5).
 //!
-//! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one size, the overlap of discs
-//! for particles of many. Steps, neighbour lists and the return to the surface are the same for both.
+//! The repulsion is a law for pairs of particles ([`Repulsion`]): a Gaussian for particles of one size, the overlap of
+//! discs for particles of many. Steps, neighbour lists and the return to the surface are the same for both.
 //!
 //! ```text
 //!            ┌────────────── next pass ─┐
@@ -11,16 +11,17 @@
 //!    └────────────┴─────────┴────────────────┴──────────────────┘
 //! ```
 //!
-//! Lists are renewed only where they are stale, and only adaptive particles are graded. After the polish adaptive particles
-//! go through the grid, the lists and the grading once more.
+//! Lists are renewed only where they are stale, and only adaptive particles are graded. After the polish adaptive
+//! particles go through the grid, the lists and the grading once more.
 //!
 //! # Differs from the paper
 //!
-//! * The step size is not fixed but as large as stays stable. A step that does not lower the energy is taken back and the step
-//!   size is halved, so the energy falls at every step that stands. This holds because the energy is one function of positions
-//!   and normals: no pair within range is missing from the lists, and each counts with the weight of its present normals
-//!   ([`repulsion::same_sheet_weight`]). Where nearly every particle has a neighbour across a bend that the radius does not
-//!   resolve, no step along these forces may lower the energy further; the relaxation then ends before its last step.
+//! * The step size is not fixed but as large as stays stable. A step that does not lower the energy is taken back and
+//!   the step size is halved, so the energy falls at every step that stands. This holds because the energy is one
+//!   function of positions and normals: no pair within range is missing from the lists, and each counts with the weight
+//!   of its present normals ([`repulsion::same_sheet_weight`]). Where nearly every particle has a neighbour across a
+//!   bend that the radius does not resolve, no step along these forces may lower the energy further; the relaxation
+//!   then ends before its last step.
 
 mod forces;
 mod grading;
@@ -39,8 +40,8 @@ use crate::sampler::relaxation::stepper::{Stepper, batches};
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
-/// No correction is trusted: near a bend the energy depends on the normal, so the normal is evaluated again at the final
-/// position.
+/// No correction is trusted: near a bend the energy depends on the normal, so the normal is evaluated again at the
+/// final position.
 const TRUST_NONE: f32 = f32::MIN_POSITIVE;
 
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
@@ -203,8 +204,8 @@ impl Relaxation {
         !moved.is_empty()
     }
 
-    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase; costly ones
-    /// count for several.
+    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase;
+    /// costly ones count for several.
     ///
     /// # Panics
     ///
@@ -273,7 +274,8 @@ impl Relaxation {
         has_moved
     }
 
-    /// Returns how far this phase comes with a budget, and the units that takes: the last particle may go beyond the budget.
+    /// Returns how far this phase comes with a budget, and the units that takes: the last particle may go beyond the
+    /// budget.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
         let cost = |i: usize| match self.phase {
             Phase::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
@@ -401,7 +403,8 @@ impl Relaxation {
         }
     }
 
-    /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the energy.
+    /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the
+    /// energy.
     fn after_forces<L: Repulsion>(&mut self, energy: f64) -> Phase {
         if self.purpose != Purpose::Judge {
             self.stepper.record_first(energy);

@@ -1,4 +1,5 @@
-//! Laws of repulsion: a Gaussian for particles of one size (paper §4.5), the overlap of discs for particles of many (§5).
+//! Laws of repulsion: a Gaussian for particles of one size (paper §4.5), the overlap of discs for particles of many
+//! (§5).
 
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
@@ -12,13 +13,13 @@ use glam::{Vec3, Vec4};
 /// Largest number of evaluations to bring a particle back onto the surface.
 const MAX_NEWTON: u32 = 6;
 
-/// Returns the weight of a pair of particles whose unit normals have this cosine: 1 up to 60°, where they are neighbours on
-/// one sheet of the surface, and 0 from 120°, where they are on two.
+/// Returns the weight of a pair of particles whose unit normals have this cosine: 1 up to 60°, where they are
+/// neighbours on one sheet of the surface, and 0 from 120°, where they are on two.
 ///
-/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and the energy is a continuous
-/// function of the positions. The force is the derivative with respect to the distance alone and leaves out that of the
-/// weight, so the ramp must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one spreads particles
-/// most evenly on the surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
+/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and the energy is a
+/// continuous function of the positions. The force is the derivative with respect to the distance alone and leaves out
+/// that of the weight, so the ramp must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one
+/// spreads particles most evenly on the surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
 pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
     (0.5 + cosine).clamp(0.0, 1.0)
 }
@@ -26,16 +27,16 @@ pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
 /// Largest distance that a particle moves in one step, in radii.
 pub(crate) const MAX_MOVE: f32 = 0.35;
 
-/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves is of the
-/// order of its square.
+/// A Newton correction shorter than this, in radii, is not checked by another evaluation: the residual that it leaves
+/// is of the order of its square.
 pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
 
 /// A batch of particles that return to the surface.
 pub(crate) struct LandingBatch {
     /// Number of particles.
     pub(crate) count: usize,
-    /// A Newton correction shorter than this, in radii, is not checked by another evaluation. With 0 all radii are brought up
-    /// to date.
+    /// A Newton correction shorter than this, in radii, is not checked by another evaluation. With 0 all radii are
+    /// brought up to date.
     pub(crate) trust: f32,
     pub(crate) position: [Vec3; BATCH],
     pub(crate) normal: [Vec3; BATCH],
@@ -85,23 +86,24 @@ pub(crate) trait Repulsion {
     /// Returns the smallest and the largest radius of the particles.
     fn extent(&self, particles: &Particles) -> (f32, f32);
 
-    /// Returns force over offset, and energy, of four pairs with these squared distances and mean radii, both in units of
-    /// length.
+    /// Returns force over offset, and energy, of four pairs with these squared distances and mean radii, both in units
+    /// of length.
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4);
 
-    /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the particles
-    /// that have travelled far since that was done last or, where `landing.trust` is 0, of all.
+    /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the
+    /// particles that have travelled far since that was done last or, where `landing.trust` is 0, of all.
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch);
 }
 
 /// Gaussian repulsion after Witkin and Heckbert 1994, §4, without fission and death, and with one radius.
 ///
-/// A pair at distance d has the energy exp(−d²/2σ²) with σ = r, and every particle moves against the gradient of the sum. The
-/// hexagonal lattice of spacing 2r is then close to equilibrium, which is at 2.017 r.
+/// A pair at distance d has the energy exp(−d²/2σ²) with σ = r, and every particle moves against the gradient of the
+/// sum. The hexagonal lattice of spacing 2r is then close to equilibrium, which is at 2.017 r.
 ///
 /// # Differs from the paper
 ///
-/// The pair energy is cut off at 3σ and shifted so that it is zero there, which keeps the sum continuous in the positions.
+/// The pair energy is cut off at 3σ and shifted so that it is zero there, which keeps the sum continuous in the
+/// positions.
 pub(crate) struct Gaussian {
     radius: f32,
     tolerance: Tolerance,
@@ -120,9 +122,9 @@ impl Repulsion for Gaussian {
     const SKIN: f32 = GAUSSIAN_SKIN;
     const SLACK: f32 = 0.5;
     const POLISH_UNITS: u32 = 1;
-    /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps below
-    /// 0.9 are stable there, and steps below 0.7 where rows are squeezed to 1.7σ. Longer steps reach no lower energy in ten
-    /// steps, and the squeezed rows oscillate.
+    /// The unit is σ². The stiffest mode of the hexagonal lattice at spacing 2σ has the eigenvalue 2.2 / σ², so steps
+    /// below 0.9 are stable there, and steps below 0.7 where rows are squeezed to 1.7σ. Longer steps reach no lower
+    /// energy in ten steps, and the squeezed rows oscillate.
     const STEP: f32 = 0.6;
     const RESIZES: bool = false;
 
@@ -179,18 +181,19 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
     e8 * e8
 }
 
-/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): two particles
-/// push each other apart by the overlap of their discs.
+/// Forces between discs of different radii (paper §5, "a relaxation scheme based on a computation of forces"): two
+/// particles push each other apart by the overlap of their discs.
 ///
-/// The stiffness is the same for all pairs, so discs of all sizes are compressed by the same length where the forces balance.
-/// The energy is that of the relative overlaps, Σ (overlap / mean radius)². To first order the same forces descend it, if the
-/// change of the radii with the position is counted: the radius falls towards smaller neighbours, which pushes a particle as
-/// much as the unequal forces of large and small neighbours do.
+/// The stiffness is the same for all pairs, so discs of all sizes are compressed by the same length where the forces
+/// balance. The energy is that of the relative overlaps, Σ (overlap / mean radius)². To first order the same forces
+/// descend it, if the change of the radii with the position is counted: the radius falls towards smaller neighbours,
+/// which pushes a particle as much as the unequal forces of large and small neighbours do.
 ///
 /// # Differs from the paper
 ///
-/// * The paper gives no formulas. The discs count as 1.15 times as large as their radii: discs that barely touch would not push
-///   into gaps. Of factors from 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus and tanglecube.
+/// * The paper gives no formulas. The discs count as 1.15 times as large as their radii: discs that barely touch would
+///   not push into gaps. Of factors from 1.0 to 1.5, 1.15 gives the most even sizes after ten steps on ellipsoid, torus
+///   and tanglecube.
 /// * A radius is brought up to date once its particle has travelled a tenth of it, and at the end.
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
@@ -207,8 +210,8 @@ impl Repulsion for Overlap<'_> {
     const SLACK: f32 = 0.0;
     /// Polishing evaluates a Hessian for every particle.
     const POLISH_UNITS: u32 = 8;
-    /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the share by which the lattice is
-    /// compressed, so steps below 0.36 are stable. Shorter steps mend less in ten.
+    /// The stiffest mode of the hexagonal lattice has the eigenvalue 6 (1 − c), where c is the share by which the
+    /// lattice is compressed, so steps below 0.36 are stable. Shorter steps mend less in ten.
     const STEP: f32 = 0.33;
     const RESIZES: bool = true;
 
@@ -293,8 +296,8 @@ impl Repulsion for Overlap<'_> {
     }
 }
 
-/// A radius is brought up to date once its particle has travelled this share of it. Until then the law has changed by less than
-/// this share of the slope, a few thousandths on most surfaces, and a Hessian costs two to three gradients.
+/// A radius is brought up to date once its particle has travelled this share of it. Until then the law has changed by
+/// less than this share of the slope, a few thousandths on most surfaces, and a Hessian costs two to three gradients.
 const RADIUS_LASTS: f32 = 0.1;
 
 /// A batch of descents to the surface that notes the curvature at each evaluation.

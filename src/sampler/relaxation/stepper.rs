@@ -25,7 +25,8 @@ pub(super) struct Stepper {
     previous: Vec<Vec3>,
     /// Radii before that step; empty where radii do not change.
     previous_radius: Vec<f32>,
-    /// Distance that each particle has travelled since its radius was brought up to date; empty where radii do not change.
+    /// Distance that each particle has travelled since its radius was brought up to date; empty where radii do not
+    /// change.
     radius_travel: Vec<f32>,
     step_size: f32,
     /// Rejected steps in a row.
@@ -93,8 +94,9 @@ impl Stepper {
         }
     }
 
-    /// Accepts or rejects the last step by the energy per particle after it. Returns whether it stands: whether it has lowered
-    /// the energy. The next step is a little longer then, and otherwise half as long, but never longer than `longest`.
+    /// Accepts or rejects the last step by the energy per particle after it. Returns whether it stands: whether it has
+    /// lowered the energy. The next step is a little longer then, and otherwise half as long, but never longer than
+    /// `longest`.
     pub(super) fn judge(&mut self, energy: f64, longest: f32) -> bool {
         if self.energy.last().is_some_and(|&before| energy >= before) {
             self.step_size *= 0.5;
@@ -135,8 +137,8 @@ impl Stepper {
         }
     }
 
-    /// Puts the particles of `range` back where they were before the step, and writes their positions to `landing`. They are
-    /// still to land: their normals are those of the positions that they have left.
+    /// Puts the particles of `range` back where they were before the step, and writes their positions to `landing`.
+    /// They are still to land: their normals are those of the positions that they have left.
     pub(super) fn take_back<L: Repulsion>(
         &mut self,
         law: &L,
@@ -166,11 +168,11 @@ impl Stepper {
         }
     }
 
-    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the normals and
-    /// radii there.
+    /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
+    /// normals and radii there.
     ///
-    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, and at a fold, across
-    /// which its normal would turn by more than 90°.
+    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, and at a fold,
+    /// across which its normal would turn by more than 90°.
     pub(super) fn land<L: Repulsion>(
         &mut self,
         law: &L,
@@ -214,8 +216,8 @@ impl Stepper {
 
 /// Notes in the `lists` that particle `i` has moved by `distance` and that its radius has grown by `grown`.
 ///
-/// A list serves until its particle has used up half of the skin: two such particles may have come within range without being
-/// listed.
+/// A list serves until its particle has used up half of the skin: two such particles may have come within range without
+/// being listed.
 #[inline]
 fn add_travel<L: Repulsion>(
     law: &L,

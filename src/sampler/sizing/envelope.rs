@@ -3,10 +3,11 @@
 use crate::math::{Bounds, SQRT_3};
 use glam::Vec3;
 
-/// Grid cells along the longest side of the box. The survey has as many, so a cell that the surface meets holds some of its points.
+/// Grid cells along the longest side of the box. The survey has as many, so a cell that the surface meets holds some of
+/// its points.
 const CELLS: f32 = 32.0;
-/// Largest number of passes forwards and backwards over the nodes. One would be enough on a full grid; in a thin band of nodes the
-/// shortest path may turn back around a bend.
+/// Largest number of passes forwards and backwards over the nodes. One would be enough on a full grid; in a thin band
+/// of nodes the shortest path may turn back around a bend.
 const ROUNDS: usize = 2;
 /// A function on the nodes of a regular grid. Only the nodes near the surface, the *active* ones, have a meaning.
 #[derive(Clone, Debug)]
@@ -64,8 +65,8 @@ impl Envelope {
         [1, self.nodes[0], self.nodes[0] * self.nodes[1]]
     }
 
-    /// Returns the first node of the cell that holds `p`, or of the nearest cell in the box, and the position in that cell, from 0 to
-    /// 1 along each axis.
+    /// Returns the first node of the cell that holds `p`, or of the nearest cell in the box, and the position in that
+    /// cell, from 0 to 1 along each axis.
     fn locate(&self, p: Vec3) -> (usize, Vec3) {
         // NaN becomes the first position.
         let position = ((p - self.lo) * self.inverse_cell).max(Vec3::splat(MARGIN as f32)).min(self.last);
@@ -113,8 +114,9 @@ impl Envelope {
         }
     }
 
-    /// Lowers node `n` to what thirteen of its neighbours allow: those before it or those after it in the order of the nodes. `steps`
-    /// are the rises to a neighbour across a face, an edge and a corner. Returns whether the node was lowered.
+    /// Lowers node `n` to what thirteen of its neighbours allow: those before it or those after it in the order of the
+    /// nodes. `steps` are the rises to a neighbour across a face, an edge and a corner. Returns whether the node was
+    /// lowered.
     fn lower_node(&mut self, n: usize, steps: [f32; 3], at: impl Fn(usize) -> usize) -> bool {
         let [_, row, layer] = self.strides();
         let least = |a: f32, b: f32| if b < a { b } else { a };

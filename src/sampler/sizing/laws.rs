@@ -1,17 +1,17 @@
 //! Radius laws: the radius of a particle as a function of the curvature of the surface (paper §5).
 //!
-//! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of the run.
-//! Where the curvature is undefined (see [`Curvature::is_defined`]: cone points, creases, the border of the domain of f) every law
-//! gives the smallest radius, which is also the limit if the curvature grows towards such a point.
+//! A law gives a radius from 0 to ∞; [`SizingLaw`] clamps it to the smallest and largest radius of the run. Where the
+//! curvature is undefined (see [`Curvature::is_defined`]: cone points, creases, the border of the domain of f) every
+//! law gives the smallest radius, which is also the limit if the curvature grows towards such a point.
 
 use crate::differential::Curvature;
 use crate::sampler::settings::{LawKind, Settings};
 
 /// Law by the chord error: the gap between the surface and a triangle of neighbours is at most ε.
 ///
-/// The middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if
-/// h = √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2. This law is the default, since its parameter is
-/// the easiest to understand.
+/// The middle of an equilateral triangle of side h, inscribed in a sphere of radius R, is ε away from the sphere if h =
+/// √(6εR − 3ε²). With R = 1/max(|κ₁|, |κ₂|) and neighbours 2r apart, r = h/2. This law is the default, since its
+/// parameter is the easiest to understand.
 ///
 /// # Differs from the paper
 ///
@@ -22,16 +22,16 @@ pub struct ChordError {
     pub error: f64,
 }
 
-/// Law by the largest curvature, r = s / max(|κ₁|, |κ₂|): the normals of neighbours differ by about 2s radians in the direction of
-/// the largest curvature.
+/// Law by the largest curvature, r = s / max(|κ₁|, |κ₂|): the normals of neighbours differ by about 2s radians in the
+/// direction of the largest curvature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaxCurvature {
     /// s, a pure number.
     pub scale: f64,
 }
 
-/// The paper's law, r = s / |κ₁ + κ₂| (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum vanishes on symmetric
-/// saddles, which get the largest radius.
+/// The paper's law, r = s / |κ₁ + κ₂| (§5, "we define the curvature at a point to be κ = κ₁ + κ₂"). The sum vanishes on
+/// symmetric saddles, which get the largest radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SumOfCurvatures {
     /// s, a pure number.

@@ -1,8 +1,8 @@
 //! The radius field of adaptive sampling: a law gives the radius from the curvature, and its slope is limited.
 //!
-//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the survey's points y of law(κ(y)) + L |x − y|: the
-//! largest function of slope L that is not above the law at these points. So the radius grows no faster than this away from a
-//! bend. The envelope is stored on the nodes of a grid near the surface and interpolated between them.
+//! r(x) = min(law(κ(x)), envelope(x)). The envelope is the minimum over the survey's points y of law(κ(y)) + L |x − y|:
+//! the largest function of slope L that is not above the law at these points. So the radius grows no faster than this
+//! away from a bend. The envelope is stored on the nodes of a grid near the surface and interpolated between them.
 
 mod envelope;
 mod laws;
@@ -18,8 +18,8 @@ use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
 use glam::Vec3;
 
-/// Attempts at a predicted count. Each scales the radii by the square root of the ratio of the counts; more than one is necessary
-/// only because of the clamps and the slope.
+/// Attempts at a predicted count. Each scales the radii by the square root of the ratio of the counts; more than one is
+/// necessary only because of the clamps and the slope.
 const MAX_ATTEMPTS: u32 = 6;
 /// Relative error at which a predicted count counts as met; the prediction itself is not more accurate.
 const COUNT_TOLERANCE: f64 = 2e-3;
@@ -82,16 +82,16 @@ impl Sizing {
         sizing
     }
 
-    /// Returns the repulsion radius of a particle at a point of the surface with this curvature; the smallest radius if the curvature
-    /// is undefined.
+    /// Returns the repulsion radius of a particle at a point of the surface with this curvature; the smallest radius if
+    /// the curvature is undefined.
     #[inline]
     pub(crate) fn radius(&self, position: Vec3, curvature: &Curvature) -> f32 {
         self.law.radius(curvature).min(self.envelope.at(position))
     }
 
     #[cfg(test)]
-    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not close where the surface bends more than at the
-    /// nearest points of the survey.
+    /// Returns an upper bound of the radius at `position`, without a Hessian. It is not close where the surface bends
+    /// more than at the nearest points of the survey.
     #[inline]
     pub(crate) fn envelope(&self, position: Vec3) -> f32 {
         self.envelope.at(position)
