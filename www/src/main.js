@@ -10,9 +10,9 @@ const mount = () => {
   if (!mounted) mountInterface(engine);
   mounted = true;
 };
-// The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has
-// loaded. // If the style sheet fails, the window's load event starts the interface. (A top-level await would make the
-// bundler split // the entry into many small files.)
+// The interface measures its elements, so it needs the style sheet, and WebKit does not delay scripts until it has loaded.
+// If the style sheet fails, the window's load event starts the interface. (A top-level await would make the bundler split
+// the entry into many small files.)
 const link = /** @type {HTMLLinkElement | null} */ (document.querySelector('link[rel="stylesheet"]'));
 if (!link || link.sheet || document.readyState === 'complete') {
   mount();

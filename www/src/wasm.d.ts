@@ -76,6 +76,7 @@ declare module '*/render.js' {
       positions: Float32Array,
       normals: Float32Array,
       radii: Float32Array,
+      levels: Uint32Array,
       colours: Uint32Array,
       birthS: number,
     ): void;

@@ -1,5 +1,6 @@
 /**
- * The page's side of the sampler: turns requests into jobs, takes what the worker sends, and keeps the signals true.
+ * Connects the page to the sampler's worker: turns requests into jobs, receives the worker's messages and updates the
+ * signals.
  *
  * @module
  */
@@ -41,10 +42,10 @@ export class SamplingClient {
    * @param {import('../columns.js').Columns} options.columns
    * @param {import('./presenter.js').Picture} options.picture
    * @param {() => WorkerLike} options.spawn
-   * @param {() => void} options.onReady  the description is there for the first time
+   * @param {() => void} options.onReady  called when the description has arrived for the first time
    * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
-   * @param {() => SampleRequest} options.whole  a full run of the state as it is
-   * @param {(key: string) => Solved | undefined} [options.solved]  the model that a field names
+   * @param {() => SampleRequest} options.whole  returns the full run of the present state
+   * @param {(key: string) => Solved | undefined} [options.solved]  returns the solved model that a field names
    * @param {import('./supervisor.js').Clock} [options.clock]
    */
   constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
@@ -55,7 +56,7 @@ export class SamplingClient {
     this.onAsk = onAsk;
     this.whole = whole;
     this.solved = solved;
-    /** Whether the curvature is shown. */
+    /** Whether the page shows the curvature. */
     this.curvature = false;
     this.nowMs = clock ? clock.now : () => performance.now();
     this.pace = new Pace(this.nowMs);
@@ -70,7 +71,7 @@ export class SamplingClient {
       onLoadError: (message) => this.loadFailed(`The sampler did not load: ${message}.`),
     });
     this.runs = IDLE;
-    /** Messages of runs that are over. */
+    /** Number of messages received from runs that are over. */
     this.stale = 0;
   }
 
@@ -88,7 +89,10 @@ export class SamplingClient {
     this.supervisor.start();
   }
 
-  /** The curvature costs second derivatives, so it comes only while it is shown. @param {boolean} on */
+  /**
+   * Requests the curvature while it is shown. It costs second derivatives, so it is not sent otherwise.
+   * @param {boolean} on
+   */
   showCurvature(on) {
     if (on === this.curvature) return;
     this.curvature = on;
@@ -100,8 +104,9 @@ export class SamplingClient {
   /** @param {SampleRequest} request */
   sample(request) {
     const { running } = this.scheduler;
-    // A second Run with the same input while the first is under way would only begin again. After a fault it says that there is none
-    // any more, and of a surface that was only restored that it is the one asked for.
+    // A second request with the same input during the first run is ignored, because it would only restart the run. It
+    // is accepted after a fault, to clear it, and if the run only restores a surface, so that this surface becomes the
+    // requested one.
     const same =
       running &&
       running.id > this.runs.stoppedUpTo &&
@@ -112,7 +117,7 @@ export class SamplingClient {
   }
 
   /**
-   * A run for a control in motion, coarse if it has to be.
+   * Starts a run for a control that is being dragged, coarse if necessary.
    * @param {SampleRequest} request @param {number} diagonal  of the clip box
    */
   sampleLive(request, diagonal) {
@@ -122,7 +127,10 @@ export class SamplingClient {
     this.scheduler.submit({ ...request, settings: valid, coarse, live: true, grow: false });
   }
 
-  /** Relaxes the particles the worker holds; where they are gone, the whole run is made with so many steps more. @param {number} steps */
+  /**
+   * Relaxes the particles that the worker holds. If they are gone, the whole run is repeated with that many more steps.
+   * @param {number} steps
+   */
   relax(steps) {
     if (this.store.busy.value) return;
     const { held } = this.runs;
@@ -142,7 +150,7 @@ export class SamplingClient {
     this.supervisor.post({ type: 'stop' });
   }
 
-  /** Makes the surface that stays whole, and its report, where what cut it short came to nothing. */
+  /** Completes the surface that stays on the page, with its report, after the run that interrupted it has failed. */
   settle() {
     const { shown, current, crashedInput } = this.runs;
     if (!shown || shown.reported || this.scheduler.running || (current && current.stage !== 'over')) return;
@@ -150,7 +158,11 @@ export class SamplingClient {
     if (inputOf(request) !== crashedInput) this.scheduler.submit(request);
   }
 
-  /** The run that makes what is on the page anew, relaxed by so many steps more. @param {number} steps @returns {SampleRequest} */
+  /**
+   * Returns the run that repeats the present surface with that many more relaxation steps.
+   * @param {number} steps
+   * @returns {SampleRequest}
+   */
   relaxed(steps) {
     if (!this.runs.shown) throw new Error('There is no surface.');
     return relaxed(this.runs.shown, steps, this.store.description.value);
@@ -159,7 +171,7 @@ export class SamplingClient {
   /** @param {number} id @param {RunRequest} request */
   dispatch(id, request) {
     if (!this.supervisor.worker) {
-      // Safe mode: the wish is in the state, and is met when the sampler is started again.
+      // In safe mode nothing is sent. The state holds the request, which is sent when the sampler is restarted.
       this.scheduler.drop();
       return;
     }
@@ -174,7 +186,7 @@ export class SamplingClient {
       return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
     }
     const { field, settings, grow, live } = request;
-    // A drag is never asked about: it stops at the limit.
+    // A run of a drag needs no confirmation: it stops at the limit.
     const unasked = request.confirmed || live || request.restoring;
     return {
       kind: 'sample',
@@ -194,7 +206,7 @@ export class SamplingClient {
     this.attend();
   }
 
-  /** Something is under way: for the page until the particles are there, for the worker until their report is. */
+  /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
   attend() {
     this.store.busy.value = awaitsParticles(this.runs);
     this.supervisor.setBusy(awaitsWorker(this.runs));
@@ -255,7 +267,12 @@ export class SamplingClient {
     });
   }
 
-  /** What is on the way of the job before is no longer listened to. @param {number} id @param {SampleRequest} request @param {import('../types.js').FieldOk} answer */
+  /**
+   * Makes the job the current one. Messages of the previous job are ignored from now on.
+   * @param {number} id
+   * @param {SampleRequest} request
+   * @param {import('../types.js').FieldOk} answer
+   */
   fieldAccepted(id, request, answer) {
     this.happened({ type: 'accepted', id, bounds: answer.bounds });
     this.presenter.begin(id, request);
@@ -274,7 +291,7 @@ export class SamplingClient {
     this.settle();
   }
 
-  /** Dims a surface that is not the one asked for. */
+  /** Dims the surface if it is not the requested one. */
   dim() {
     this.presenter.dim(this.runs.astray);
   }
@@ -282,7 +299,7 @@ export class SamplingClient {
   /** @param {import('./protocol.js').ColumnsMessage} message @param {Run} run */
   takeColumns(message, run) {
     const drawn = () => this.supervisor.post({ type: 'drawn', id: message.id });
-    // No particle takes the place of those of the last surface: whether there will be one the end of the run tells.
+    // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
     if (message.total === 0) return drawn();
     if (run.stage === 'seeding') {
       this.happened({ type: 'particles', description: this.store.description.value });
@@ -311,11 +328,16 @@ export class SamplingClient {
     this.scheduler.ended(message.id);
     if (request.kind !== 'sample') return;
     if (outcome === 'ask') this.onAsk(message.predicted, request);
-    // After a drag that a mistake broke off no whole run comes.
+    // If an error ended a drag, no full run follows it.
     if ((!surface && !request.restoring) || (request.live && this.store.fieldError.value)) this.settle();
   }
 
-  /** Learns from a run what the next will cost. @param {import('./protocol.js').DoneMessage} message @param {Run} run @param {number} particles */
+  /**
+   * Updates the cost model from a finished run.
+   * @param {import('./protocol.js').DoneMessage} message
+   * @param {Run} run
+   * @param {number} particles
+   */
   learn({ seconds, progress }, run, particles) {
     const { store } = this;
     const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.whole());
@@ -326,12 +348,15 @@ export class SamplingClient {
 
   // ---- when the worker fails ----------------------------------------------------------------------------------------------
 
-  /** Version of the core, empty before it has arrived. */
+  /** Version of the core; empty until the core has loaded. */
   get version() {
     return this.store.description.value?.version ?? '';
   }
 
-  /** Nothing is under way any more. @returns {SampleRequest | null} what is lost with it */
+  /**
+   * Drops all runs, because the worker is gone.
+   * @returns {SampleRequest | null} the run that is lost with the worker
+   */
   forget() {
     const lost = lostRun(this.runs, this.scheduler.drop(), this.store.description.value);
     batch(() => {

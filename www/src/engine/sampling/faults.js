@@ -1,5 +1,5 @@
 /**
- * What a person is told when the sampler fails.
+ * The notices shown to the user when the sampler fails.
  *
  * @module
  */
@@ -11,7 +11,7 @@
  */
 
 /**
- * The worker was replaced; the run it was at is made again, or was given up.
+ * Returns the notice after the worker was replaced. Its run is repeated or given up.
  * @param {Crash} crash @param {RunRequest | null} lost @param {{again: boolean, version: string}} context
  * @returns {Notice}
  */
@@ -45,14 +45,19 @@ export const loadNotice = (text, run) => ({
   action: { label: 'Try again', run },
 });
 
-/** The settings were refused. @param {string} words @returns {Notice} */
+/** Returns the notice after the core has refused the settings. @param {string} words @returns {Notice} */
 export const refusalNotice = (words) => ({
   id: 'size',
   kind: 'error',
   text: `${words.charAt(0).toUpperCase()}${words.slice(1)}.`,
 });
 
-/** A report worth copying. @param {Crash} crash @param {RunRequest | null} lost @param {string} version  of the core */
+/**
+ * Returns a crash report for the user to copy.
+ * @param {Crash} crash
+ * @param {RunRequest | null} lost
+ * @param {string} version  of the core
+ */
 function crashReport(crash, lost, version) {
   return [
     `Marching Particles ${version}: the sampler ${crash.cause === 'hang' ? 'fell silent' : 'stopped on an error'}`,

@@ -1,7 +1,7 @@
 /**
- * The jobs of a worker: one under way, one that waits, always the latest. A job takes over only once the core has accepted its
- * field. A refused one changes nothing in the core, so that what is under way, run or measurement, goes on to its end and the
- * surface that stays on the page is whole and has its own report.
+ * Queues the jobs of a worker: one runs, and the latest one waits. A job replaces the running one only after the core
+ * has accepted its field. A refused field changes nothing in the core, so the running job continues and the surface
+ * that stays on the page is completed and measured.
  *
  * @module
  */
@@ -11,10 +11,11 @@
  * @typedef {import('./protocol.js').FromWorker} FromWorker
  * @typedef {import('./job.js').CoreLike} CoreLike
  */
-/** A job that has not begun. @typedef {{job: Job, stopped: boolean}} Pending */
+/** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
- * A model is set anew for every job: its few kilobytes cost less than to know which one the core of this worker has.
+ * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
+ * which model the core holds would cost more.
  * @param {CoreLike} core @param {import('./protocol.js').SampleJob} job
  * @returns {import('../types.js').FieldAnswer}
  */
@@ -28,11 +29,14 @@ export class Jobs {
   /** @param {(message: FromWorker) => void} post */
   constructor(post) {
     this.post = post;
-    /** The core has not been asked about it. @type {Pending | null} */
+    /** The latest job; its field has not been passed to the core. @type {Pending | null} */
     this.waiting = null;
-    /** Its field is the core's: it runs as soon as the one under way has given way. @type {Pending | null} */
+    /**
+     * The job whose field the core has accepted. It runs as soon as the running job has ended.
+     * @type {Pending | null}
+     */
     this.accepted = null;
-    /** The one under way is to end. */
+    /** Whether the running job must stop. */
     this.stopped = false;
   }
 
@@ -41,14 +45,14 @@ export class Jobs {
     this.waiting = { job, stopped: false };
   }
 
-  /** Ends what was added before. */
+  /** Stops all jobs added so far. */
   stop() {
     this.stopped = true;
     if (this.waiting) this.waiting.stopped = true;
     if (this.accepted) this.accepted.stopped = true;
   }
 
-  /** The job to run next, its field set. @param {CoreLike} core @returns {Job | null} */
+  /** Returns the next job, with its field set in the core. @param {CoreLike} core @returns {Job | null} */
   take(core) {
     this.ask(core);
     const next = this.accepted;
@@ -57,7 +61,11 @@ export class Jobs {
     return next?.job ?? null;
   }
 
-  /** What a job under way has to do: between two steps it asks. @param {CoreLike} core @returns {'stop' | 'replace' | null} */
+  /**
+   * Returns what the running job must do. The job calls this between two steps.
+   * @param {CoreLike} core
+   * @returns {'stop' | 'replace' | null}
+   */
   interrupt(core) {
     this.ask(core);
     if (this.accepted) return 'replace';

@@ -1,5 +1,5 @@
 /**
- * What runs cost, learnt from those that ended, and how the drag of a control goes.
+ * Measures the cost of finished runs and the latency of a drag.
  *
  * @module
  */
@@ -12,16 +12,19 @@ import { CostModel, costKey, planLive, sizeOf } from './scheduler.js';
  * @typedef {import('./run-state.js').Run} Run
  * @typedef {import('./run-state.js').SampleRequest} SampleRequest
  */
-/** What is learnt from a run. @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Outcome */
+/**
+ * The measurements of a finished run.
+ * @typedef {{seconds: Seconds, particles: number, relax_steps: number, size: number}} Outcome
+ */
 
-/** After so long without a request the next one begins another drag. */
+/** Pause between live requests after which the next one belongs to another drag. */
 const NEXT_DRAG_MS = 1000;
 
 export class Pace {
   /** @param {() => number} nowMs */
   constructor(nowMs) {
     this.nowMs = nowMs;
-    /** What runs cost, by {@link costKey}. @type {Map<string, CostModel>} */
+    /** Cost models by {@link costKey}. @type {Map<string, CostModel>} */
     this.costs = new Map();
     /** @type {{requested: number, latencies: number[], coarse: boolean, quietMs: number} | null} */
     this.drag = null;
@@ -35,7 +38,11 @@ export class Pace {
     return cost;
   }
 
-  /** Settings for a run while a control is dragged. @param {SampleRequest} request @param {number} diagonal  of the clip box */
+  /**
+   * Returns the settings of a run during a drag.
+   * @param {SampleRequest} request
+   * @param {number} diagonal  of the clip box
+   */
   plan(request, diagonal) {
     const now = this.nowMs();
     if (!this.drag || now - this.drag.quietMs > NEXT_DRAG_MS)
@@ -49,10 +56,10 @@ export class Pace {
   }
 
   /**
-   * Learns from a run what the next will cost.
-   * @param {Run} run @param {SampleRequest} sampled  the sampling that it was, or went on with
+   * Updates the cost model and the drag from a finished run.
+   * @param {Run} run @param {SampleRequest} sampled  the request that the run sampled, or whose particles it relaxed
    * @param {Outcome} outcome
-   * @returns {import('../types.js').LastDrag | null} how the drag goes that the run belongs to
+   * @returns {import('../types.js').LastDrag | null} the state of the drag that the run belongs to, if any
    */
   record({ request, sinceMs }, sampled, outcome) {
     const { particles } = outcome;
@@ -62,7 +69,7 @@ export class Pace {
     if (!request.live || !drag) return null;
     const latency = this.nowMs() - sinceMs;
     drag.latencies.push(latency);
-    // What the sampler did not spend, drawing did: a slow graphics device holds up every message.
+    // The rest of the latency is drawing: a slow graphics device delays every message.
     cost.recordPicture(particles, latency - samplingSeconds(outcome.seconds) * 1e3);
     const sorted = [...drag.latencies].sort((a, b) => a - b);
     return {
@@ -75,16 +82,26 @@ export class Pace {
   }
 }
 
-/** Time for the particles alone, without the figures. @param {Seconds} seconds */
+/** Returns the sampling time, without the measurement of the figures. @param {Seconds} seconds */
 const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + generation + relaxation;
 
-/** Before the report is there. @param {Seconds} seconds @param {number} particles @param {boolean} live @returns {Timing} */
+/**
+ * Returns the timing before the report has arrived.
+ * @param {Seconds} seconds
+ * @param {number} particles
+ * @param {boolean} live
+ * @returns {Timing}
+ */
 export function timingOf(seconds, particles, live) {
   const total = samplingSeconds(seconds);
   return { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live };
 }
 
-/** With the report. @param {{seconds: Seconds, count: number}} report @returns {Timing} */
+/**
+ * Returns the timing once the report has arrived.
+ * @param {{seconds: Seconds, count: number}} report
+ * @returns {Timing}
+ */
 export function timingOfReport({ seconds, count }) {
   const total = samplingSeconds(seconds) + seconds.quality;
   const usPerParticle = ((total - seconds.quality) * 1e6) / Math.max(1, count);
@@ -92,7 +109,8 @@ export function timingOfReport({ seconds, count }) {
 }
 
 /**
- * The size by which the cost of a run is known, NaN where it is not. A uniform run tells its radius also where the count decides.
+ * Returns the length to which the cost of a run is related (see {@link sizeOf}), or NaN if it is unknown. A uniform run
+ * that is set by a count reports the radius it has found.
  * @param {Settings} settings @param {number} radius @param {import('../types.js').Bounds | undefined} bounds
  */
 export function sizeOfRun(settings, radius, bounds) {

@@ -1,5 +1,5 @@
 /**
- * What the page shows of the runs: writes the columns, the signals and the picture. It decides nothing; the client does.
+ * Shows the runs on the page: writes the columns, the signals and the picture. The client makes the decisions.
  *
  * @module
  */
@@ -16,11 +16,13 @@ import { timingOf, timingOfReport } from './pace.js';
  * @typedef {import('../types.js').FieldAnswer} FieldAnswer
  */
 /**
- * What is told of the picture.
+ * The part of the viewer that the presenter uses.
  * @typedef {object} Picture
- * @property {(options: {grow: boolean, fit: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a new surface takes the place of the old one
- * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns first … last are new
- * @property {(from: number, last: number) => void} recolour  colours first … last may be new
+ * @property {(options: {grow: boolean, fit: boolean, bounds: import('../types.js').Bounds | null}) => void} begin  a
+ *   new surface replaces the old one
+ * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns of particles first … last are
+ *   new
+ * @property {(from: number, last: number) => void} recolour  colours of particles first … last may have changed
  * @property {() => void} fit
  * @property {(dim: boolean) => void} dim
  */
@@ -33,7 +35,7 @@ export class Presenter {
     this.picture = picture;
   }
 
-  /** The worker is at another job. @param {number} id @param {RunRequest} request */
+  /** Shows that the worker has started another job. @param {number} id @param {RunRequest} request */
   begin(id, request) {
     const phase = request.kind === 'relax' ? 'relaxation' : 'seeding';
     this.store.progress.value = { ...idleProgress(), run: id, live: request.live, phase };
@@ -44,33 +46,43 @@ export class Presenter {
     this.store.progress.value = { ...progress, run: id, live: request.live };
   }
 
-  /** Nothing is under way: what is on the page is all there is. @param {Partial<import('../types.js').Progress>} [more] */
+  /**
+   * Shows that no run is active. The progress then describes the particles on the page.
+   * @param {Partial<import('../types.js').Progress>} [more]
+   */
   idle(more = {}) {
     this.store.progress.value = { ...idleProgress(), particles: this.columns.count, ...more };
   }
 
-  /** The core took a field. @param {import('../types.js').FieldRequest} field @param {Extract<FieldAnswer, {ok: true}>} answer */
+  /**
+   * Shows a field that the core has accepted.
+   * @param {import('../types.js').FieldRequest} field
+   * @param {Extract<FieldAnswer, {ok: true}>} answer
+   */
   field(field, answer) {
     const { store } = this;
-    // Too many particles were asked for before: no longer.
+    // The question about too many particles belongs to the previous field.
     if (store.notice.value?.id === 'size') store.notice.value = null;
     store.field.value = field.points !== undefined ? { ...answer, surface: field.surface ?? null } : answer;
     store.model.value = answer.model ?? null;
     store.fieldError.value = null;
   }
 
-  /** The core refused one. @param {Extract<FieldAnswer, {ok: false}>} answer */
+  /** Shows the error of a field that the core has refused. @param {Extract<FieldAnswer, {ok: false}>} answer */
   fault({ error }) {
     this.store.fieldError.value = error;
   }
 
-  /** Dims a surface that is not the one asked for. An empty editor is no mistake: nothing is dimmed for it. @param {boolean} astray */
+  /**
+   * Dims the surface if it is not the requested one. An empty formula is not an error and dims nothing.
+   * @param {boolean} astray
+   */
   dim(astray) {
     const fault = this.store.fieldError.value;
     this.picture.dim(astray || this.columns.stale || (fault !== null && fault.kind !== 'empty'));
   }
 
-  /** The first particles of a run take the place of those on the page. @param {Run} run */
+  /** Replaces the particles on the page by the first ones of a run. @param {Run} run */
   first({ request, bounds }) {
     const { store } = this;
     store.report.value = null;
@@ -100,11 +112,16 @@ export class Presenter {
     store.revision.value += 1;
   }
 
-  /** A run ended with a surface, or found that there is none. @param {DoneMessage} message @param {Run} run @param {number} particles */
+  /**
+   * Shows the end of a run that has made a surface or found none.
+   * @param {DoneMessage} message
+   * @param {Run} run
+   * @param {number} particles
+   */
   end({ outcome, progress, seconds, reportFollows }, { id, request }, particles) {
     const { store, columns } = this;
     if (particles === 0) {
-      // The last surface stays until there is another, and is nothing to measure or to take away.
+      // The last surface stays visible until there is another, but it cannot be measured or exported.
       columns.stale = columns.count > 0;
       store.report.value = null;
       store.hover.value = null;
@@ -119,7 +136,7 @@ export class Presenter {
     if (request.fit && particles > 0) this.picture.fit();
   }
 
-  /** A run came to nothing. @param {DoneMessage} message */
+  /** Shows the end of a run that has failed. @param {DoneMessage} message */
   failure({ id, outcome, message }) {
     this.idle({ run: id, phase: 'done', message: message || null });
     if (outcome === 'refused') this.store.notice.value = refusalNotice(message);

@@ -1,9 +1,9 @@
 /**
- * What the page and the sampler's worker say to each other.
+ * Messages between the page and the sampler's worker.
  *
- * Every message about a job carries the job's id; the page drops what belongs to an older one. Columns travel as transferred
- * buffers. A picture's worth of columns is acknowledged once it has been drawn, and the worker sends the next only then, so
- * that a slow graphics device is never flooded.
+ * Every message about a job carries the job's id, and the page drops messages of older jobs. Columns are sent as
+ * transferred buffers. The page acknowledges them after the next frame, and the worker sends more only after that, so
+ * that messages do not pile up before a slow graphics device.
  *
  * @module
  */
@@ -19,10 +19,10 @@
  */
 
 /**
- * Sample the field from the start. `grow` shows the surface while it grows; otherwise columns come once the front is
- * complete, so that a picture already there stays until its successor is whole. A `live` job comes from a control that is
- * being dragged: columns once, at the end, and no report unless it is stopped. `askAbove` is the number of particles beyond which the job is
- * handed back unstarted. `points` is the solved model that `field` names.
+ * Samples the field from the start. With `grow` the columns are sent while the front grows; otherwise they are sent
+ * once the front is complete, so that the present picture stays until then. A `live` job comes from a drag: its columns
+ * are sent once, at the end, and it has no report unless it is stopped. A job with more than `askAbove` expected
+ * particles is returned without running. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
  * @property {number} id
@@ -34,15 +34,16 @@
  * @property {number} askAbove
  */
 /**
- * Relax the particles that the worker holds, which must be those of job `of`.
+ * Relaxes the particles that the worker holds. They must be those of job `of`.
  * @typedef {{kind: 'relax', id: number, of: number, steps: number, live: false, grow: true}} RelaxJob
  */
 /** @typedef {SampleJob | RelaxJob} Job */
 
 /**
- * A `job` takes over from the one before once the core has accepted its field; until then, and for good where the field is
- * refused, that one goes on. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature: it then comes with the other columns, and at once for the particles
- * that are held. `core` comes first, or `no_core` where it could not be loaded.
+ * A `job` replaces the running one once the core has accepted its field. If the field is refused, the running job
+ * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it is
+ * sent with the other columns, and at once for the particles that the worker holds. The first message is `core`, or
+ * `no_core` if the core could not be loaded.
  * @typedef {{type: 'core', module: WebAssembly.Module}
  *   | {type: 'no_core', fault: LoadFault, message: string}
  *   | {type: 'job', job: Job}
@@ -54,9 +55,9 @@
 /** Faults that tests provoke. @typedef {'panic' | 'hang' | 'overflow'} Fault */
 
 /**
- * How a job ended. `refused`: the settings were not accepted; `ask`: more particles than `askAbove` are expected;
- * `lost`: the particles to relax are no longer there. A job whose field was refused has ended with that answer, and one that
- * a newer one takes over from ends without a word.
+ * How a job ended. `refused`: the core rejected the settings; `ask`: more particles than `askAbove` are expected;
+ * `lost`: the worker no longer holds the particles to relax. A job whose field was refused ends with that answer. A job
+ * that is replaced ends without a message.
  * @typedef {'complete' | 'stopped' | 'refused' | 'ask' | 'lost'} Outcome
  */
 /**
@@ -109,9 +110,9 @@
  *   | {type: 'crashed', id: number, message: string, stack: string}} FromWorker
  */
 
-/** A job without columns to show tells how far it is at this pace. */
+/** Interval between progress messages of a job that sends no columns. */
 export const PROGRESS_MS = 60;
-/** The worker speaks at least this often while it loads or measures. */
+/** Largest interval between messages while the worker loads or measures. */
 export const BEAT_MS = 250;
-/** Silence after which a busy worker counts as hung. */
+/** Time without a message after which a busy worker counts as hung. */
 export const SILENCE_MS = 2000;

@@ -1,6 +1,6 @@
 /**
- * Where the runs stand: a record that only {@link reduce} makes anew, and what follows from it. Pure functions: the client tells
- * what has happened and acts on the outcome.
+ * The state of the runs, as a record that only {@link reduce} replaces, and functions of it. All functions are pure:
+ * the client passes the events and acts on the result.
  *
  * @module
  */
@@ -13,9 +13,9 @@ import { clampSettings } from '../share/state.js';
  * @typedef {import('../types.js').Settings} Settings
  */
 /**
- * A wish for a run. `settings` are complete. `fit` lets the camera follow when the run is done; `confirmed` skips the question
- * whether so many particles are wanted; `restoring` makes the surface that stays on the page whole, while the state asks for
- * another that cannot be had.
+ * A request to sample. `settings` are complete. `fit` fits the camera when the run is done. `confirmed` skips the
+ * question about a large number of particles. `restoring` completes the surface on the page while the state names
+ * another one that cannot be sampled.
  * @typedef {object} SampleRequest
  * @property {'sample'} kind
  * @property {FieldRequest} field
@@ -30,29 +30,29 @@ import { clampSettings } from '../share/state.js';
 /** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */
 /**
- * How far a run has come. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are, and the
- * report is to come; `over`: nothing more is to come.
+ * The stage of a run. `seeding`: none of its particles is on the page; `growing`: some are; `measuring`: all are, and
+ * the report is pending; `over`: the run has ended.
  * @typedef {'seeding' | 'growing' | 'measuring' | 'over'} Stage
  */
 /**
- * A job at the worker. `bounds` is the clip box of its field, once that is accepted.
+ * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted.
  * @typedef {{id: number, request: RunRequest, bounds: Bounds | null, stage: Stage, sinceMs: number}} Run
  */
 /** @typedef {{request: SampleRequest, reported: boolean}} Shown */
 /**
  * @typedef {object} RunState
- * @property {readonly Run[]} asked  jobs of whose field the worker has not spoken, in their order
- * @property {Run | null} current  the job whose messages count: the last whose field was accepted
+ * @property {readonly Run[]} asked  jobs whose field has not been answered yet, in the order sent
+ * @property {Run | null} current  the job whose messages count: the last one whose field was accepted
  * @property {number} held  the job whose particles the worker holds, 0 for none
  * @property {SampleRequest | null} accepted  the last sampling that the core accepted
- * @property {Shown | null} shown  the sampling whose particles are on the page, and whether their report is too
- * @property {boolean} astray  whether the surface on the page is not the one that was asked for last
- * @property {number} stoppedUpTo  the last job that a stop was sent after: none up to it goes on
- * @property {string} crashedInput  what the worker last failed on, as of {@link inputOf}
+ * @property {Shown | null} shown  the request whose particles are on the page, and whether their report has arrived
+ * @property {boolean} astray  whether the surface on the page differs from the one requested last
+ * @property {number} stoppedUpTo  id of the last job sent before a stop; no job up to it continues
+ * @property {string} crashedInput  the input on which the worker crashed last, from {@link inputOf}
  */
 /**
- * What can happen. `particles`: the first of the current run have arrived; `lost`: the worker is gone, and all that was under
- * way with it; `crashed`: it failed on `input`, which is sent `again` or given up.
+ * The events. `particles`: the first particles of the current run have arrived; `lost`: the worker and its jobs are
+ * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
  * @typedef {{type: 'sent', id: number, request: RunRequest, nowMs: number}
  *   | {type: 'accepted', id: number, bounds: Bounds}
  *   | {type: 'refused', id: number}
@@ -84,7 +84,7 @@ export function reduce(state, event) {
       const { id, request, nowMs } = event;
       /** @type {Run} */
       const run = { id, request, bounds: null, stage: 'seeding', sinceMs: nowMs };
-      // A relaxation has no field to be accepted.
+      // A relaxation sets no field, so it is current at once.
       return request.kind === 'relax' ? { ...state, current: run } : { ...state, asked: [...state.asked, run] };
     }
     case 'accepted': {
@@ -137,7 +137,7 @@ function done(state, { outcome, particles, reportFollows }) {
   if (tookPlace(outcome, particles)) {
     return particles > 0 ? { ...next, held: current.id } : { ...next, held: 0, shown: null };
   }
-  // The surface before stays; a run of the same that was stopped at once leaves it what it was.
+  // The previous surface stays. It still counts as the requested one if a run of the same field was stopped.
   const wanted = current.request.kind === 'sample' ? current.request : accepted;
   const same = JSON.stringify(shown?.request.field) === JSON.stringify(wanted?.field);
   return { ...next, astray: current.request.restoring === true || outcome !== 'stopped' || !same };
@@ -146,28 +146,36 @@ function done(state, { outcome, particles, reportFollows }) {
 /** @param {RunState} state @param {Stage} stage @returns {RunState} */
 const atStage = (state, stage) => ({ ...state, current: state.current && { ...state.current, stage } });
 
-/** Jobs are asked about in their order: the worker never looked at those before that are still there. @param {readonly Run[]} asked @param {number} id */
+/**
+ * Returns the jobs sent after `id`. The worker answers in order, so earlier jobs without an answer were skipped.
+ * @param {readonly Run[]} asked
+ * @param {number} id
+ */
 const after = (asked, id) => asked.filter((run) => run.id > id);
 
-/** The job with this id, if the worker has not spoken of it. @param {RunState} state @param {number} id */
+/** Returns the job with this id if its field has not been answered. @param {RunState} state @param {number} id */
 export const askedRun = ({ asked }, id) => asked.find((run) => run.id === id);
 
-/** Whether the page waits for particles. @param {RunState} state */
+/** Returns whether the page waits for particles. @param {RunState} state */
 export const awaitsParticles = ({ asked, current }) =>
   asked.length > 0 || current?.stage === 'seeding' || current?.stage === 'growing';
 
-/** Whether the worker has something to do. @param {RunState} state */
+/** Returns whether the worker has work. @param {RunState} state */
 export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current !== null && current.stage !== 'over');
 
-/** Whether a run that ended so made a surface, or found that there is none. @param {import('./protocol.js').Outcome} outcome @param {number} particles */
+/**
+ * Returns whether a run with this outcome has made a surface or found none.
+ * @param {import('./protocol.js').Outcome} outcome
+ * @param {number} particles
+ */
 export const tookPlace = (outcome, particles) => outcome === 'complete' || (outcome === 'stopped' && particles > 0);
 
-/** The id under which a run's input is compared with another's. @param {RunRequest} request */
+/** Returns the key by which the inputs of runs are compared. @param {RunRequest} request */
 export const inputOf = (request) =>
   JSON.stringify(request.kind === 'sample' ? [request.field, request.settings] : ['relax', request.steps]);
 
 /**
- * The run that makes what is on the page anew, relaxed by so many steps more.
+ * Returns the run that repeats the surface on the page with that many more relaxation steps.
  * @param {Shown} shown @param {number} steps
  * @param {Description | null} description  with the ranges of the settings
  * @returns {SampleRequest}
@@ -184,8 +192,8 @@ export function relaxed({ request }, steps, description) {
 }
 
 /**
- * What is lost when the worker goes: the run it was at; where only a report is owed, or a relaxation whose particles are gone
- * with it, the run that ends with it.
+ * Returns the run that is lost with the worker: its current run, or, for a pending report or a relaxation, the run that
+ * leads to the same particles again.
  * @param {RunState} state @param {RunRequest | null} atWorker @param {Description | null} description
  * @returns {SampleRequest | null}
  */

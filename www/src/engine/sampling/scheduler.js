@@ -1,5 +1,5 @@
 /**
- * Which job runs next, and how fine it may be while a control is dragged.
+ * Decides which job runs next, and how many particles a run may have during a drag.
  *
  * @module
  */
@@ -9,19 +9,22 @@
  * @typedef {import('../types.js').Settings} Settings
  */
 
-/** A picture that is this late no longer feels attached to the slider. */
+/** Largest latency at which the picture still seems to follow the slider. */
 export const LIVE_MS = 60;
-/** A live job that takes longer than this gives way to the newest values; a shorter one is let finish, or none ever would. */
+/**
+ * Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would
+ * finish.
+ */
 const PATIENCE_MS = 150;
-/** Relaxation steps of a coarse run: enough to mend the seams, a third of the price. */
+/** Relaxation steps of a coarse run: enough to even out the seams, at about a third of the cost. */
 const COARSE_RELAX_STEPS = 3;
-/** Waiting for the screen's next frame and the one after it is nobody's fault. */
+/** Latency of two frames of the screen, which is not counted as drawing time. */
 const FRAME_MS = 34;
-/** Below this a surface can no longer be made out. */
+/** Smallest number of particles that still show the shape of a surface. */
 const FEWEST = 500;
 
 /**
- * Latest wins: at most one job at the worker and one waiting, whatever the rate of requests.
+ * Keeps at most one job at the worker and one waiting, whatever the rate of requests. The latest request wins.
  * @template {{live: boolean}} T
  */
 export class Scheduler {
@@ -55,10 +58,10 @@ export class Scheduler {
   }
 
   /**
-   * The worker is done with a job.
+   * Notes that the worker has finished a job.
    * @param {number} id
-   * @param {Scheduler<T>['running']} [before]  the job that goes on, where this one's field was refused
-   * @returns {boolean} false for a job that is no longer the present one
+   * @param {Scheduler<T>['running']} [before]  the job that continues because the field of this one was refused
+   * @returns {boolean} false if the job is no longer the current one
    */
   ended(id, before = null) {
     if (this.running?.id !== id) return false;
@@ -69,7 +72,7 @@ export class Scheduler {
     return true;
   }
 
-  /** Forgets everything; the worker is gone. @returns {T | null} what it was at, or was to do next */
+  /** Drops all jobs, because the worker is gone. @returns {T | null} the running job, or else the waiting one */
   drop() {
     const lost = this.waiting ?? this.running?.request ?? null;
     this.running = null;
@@ -79,8 +82,8 @@ export class Scheduler {
 }
 
 /**
- * Runs whose costs are alike: points and formulas differ by an order of magnitude, and so do adaptive and uniform runs; the
- * number of particles follows from another length for every law.
+ * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude, and so do
+ * adaptive and uniform runs. Each radius law relates the number of particles to a length of its own.
  * @param {import('../types.js').FieldRequest} field @param {Settings} settings
  */
 export const costKey = (field, settings) =>
@@ -91,8 +94,8 @@ export const costKey = (field, settings) =>
   ].join(' ');
 
 /**
- * The quantity to whose square the number of particles is inversely proportional: the radius, or what every radius of an
- * adaptive run is proportional to. NaN where the count decides.
+ * Returns the length to whose square the number of particles is inversely proportional: the radius, or the length that
+ * scales all radii of an adaptive run. It is NaN if the settings give a count.
  * @param {Settings} settings @param {number} diagonal  of the clip box
  */
 export function sizeOf(settings, diagonal) {
@@ -105,23 +108,26 @@ export function sizeOf(settings, diagonal) {
 }
 
 /**
- * What a run costs on this machine, from the runs before: milliseconds to find the surface, microseconds per particle for the
- * front, for a relaxation step and for drawing, and the particles that a size gives on the present surface.
+ * Estimates the cost of a run on this machine from earlier runs: milliseconds for seeding, microseconds per particle
+ * for the front, for a relaxation step and for drawing, and the number of particles for a size on the present surface.
  */
 export class CostModel {
   constructor() {
-    // A slow laptop's figures, until the first run tells.
+    // Initial values of a slow laptop, until the first run is measured.
     this.fixedMs = 5;
     this.frontUs = 1.5;
     this.relaxUs = 0.25;
-    /** Zero wherever the graphics card keeps up with the screen. */
+    /** Drawing time per particle. It is zero if the graphics card keeps up with the screen. */
     this.drawUs = 0;
-    /** count · size², nearly constant for one surface; 0 until known. */
+    /** count · size², which is nearly constant for one surface; 0 while unknown. */
     this.area = 0;
     this.known = false;
   }
 
-  /** @param {{seconds: Seconds, particles: number, relax_steps: number, size: number}} run  `size` as of {@link sizeOf}, NaN where unknown */
+  /**
+   * @param {{seconds: Seconds, particles: number, relax_steps: number, size: number}} run  `size` from {@link sizeOf},
+   *   NaN if unknown
+   */
   record({ seconds, particles, relax_steps, size }) {
     if (particles < 1) return;
     if (size > 0) this.area = particles * size * size;
@@ -133,7 +139,11 @@ export class CostModel {
     this.known = true;
   }
 
-  /** A live run of so many particles took this much longer than its sampling. @param {number} particles @param {number} waitedMs */
+  /**
+   * Records by how much a live run took longer than its sampling.
+   * @param {number} particles
+   * @param {number} waitedMs
+   */
   recordPicture(particles, waitedMs) {
     if (particles < FEWEST) return;
     this.drawUs += 0.3 * ((Math.max(0, waitedMs - FRAME_MS) * 1e3) / particles - this.drawUs);
@@ -144,12 +154,12 @@ export class CostModel {
     return this.fixedMs + (particles * this.perParticle(relaxSteps)) / 1e3;
   }
 
-  /** Microseconds. @param {number} relaxSteps */
+  /** Returns the microseconds per particle. @param {number} relaxSteps */
   perParticle(relaxSteps) {
     return this.frontUs + relaxSteps * this.relaxUs + this.drawUs;
   }
 
-  /** Particles to expect. @param {Settings} settings @param {number} diagonal */
+  /** Returns the expected number of particles. @param {Settings} settings @param {number} diagonal */
   expected(settings, diagonal) {
     const cap = Number(settings.max_particles);
     const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / sizeOf(settings, diagonal) ** 2;
@@ -158,8 +168,8 @@ export class CostModel {
 }
 
 /**
- * Settings for a run while a control is dragged: the full ones if they fit {@link LIVE_MS}, else as many particles as do. The
- * caller brings them into their ranges.
+ * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for as
+ * many particles as fit. The caller limits them to their ranges.
  * @param {Settings} settings  complete, with the defaults filled in
  * @param {number} diagonal  of the clip box, of which the radius is a share
  * @param {CostModel} cost
@@ -173,7 +183,7 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
     return { settings, coarse: false };
   const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
   const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
-  // Where finding the surface alone takes the time, fewer particles would not help: they keep half the budget.
+  // If seeding takes most of the budget, fewer particles do not help. They keep half of the budget.
   const affordable = Math.max(FEWEST, Math.max(budgetMs - cost.fixedMs, budgetMs / 2) / perParticleMs);
   const particles = Math.min(expected, affordable);
   return {
@@ -187,13 +197,13 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
 }
 
 /**
- * The settings of size for so many particles, `fewer` times fewer than now.
+ * Returns the size settings for a number of particles, which is `fewer` times smaller than the present one.
  * @param {Settings} settings @param {number} diagonal @param {CostModel} cost @param {number} particles @param {number} fewer
  * @returns {Settings}
  */
 function coarser(settings, diagonal, cost, particles, fewer) {
   if (settings.sampling !== 'adaptive') {
-    // A radius needs no trial run, as a count does.
+    // A radius avoids the pilot run that a count needs.
     if (cost.area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(cost.area / particles) / diagonal };
     return { count: Math.round(particles) };
   }

@@ -1,13 +1,13 @@
 /**
- * Starts workers for the sampler and hands each the core. The page fetches the core, not the worker: the built page preloads
- * it, so that it comes at the same time as the scripts, and a worker that replaces another need not fetch it again.
+ * Starts the sampler's workers and passes the core to each. The page fetches the core, not the worker: the built page
+ * preloads it in parallel with the scripts, and a replacement worker does not fetch it again.
  *
  * @module
  */
 import coreUrl from '../../wasm/core/core_bg.wasm?url';
 import { LoadError, loadModule, words } from '../bundle/load.js';
 
-/** The core, fetched and compiled; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
+/** The compiled core; null before the first worker and after a failure. @type {Promise<WebAssembly.Module> | null} */
 let core = null;
 
 /** @returns {Worker} */

@@ -1,8 +1,8 @@
 /**
- * Keeps a sampler's worker alive: starts it, listens, and replaces it after a trap or when it falls silent in the middle of
- * work. What the page knows lives outside the worker, so nothing but the run under way is lost.
+ * Supervises the sampler's worker: starts it, receives its messages, and replaces it after a trap or a long silence
+ * during work. The page's state lives outside the worker, so only the current run is lost.
  *
- * More than three replacements in a minute mean that a new worker will not help: safe mode, until a person asks for another.
+ * After more than three replacements in a minute it enters safe mode: no worker runs until the user asks for one.
  *
  * @module
  */
@@ -13,7 +13,7 @@ import { SILENCE_MS } from './protocol.js';
  * @typedef {import('./protocol.js').ToWorker} ToWorker
  */
 /**
- * What the supervisor needs of a worker, so that tests can hand it a scripted one.
+ * The part of the worker interface that the supervisor uses. Tests pass a scripted worker.
  * @typedef {object} WorkerLike
  * @property {(message: ToWorker) => void} postMessage
  * @property {() => void} terminate
@@ -25,11 +25,14 @@ import { SILENCE_MS } from './protocol.js';
  * @typedef {{now: () => number, setTimeout: (f: () => void, ms: number) => any, clearTimeout: (id: any) => void}} Clock
  */
 
-/** Replacements within this time are counted together. */
+/** Time window in which replacements are counted. */
 const WINDOW_MS = 60_000;
-/** One more than this within the window is safe mode. */
+/** Largest number of replacements in the window. One more starts safe mode. */
 const RESTARTS = 3;
-/** After a silence, messages that already wait get this long to be handled: a tab that slept finds them all at once. */
+/**
+ * Delay after a silence before the worker counts as hung. A tab that was suspended first handles the messages that
+ * wait.
+ */
 const GRACE_MS = 120;
 
 /** @type {Clock} */
@@ -44,7 +47,7 @@ export class Supervisor {
    * @param {object} options
    * @param {() => WorkerLike} options.spawn
    * @param {(message: FromWorker) => void} options.onMessage
-   * @param {(crash: Crash) => void} options.onRestart  the old worker is gone, the new one is loading
+   * @param {(crash: Crash) => void} options.onRestart  the old worker is gone and the new one is loading
    * @param {(crash: Crash) => void} options.onSafeMode  no worker until `revive()`
    * @param {(message: string) => void} options.onLoadError  the worker's script did not load
    * @param {Clock} [options.clock]
@@ -62,7 +65,7 @@ export class Supervisor {
     this.state = 'off';
     this.busy = false;
     this.heard = false;
-    /** Until when the worker may be silent. */
+    /** Time until which the worker may be silent. */
     this.deadline = 0;
     /** @type {any} */
     this.timer = null;
@@ -78,7 +81,7 @@ export class Supervisor {
     this.busy = false;
     this.heard = false;
     worker.onmessage = ({ data }) => {
-      // A terminated worker's last messages may still be on their way.
+      // The last messages of a terminated worker may still arrive. They are ignored.
       if (this.worker === worker) this.receive(data);
     };
     worker.onerror = (event) => {
@@ -93,7 +96,7 @@ export class Supervisor {
     };
   }
 
-  /** Another attempt, asked for by a person. */
+  /** Leaves safe mode at the user's request and starts a worker. */
   revive() {
     if (this.worker) return;
     this.restarts = [];
@@ -105,7 +108,7 @@ export class Supervisor {
     this.worker?.postMessage(message);
   }
 
-  /** Whether the worker has work: only then is its silence watched. @param {boolean} busy */
+  /** Sets whether the worker has work. Silence is only monitored while it has. @param {boolean} busy */
   setBusy(busy) {
     if (busy && !this.busy) this.deadline = this.clock.now() + SILENCE_MS;
     this.busy = busy;

@@ -1,6 +1,6 @@
 /**
- * The sampler's worker: takes the core from the page, runs one job at a time, the latest one. A trapped core is never called again: the
- * worker says so and waits to be replaced.
+ * The sampler's worker. It receives the core from the page and runs one job at a time, always the latest. After a trap
+ * it reports the crash, never calls the core again and waits to be replaced.
  *
  * @module
  */
@@ -16,7 +16,7 @@ import { BEAT_MS } from './protocol.js';
  * @typedef {import('./protocol.js').Job} Job
  */
 
-/** Most that a run may take with its report: a browser ends a page that takes much more, on a phone much sooner. */
+/** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
 const MEMORY_MB = { desk: 512, phone: 256 };
 
 /** @param {Navigator & {userAgentData?: {mobile: boolean}, deviceMemory?: number}} device */
@@ -29,14 +29,14 @@ const post = (message, transfer = []) => self.postMessage(message, { transfer })
 const jobs = new Jobs(post);
 /** @type {Job | null} */
 let running = null;
-/** Pictures under way to the page. */
+/** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
 /** @type {import('./protocol.js').Fault | null} */
 let provoked = null;
 /** Whether the page shows the curvature. */
 let curvature = false;
 let dead = false;
-/** The last words of the core's panic hook, which writes to the console. */
+/** The last message of the core's panic hook, which writes to the console. */
 let lastWords = '';
 
 const say = console.error.bind(console);
@@ -45,7 +45,7 @@ console.error = (...parts) => {
   say(...parts);
 };
 
-// A message to oneself ends the task, so that waiting messages are handled; timers would be held back to 4 ms.
+// A message to the worker itself ends the task, so that waiting messages are handled. Browsers delay timers by 4 ms.
 const selfChannel = new MessageChannel();
 /** @type {(() => void) | null} */
 let resume = null;
@@ -66,12 +66,13 @@ let core = null;
 /** @type {import('../../wasm/core/core.js').InitOutput | null} */
 let raw = null;
 const memory = { held: 0 };
-/** Does what tests ask for: a real trap in the instance, or an endless loop. */
+/** Causes the fault that a test has requested: a real trap in the instance, a stack overflow or an endless loop. */
 function provoke() {
   const fault = provoked;
   provoked = null;
   if (fault === 'hang') for (;;);
-  // An object's address far outside the memory traps on its first use, and leaves the instance as a panic does.
+  // An object address far outside the memory traps on its first use and leaves the instance in the same state as a
+  // panic.
   if (fault === 'panic') /** @type {any} */ (raw).core_count(0x7ffffff0);
   if (fault === 'overflow') {
     /** @returns {number} */
@@ -163,7 +164,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
   }
 };
 
-// Shows that the worker lives while the core is on its way.
+// Shows the supervisor that the worker is alive while the core loads.
 const beat = setInterval(() => post({ type: 'beat' }), BEAT_MS);
 
 /** @param {import('./protocol.js').LoadFault} fault @param {string} message */
