@@ -1,4 +1,4 @@
-//! The sampler: a state machine that covers a surface with particles and relaxes them.
+//! The sampler is a state machine that covers a surface with particles and relaxes them.
 //!
 //! [`Sampler::start`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of
 //! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
@@ -49,8 +49,8 @@ use sizing::Sizing;
 /// Attempts at a wanted count may overshoot it by this factor before they run into the limit on particles.
 const COUNT_ROOM: f64 = 1.1;
 
-/// Bytes to ask for per particle before a run: its columns, neighbour lists and grid, and most of what the relaxation adds,
-/// but no more than the peak that tests/memory.rs holds it to.
+/// Bytes per particle that have to be free before a run: its columns, neighbour lists and grid, and most of what the relaxation
+/// adds, but no more than the peak that tests/memory.rs allows.
 const BYTES_PER_PARTICLE: usize = 95;
 
 /// Samples one surface at a time.
@@ -67,7 +67,7 @@ pub struct Sampler {
     /// Of a coarse front, while it goes on.
     refinement: Option<Box<Refinement>>,
     relaxation: Relaxation,
-    pairs: PackedNeighbours,
+    neighbours: PackedNeighbours,
     particles: Particles,
     counts: Counts,
     /// Whether particles have moved or gone since the last step.
@@ -97,7 +97,7 @@ impl Sampler {
             front: Front::new(),
             refinement: None,
             relaxation: Relaxation::new(),
-            pairs: PackedNeighbours::default(),
+            neighbours: PackedNeighbours::default(),
             particles: Particles::default(),
             counts: Counts::default(),
             moved: false,
@@ -126,12 +126,12 @@ impl Sampler {
         self.relaxation.energy()
     }
 
-    /// Has the adaptive front of the next run keep a log of what happens at the particle with this index, or none.
+    /// Makes the adaptive front of the next run log what happens at the particle with this index, or at none.
     pub fn follow(&mut self, particle: Option<u32>) {
         self.front.follow(particle);
     }
 
-    /// What happened at the particle that is followed.
+    /// Returns the log of the particle that is followed.
     #[must_use]
     pub fn trace(&self) -> &Trace {
         self.front.trace()
@@ -149,14 +149,15 @@ impl Sampler {
         self.seeds.verdict()
     }
 
-    /// Cells of the box in which the proof could not decide whether a component of its own begins there; `None` where no proof
-    /// was attempted.
+    /// Number of cells of the box in which the proof could not decide whether they hold the first point of a component; `None`
+    /// where no proof was attempted.
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
         self.seeds.open_cells()
     }
 
-    /// Places where f has no gradient on the surface, a curve of them counted as one; `None` where they were not looked for.
+    /// Number of points of the surface where f has no gradient, a curve of them counted as one; `None` where they were not
+    /// searched.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
         self.seeds.open_cells().map(|_| discovery::singular::places(self.seeds.singular()))
@@ -294,8 +295,8 @@ impl Sampler {
         self.memory_limit = bytes;
     }
 
-    /// Whether the memory holds a run of `particles`: asked for as one piece and given back, since what fails in the midst
-    /// of a run cannot be caught.
+    /// Whether there is memory for a run of `particles`. It is allocated at once and freed again, because an allocation that fails
+    /// in the middle of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(BYTES_PER_PARTICLE);
         let more = particles.saturating_sub(self.particles.position.capacity());
@@ -308,15 +309,15 @@ impl Sampler {
         self.next(Input::Relax(steps));
     }
 
-    /// Ends the run where it is; the particles placed so far stay. The next step, of no budget even, marks those next to singular
-    /// points.
+    /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its
+    /// budget is 0.
     pub fn cancel(&mut self) {
         self.next(Input::Cancel);
     }
 
-    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a
-    /// relaxation step. Returns early where a search begins and where the relaxation does, so that the particles of the front
-    /// can be seen, and now and then within both.
+    /// Does up to `budget` units of work: a particle's slots, a child's projection, a particle's share of a relaxation step.
+    /// Returns early where the search or the relaxation begins, so that the caller can show the particles of the front, and now
+    /// and then during both.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
         let field = &mut Scaled::new(field, self.survey.factor);
         let mut left = budget;

@@ -14,13 +14,13 @@ use crate::sampler::settings::{GapPolicy, Sampling};
 use glam::Vec3;
 use rand_core::{Rng, SeedableRng};
 
-/// Most units of the search for first points in one step, however large its budget: a unit takes far longer there on some
-/// formulas than elsewhere, and a caller that has learnt its pace elsewhere must not be kept waiting.
+/// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
+/// than one of the front, and a caller that derives its budget from the front's pace must not wait.
 const SEARCH_SLICE: u32 = 8_192;
-/// The same of the relaxation, whose stages differ tenfold in the time of a unit.
+/// The same for the relaxation, in whose stages the time of a unit differs by a factor of ten.
 const RELAXATION_SLICE: u32 = 16_384;
 
-/// What makes the state machine go on.
+/// The events that change the state.
 pub(super) enum Input<'a> {
     /// A run starts: its field has been surveyed and its radius is known.
     Start,
@@ -30,7 +30,7 @@ pub(super) enum Input<'a> {
     Relax(u32),
     /// The caller ends the run.
     Cancel,
-    /// The caller gives a budget, of which `left` is what is left.
+    /// The caller gives a budget; `left` is the rest of it.
     Work { field: &'a mut dyn Field, left: &'a mut u32 },
 }
 
@@ -83,11 +83,11 @@ impl Sampler {
     fn begin_attempt(&mut self) -> PhaseState {
         self.moved = true;
         self.particles.clear();
-        self.pairs.clear();
+        self.neighbours.clear();
         // Growing by doubling would hold twice the columns, and four times while they are copied.
         let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
         self.particles.reserve(expected);
-        self.pairs.reserve(expected);
+        self.neighbours.reserve(expected);
         let mut settings = self.settings;
         if self.attempt.levels.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
@@ -173,13 +173,13 @@ impl Sampler {
             field,
             projector: &mut self.projector,
             sizing: self.attempt.sizing.as_ref(),
-            neighbours: &mut self.pairs,
+            neighbours: &mut self.neighbours,
             particles: &mut self.particles,
         };
         call(self.front.active_mut(), &mut context)
     }
 
-    /// Calls a method of the front that spends of the budget, and counts its evaluations.
+    /// Calls a method of the front that uses up the budget, and counts its evaluations.
     fn spend_on_front(
         &mut self,
         field: &mut dyn Field,
@@ -229,7 +229,7 @@ impl Sampler {
         PhaseState::Search
     }
 
-    /// Fills gaps until none is left that a particle fits into.
+    /// Fills gaps until no particle fits into any.
     fn fill(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
         self.spend_on_front(field, left, |front, context, budget| front.fill(context, budget));
         let front = self.front.active_mut();
@@ -273,7 +273,7 @@ impl Sampler {
             Ok(refinement) => {
                 self.front.release();
                 // They are those of the front.
-                self.pairs.clear();
+                self.neighbours.clear();
                 self.refinement = Some(Box::new(refinement));
                 PhaseState::Refinement
             }
@@ -321,7 +321,7 @@ impl Sampler {
     fn begin_relaxation(&mut self) -> PhaseState {
         self.front.release();
         self.particles.shrink();
-        self.pairs.shrink();
+        self.neighbours.shrink();
         let tolerance = self.attempt.tolerance(&self.survey);
         let law = match self.settings.sampling {
             Sampling::Uniform => {
@@ -333,7 +333,7 @@ impl Sampler {
             },
         };
         let (steps, count) = (self.settings.relax_steps, self.particles.len());
-        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.pairs);
+        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.neighbours);
         PhaseState::Relaxation
     }
 
@@ -351,7 +351,7 @@ impl Sampler {
             sizing: self.attempt.sizing.as_ref(),
         };
         let slice = (*left).min(RELAXATION_SLICE);
-        self.moved |= self.relaxation.step(&mut surface, &mut self.pairs, &mut self.particles, slice);
+        self.moved |= self.relaxation.step(&mut surface, &mut self.neighbours, &mut self.particles, slice);
         *left = 0;
         self.counts.relaxation_evaluations += self.projector.evaluations - start;
         if self.relaxation.is_done() {

@@ -1,4 +1,4 @@
-//! Where in a cell the highest point of a piece of the surface can be.
+//! Where in a cell the highest point of a component of the surface can be.
 //!
 //! At such a point p the function f and its derivatives along the sides vanish: as many equations as there are free axes. By
 //! Taylor's theorem from p to the middle m of the cell, with d = m − p,

@@ -6,7 +6,7 @@ use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::octree::{Octree, Witness};
 use crate::sampler::discovery::sheets::{
-    Oriented, TOGETHER, are_connected, is_connected_by_pieces, is_one_sheet,
+    Oriented, TOGETHER, are_connected, is_connected_by_segments, is_one_sheet,
 };
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance};
@@ -16,8 +16,8 @@ use glam::{DVec3, Vec3};
 const UNITS: u32 = 16;
 /// Largest number of particles with which a connection is tried.
 const MOST_TRIED: usize = 6;
-/// The same for a connection through a chain of boxes.
-const MOST_TRIED_BY_PIECES: usize = 2;
+/// The same for a connection through a chain of segments.
+const MOST_TRIED_BY_SEGMENTS: usize = 2;
 /// Largest number of evaluations in the projection of a witness onto the surface as single precision computes it.
 const MAX_STEPS: u32 = 12;
 /// Largest number of steps that move a witness from the margin around the box to its component inside.
@@ -230,8 +230,8 @@ impl Seeds {
         if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
-                .take(MOST_TRIED_BY_PIECES)
-                .any(|&j| is_connected_by_pieces(field, part, from, place_of(j), slack, within))
+                .take(MOST_TRIED_BY_SEGMENTS)
+                .any(|&j| is_connected_by_segments(field, part, from, place_of(j), slack, within))
         {
             cover = Cover::Covered;
         } else if near.iter().take(MOST_TRIED).any(|&j| {

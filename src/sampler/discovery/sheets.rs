@@ -110,10 +110,10 @@ pub(crate) fn are_connected(
     })
 }
 
-/// Whether the way between two points of the surface, cut into pieces, is [connected](are_connected): for points too far from
-/// each other, as the surface bends, for one box. A piece that is not is cut in two, again and again, at
+/// Whether the way between two points of the surface, cut into segments, is [connected](are_connected): for points too far from
+/// each other, as the surface bends, for one box. A segment that is not is cut in two, again and again, at
 /// a point in the box from `lo` to `hi`; one outside is brought at least `margin` inside and back to the surface by turns.
-pub(crate) fn is_connected_by_pieces(
+pub(crate) fn is_connected_by_segments(
     field: &mut dyn Field,
     part: usize,
     from: Oriented,
@@ -123,7 +123,7 @@ pub(crate) fn is_connected_by_pieces(
 ) -> bool {
     /// Most turns that bring a point back into the box.
     const MOST_TURNS: u32 = 8;
-    /// Most rounds of looking at pieces, and most pieces that wait.
+    /// Largest number of rounds, and of segments that wait.
     const MOST_ROUNDS: u32 = 8;
     const MOST_WAITING: usize = 3 * TOGETHER;
     let is_inside = |p: DVec3| p.cmpge(lo).all() && p.cmple(hi).all();
@@ -182,7 +182,7 @@ fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
     None
 }
 
-/// The box of one piece, its upward axis and how far it reaches beyond the ends along that.
+/// The box of one segment, its upward axis and how far it reaches beyond the ends along that.
 fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
     let size = normal.abs();
     let up = if size.x >= size.y && size.x >= size.z {

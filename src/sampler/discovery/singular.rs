@@ -2,8 +2,8 @@
 //!
 //! # Why a box around one can be left out of the search
 //!
-//! Let B be a box in the interior of which f has no local extremum. Then every connected piece of the surface S in B reaches
-//! the boundary of B. For suppose that a piece K does not. It has a neighbourhood U in B on whose boundary f is not 0; take the
+//! Let B be a box in the interior of which f has no local extremum. Then every connected component of the surface S in B reaches
+//! the boundary of B. For suppose that a component K does not. It has a neighbourhood U in B on whose boundary f is not 0; take the
 //! part of U that holds K, and with it the holes in it: an open set W with a connected boundary, on which f has one sign, say
 //! the positive one. Every neighbourhood of a point of K holds places where f is negative, else that point were a minimum. So f
 //! has a negative minimum in W: a local extremum.
@@ -22,9 +22,9 @@ use glam::{DMat3, DVec3, Vec3};
 /// of the others half of the one before it.
 const LARGEST: f64 = 0.25;
 const SIZES: usize = 10;
-/// How many larger sizes are tried in pieces than one that does as a whole, and the pieces.
+/// Number of larger sizes that are tried in sub-boxes beyond the one that is proven as a whole, and number of sub-boxes.
 const MOST_LARGER: usize = 2;
-const PIECES: usize = 27;
+const SUB_BOXES: usize = 27;
 /// How far the sides of such a box are from the point, in units of its size: not equally, because where they are, symmetric
 /// surfaces have more of their highest points in one place than can be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
@@ -163,21 +163,21 @@ pub(crate) fn isolating_box(
         let is_free = |&[a, b]: &[DVec3; 2]| a.cmpgt(top).any() || b.cmplt(bottom).any();
         bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
     };
-    let mut is_so = [false; PIECES];
+    let mut is_so = [false; SUB_BOXES];
     has_no_extremum(field, part, &boxes, &mut is_so);
     let as_one = is_so[..SIZES].iter().position(|&is_so| is_so)?;
-    // Larger ones may do in pieces: the bounds of each are tighter.
-    let in_pieces = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
+    // Larger ones may be proven in sub-boxes: the bounds of each are tighter.
+    let in_sub_boxes = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
         fits(&boxes[k]) && {
-            has_no_extremum(field, part, &pieces(boxes[k]), &mut is_so);
+            has_no_extremum(field, part, &sub_boxes(boxes[k]), &mut is_so);
             is_so.iter().all(|&is_so| is_so)
         }
     });
-    boxes[in_pieces.unwrap_or(as_one)..].iter().find(|around| fits(around)).copied()
+    boxes[in_sub_boxes.unwrap_or(as_one)..].iter().find(|around| fits(around)).copied()
 }
 
 /// A box cut into three along each axis.
-fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
+fn sub_boxes([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; SUB_BOXES] {
     let third = |k: usize| if k == 3 { hi } else { lo + (hi - lo) * (k as f64 / 3.0) };
     core::array::from_fn(|i| {
         let [x, y, z] = [i % 3, i / 3 % 3, i / 9];
@@ -188,8 +188,8 @@ fn pieces([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; PIECES] {
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
 /// function [is a saddle](is_saddle) throughout.
 fn has_no_extremum(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
-    let mut known = [Enclosure::UNKNOWN; PIECES];
-    let mut second = [[[0.0; 2]; 6]; PIECES];
+    let mut known = [Enclosure::UNKNOWN; SUB_BOXES];
+    let mut second = [[[0.0; 2]; 6]; SUB_BOXES];
     field.enclose(part, boxes, &mut known);
     field.enclose_second(part, boxes, &mut second);
     for (k, out) in out[..boxes.len()].iter_mut().enumerate() {

@@ -22,7 +22,7 @@ use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
 use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shape_in};
-use crate::sampler::front::adaptive::placement::{DirectLanding, DirectPlacement, Proposal, Spot};
+use crate::sampler::front::adaptive::placement::{DirectLanding, DirectPlacement, Proposal, SurfacePoint};
 use crate::sampler::front::adaptive::vicinity::{Vicinity, note_parent};
 use crate::sampler::front::level::{
     FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, is_same_sheet,
@@ -146,7 +146,7 @@ impl AdaptiveFront {
     }
 
     /// Makes a child a particle at its final place, unless another particle is in its way.
-    fn settle_at(&mut self, particles: &mut Particles, child: usize, spot: Spot) -> SlotFate {
+    fn settle_at(&mut self, particles: &mut Particles, child: usize, spot: SurfacePoint) -> SlotFate {
         let AdaptiveChild { handle, parent, clearance, .. } = self.children.list[child];
         let parent = self.parents.level[parent as usize];
         let provisional = self.level.first_child + child;
@@ -308,7 +308,7 @@ impl LevelFront for AdaptiveFront {
             self.grids.remove(handle);
         }
         if self.trace.follows(parent) {
-            if let DirectLanding::On(Spot { position, normal, radius, .. }) = landing {
+            if let DirectLanding::On(SurfacePoint { position, normal, radius, .. }) = landing {
                 self.trace.note_child(parent, number, || Step::Landed { position, normal, radius });
             }
             let particle =

@@ -64,7 +64,7 @@ impl Proposal {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum DirectLanding {
     /// On the surface, touching the parent.
-    On(Spot),
+    On(SurfacePoint),
     /// No such place was found.
     NotConverged,
     /// The field has no value there, or its gradient vanishes.
@@ -73,7 +73,7 @@ pub(crate) enum DirectLanding {
 
 /// A point of the surface, with the radius and the curvature there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct SurfacePoint {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
     pub(crate) radius: f32,
@@ -130,13 +130,13 @@ impl DirectPlacement {
         projector: &mut Projector,
         sizing: &Sizing,
         position: Vec3,
-    ) -> Spot {
+    ) -> SurfacePoint {
         self.points.clear();
         self.points.push(position);
         self.evaluate(field, projector);
         let curvature = self.curvature[0];
         let radius = sizing.radius(position, &curvature);
-        Spot { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
+        SurfacePoint { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
     }
 
     /// Solves at most [`BATCH`] proposals: Newton's method in the angle and a secant in the distance, together; a bracketed
@@ -250,7 +250,7 @@ impl DirectPlacement {
             && moved.length_squared() <= (TRUSTED_MOVE * radius) * (TRUSTED_MOVE * radius)
             && pull.abs() <= TRUSTED_PULL * radius
         {
-            return NewtonStep::Landed(Spot {
+            return NewtonStep::Landed(SurfacePoint {
                 position: corrected,
                 normal: corrected_gradient / corrected_slope,
                 radius: a.distance - proposal.parent_radius,
@@ -258,7 +258,12 @@ impl DirectPlacement {
             });
         }
         if value.abs() <= residual * slope && touch.abs() <= TOUCH * radius {
-            return NewtonStep::Landed(Spot { position, normal: gradient / slope, radius, curvature });
+            return NewtonStep::Landed(SurfacePoint {
+                position,
+                normal: gradient / slope,
+                radius,
+                curvature,
+            });
         }
         let settles = value.abs() <= a.last_value
             && derivative.abs() > MIN_CROSSING * slope * circle.radius
@@ -284,7 +289,7 @@ impl DirectPlacement {
         let guess = circle.radius;
         // The sign of the miss brackets the distance that fits.
         let (mut near, mut far) = (0.0_f32, f32::INFINITY);
-        let mut best: Option<(f32, Spot)> = None;
+        let mut best: Option<(f32, SurfacePoint)> = None;
         for _ in 0..MAX_ROUNDS {
             let allowed = tolerance(circle.radius - proposal.parent_radius);
             let mut landing = core::mem::take(&mut self.landing);
@@ -331,7 +336,7 @@ const TRUSTED_MOVE: f32 = 0.06;
 
 /// The outcome of a step of Newton's method.
 enum NewtonStep {
-    Landed(Spot),
+    Landed(SurfacePoint),
     Again,
     Lost,
 }
