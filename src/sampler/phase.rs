@@ -43,16 +43,23 @@ pub enum StopReason {
 
 /// The present phase and the state that only this phase has.
 ///
-/// ```text
-/// Idle ──▶ Seeding ◀──▶ Generation ◀──▶ Search ──▶ Filling
-///             ▲                            │          │
-///             └── the count is missed, or ─┴──────────┤
-///                 the front is too coarse             │
-///                                                     ▼
-///                      Done ◀── Marking ◀── Relaxation / Refinement
-/// ```
+/// | Phase | Event | Next phase |
+/// |---|---|---|
+/// | any | a run starts | `Seeding` |
+/// | `Seeding` | a survey point is not covered | `Generation` |
+/// | `Seeding` | all survey points are covered | `Search` |
+/// | `Generation` | the front has closed | `Seeding`; `Search` if the seed was a witness or the limit is reached |
+/// | `Search` | a witness is not covered | `Generation` |
+/// | `Search` | all witnesses are covered | `Filling` if there are gaps; else as after `Filling` |
+/// | `Filling` | no gap is left | `Relaxation`; `Seeding` if the wanted count is missed; `Refinement` of a coarse front; `Marking` if nothing is to be relaxed |
+/// | `Refinement` | the last level is done | `Marking` |
+/// | `Refinement` | the front is refused | `Seeding`, with a finer front |
+/// | `Relaxation` | the last step is done | `Marking` |
+/// | `Marking` | the particles are marked | `Done` |
+/// | `Done` | the caller asks for more relaxation steps | `Relaxation` |
+/// | any before `Marking` | the caller cancels the run | `Marking` |
 ///
-/// `Sampler::next` makes every transition. A run that is cancelled, or that needs no relaxation, goes to `Marking` at once.
+/// `Sampler::next` makes every transition.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PhaseState {
     /// There is no run.
