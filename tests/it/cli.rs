@@ -134,7 +134,7 @@ fn files_hold_every_particle() {
 
 #[test]
 fn mesh_files_hold_a_closed_mesh() {
-    let files = ["mesh.glb", "mesh.obj", "mesh.stl", "mesh.PLY"].map(file);
+    let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY"].map(file);
     let mut arguments = vec!["--surface", "torus", "--radius", "1%"];
     for path in &files {
         arguments.extend(["--mesh", path.to_str().expect("a plain path")]);
@@ -152,8 +152,8 @@ fn mesh_files_hold_a_closed_mesh() {
     assert_eq!(stl.len(), 84 + 50 * triangles);
     assert_eq!(String::from_utf8_lossy(&obj).matches("\nf ").count(), triangles);
 
-    let plain = run_text(&["--surface", "schwarz-p", "--count", "3000", "--mesh"], "cut.obj");
-    assert!(plain.contains("1 component, Euler number -32, 24 border loops"), "{plain}");
+    let text = run_text(&["--surface", "schwarz-p", "--count", "3000", "--mesh"], "cut.obj");
+    assert!(text.contains("1 component, Euler number -32, 24 border loops"), "{text}");
     let message = fails(2, &["sample", "--surface", "torus", "--mesh", "torus.xyz"]);
     assert!(message.contains("glb, obj, stl, ply"), "{message}");
 }

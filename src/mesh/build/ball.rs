@@ -1,13 +1,15 @@
 //! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
 
-use crate::math::{LANES, Lanes, tangent_frame};
+use crate::math::{LANES, tangent_frame};
 use crate::spatial::LANES_OF;
 use crate::spatial::tree::{Tree, unkey};
-use glam::Vec3;
+use glam::{BVec4A, Vec3, Vec4};
 
 /// Most points of a ball.
 pub(super) const MOST: usize = 64;
-const BLOCKS: usize = MOST / LANES;
+/// Numbers that are worked on at once.
+const WIDTH: usize = 4;
+const BLOCKS: usize = MOST / WIDTH;
 /// Two points are on one sheet if the sine squared of the line between them to the normal is at least this …
 const MIN_FLAT: f32 = 0.2;
 /// … and the line rises from one tangent plane as it sinks below the other, up to this share of its length. It tells sheets
@@ -18,8 +20,8 @@ pub(super) const MAX_LIFT: f32 = 0.35;
 #[derive(Default)]
 pub(super) struct Surroundings {
     index: Vec<u32>,
-    /// Positions; the last lanes are infinitely far away.
-    place: Vec<[Lanes; 3]>,
+    /// Positions, by coordinate; the last ones are infinitely far away.
+    place: Vec<[[f32; LANES]; 3]>,
     /// Position and normal of each.
     point: Vec<[f32; 6]>,
 }
@@ -32,10 +34,10 @@ impl Surroundings {
         self.place.clear();
         self.point.clear();
         for chunk in self.index.chunks(LANES) {
-            let mut lanes = [Lanes::splat(f32::INFINITY); 3];
+            let mut lanes = [[f32::INFINITY; LANES]; 3];
             for (k, &i) in chunk.iter().enumerate() {
                 let (p, n) = (tree.position[i as usize], normal[i as usize]);
-                (lanes[0].0[k], lanes[1].0[k], lanes[2].0[k]) = (p.x, p.y, p.z);
+                (lanes[0][k], lanes[1][k], lanes[2][k]) = (p.x, p.y, p.z);
                 self.point.push([p.x, p.y, p.z, n.x, n.y, n.z]);
             }
             self.place.push(lanes);
@@ -43,23 +45,32 @@ impl Surroundings {
     }
 }
 
-/// Points round a centre, in lanes. Those that are not on its sheet lie at the centre, infinitely far away.
+/// Points round a centre, four by four. Those that are not on its sheet lie at the centre, infinitely far away.
 pub(super) struct Ball {
     /// Number of points.
     count: usize,
     /// The points, by their place in the tree.
     index: [u32; MOST],
     /// Offset from the centre and normal.
-    point: [[Lanes; BLOCKS]; 6],
+    point: [[[f32; WIDTH]; BLOCKS]; 6],
     /// Place in the tangent plane, and the true distance, squared.
-    flat: [[Lanes; BLOCKS]; 2],
-    distance_sq: [Lanes; BLOCKS],
+    flat: [[[f32; WIDTH]; BLOCKS]; 2],
+    distance_sq: [[f32; WIDTH]; BLOCKS],
+    /// Squared distance of the nearest point, whatever its sheet.
+    nearest_sq: f32,
 }
 
 impl Default for Ball {
     fn default() -> Self {
-        let zero = [Lanes::splat(0.0); BLOCKS];
-        Self { count: 0, index: [0; MOST], point: [zero; 6], flat: [zero; 2], distance_sq: zero }
+        let zero = [[0.0; WIDTH]; BLOCKS];
+        Self {
+            count: 0,
+            index: [0; MOST],
+            point: [zero; 6],
+            flat: [zero; 2],
+            distance_sq: zero,
+            nearest_sq: f32::INFINITY,
+        }
     }
 }
 
@@ -76,15 +87,14 @@ impl Ball {
         let Surroundings { index, place, point } = surroundings;
         let mut hits = [0_u32; MOST + LANES];
         let mut count = 0;
+        let bound_sq = Vec4::splat(bound_sq);
         for (block, [x, y, z]) in place.iter().enumerate() {
-            let dx = *x - Lanes::splat(centre.x);
-            let dy = *y - Lanes::splat(centre.y);
-            let dz = *z - Lanes::splat(centre.z);
-            let distance_sq = dx * dx + dy * dy + dz * dz;
-            let mut near = 0;
-            for (lane, &distance_sq) in distance_sq.0.iter().enumerate() {
-                near |= usize::from(distance_sq < bound_sq) << lane;
-            }
+            let near = |first: usize| {
+                let offset = |row: &[f32; LANES], c: f32| Vec4::from_slice(&row[first..first + WIDTH]) - c;
+                let (dx, dy, dz) = (offset(x, centre.x), offset(y, centre.y), offset(z, centre.z));
+                (dx * dx + dy * dy + dz * dz).cmplt(bound_sq).bitmask()
+            };
+            let near = (near(0) | near(WIDTH) << WIDTH) as usize & 0xff;
             let lanes = &LANES_OF[near];
             for (hit, lane) in hits[count..count + LANES].iter_mut().zip(lanes.lane) {
                 *hit = (block * LANES) as u32 + lane;
@@ -136,48 +146,46 @@ impl Ball {
         let k = self.count % MOST;
         self.index[k] = index;
         for (row, value) in self.point.iter_mut().zip(point) {
-            row[k / LANES].0[k % LANES] = value;
+            row[k / WIDTH][k % WIDTH] = value;
         }
         self.count = k + 1;
     }
 
     fn blocks(&self) -> usize {
-        self.count.div_ceil(LANES).min(BLOCKS)
+        self.count.div_ceil(WIDTH).min(BLOCKS)
     }
 
     /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent plane, at their true
     /// distances.
     pub(super) fn unroll(&mut self, normal: Vec3, twin_sq: f32) {
         let (u, v) = tangent_frame(normal);
-        let dot = |x: Lanes, y: Lanes, z: Lanes, a: Vec3| {
-            x * Lanes::splat(a.x) + y * Lanes::splat(a.y) + z * Lanes::splat(a.z)
-        };
-        for k in self.count..self.blocks() * LANES {
-            // The facing of a zero normal is that of another sheet.
-            self.point.iter_mut().for_each(|row| row[k / LANES].0[k % LANES] = 0.0);
+        let dot = |x: Vec4, y: Vec4, z: Vec4, a: Vec3| x * a.x + y * a.y + z * a.z;
+        for k in self.count..self.blocks() * WIDTH {
+            // Far away, and on no sheet.
+            for (row, value) in self.point.iter_mut().zip([f32::MAX, 0.0, 0.0, 0.0, 0.0, 0.0]) {
+                row[k / WIDTH][k % WIDTH] = value;
+            }
         }
+        let mut nearest_sq = Vec4::INFINITY;
         for block in 0..self.blocks() {
             let [x, y, z, a, b, c] = &self.point;
-            let (x, y, z, a, b, c) = (x[block], y[block], z[block], a[block], b[block], c[block]);
+            let [x, y, z, a, b, c] = [x, y, z, a, b, c].map(|row| Vec4::from_array(row[block]));
             let (along_u, along_v, rise) = (dot(x, y, z, u), dot(x, y, z, v), dot(x, y, z, normal));
             let lift = rise + (x * a + y * b + z * c);
-            let facing = dot(a, b, c, normal);
             let flat_sq = along_u * along_u + along_v * along_v;
             let distance_sq = flat_sq + rise * rise;
-            let stretch = (distance_sq / flat_sq).sqrt();
-            let (mut flat_u, mut flat_v, mut kept) = (Lanes::default(), Lanes::default(), Lanes::default());
-            for lane in 0..LANES {
-                let d = distance_sq.0[lane];
-                let is_near = (facing.0[lane] > 0.0)
-                    & (flat_sq.0[lane] >= MIN_FLAT * d)
-                    & (lift.0[lane] * lift.0[lane] <= MAX_LIFT * MAX_LIFT * d)
-                    & (d > twin_sq);
-                flat_u.0[lane] = if is_near { along_u.0[lane] * stretch.0[lane] } else { 0.0 };
-                flat_v.0[lane] = if is_near { along_v.0[lane] * stretch.0[lane] } else { 0.0 };
-                kept.0[lane] = if is_near { d } else { f32::INFINITY };
-            }
-            (self.flat[0][block], self.flat[1][block], self.distance_sq[block]) = (flat_u, flat_v, kept);
+            nearest_sq = nearest_sq.min(distance_sq);
+            let stretch = Vec4::from_array((distance_sq / flat_sq).to_array().map(f32::sqrt));
+            let is_near: BVec4A = dot(a, b, c, normal).cmpgt(Vec4::ZERO)
+                & flat_sq.cmpge(distance_sq * MIN_FLAT)
+                & (lift * lift).cmple(distance_sq * (MAX_LIFT * MAX_LIFT))
+                & distance_sq.cmpgt(Vec4::splat(twin_sq));
+            let kept = |value: Vec4, other: Vec4| Vec4::select(is_near, value, other).to_array();
+            self.flat[0][block] = kept(along_u * stretch, Vec4::ZERO);
+            self.flat[1][block] = kept(along_v * stretch, Vec4::ZERO);
+            self.distance_sq[block] = kept(distance_sq, Vec4::INFINITY);
         }
+        self.nearest_sq = nearest_sq.min_element();
     }
 
     /// The point with a number below [`MOST`], by its place in the tree.
@@ -187,16 +195,12 @@ impl Ball {
 
     /// Squared distance of a point from the centre.
     pub(super) fn distance_sq(&self, k: usize) -> f32 {
-        self.distance_sq[k / LANES].0[k % LANES]
+        self.distance_sq[k / WIDTH][k % WIDTH]
     }
 
     /// The nearest point of the sheet.
     pub(super) fn nearest(&self) -> Option<usize> {
-        let mut least = Least::default();
-        for (block, &distance_sq) in self.distance_sq[..self.blocks()].iter().enumerate() {
-            least.add(block, distance_sq);
-        }
-        least.first().map(|(_, k)| k)
+        least(&self.distance_sq[..self.blocks()]).map(|(_, k)| k)
     }
 
     /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to its right where it is −1; and
@@ -204,24 +208,24 @@ impl Ball {
     /// turn.
     pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
         let [u, v] = self.flat(from);
-        let (along_u, along_v) = (Lanes::splat(u), Lanes::splat(v));
-        let (aside_u, aside_v) = (Lanes::splat(side * u), Lanes::splat(side * v));
-        let mut least = Least::default();
-        for block in 0..self.blocks() {
-            let (x, y) = (self.flat[0][block], self.flat[1][block]);
-            let cross = aside_u * y - aside_v * x;
-            // The cotangent of the angle at the point over the chord from the centre to `from`: the circle's centre is half
-            // that many chords away from the chord.
-            let cotangent = (self.distance_sq[block] - (along_u * x + along_v * y)) / cross;
-            least.add(block, cross.zip(cotangent, |cross, c| if cross > 0.0 { c } else { f32::INFINITY }));
+        let mut cotangents = [[0.0; WIDTH]; BLOCKS];
+        let cotangents = &mut cotangents[..self.blocks()];
+        let rows = self.flat[0].iter().zip(&self.flat[1]).zip(&self.distance_sq);
+        for (cotangent, ((&x, &y), &distance_sq)) in cotangents.iter_mut().zip(rows) {
+            let [x, y, distance_sq] = [x, y, distance_sq].map(Vec4::from_array);
+            let cross = y * (side * u) - x * (side * v);
+            // Of the angle at the point over the chord from the centre to `from`: the circle's centre is half that many chords
+            // away from the chord.
+            let value = (distance_sq - (x * u + y * v)) / cross;
+            *cotangent = Vec4::select(cross.cmpgt(Vec4::ZERO), value, Vec4::INFINITY).to_array();
         }
-        let found = least.first();
+        let found = least(cotangents);
         let cotangent = found.map_or(f32::INFINITY, |(cotangent, _)| cotangent);
         (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))
     }
 
     fn flat(&self, k: usize) -> [f32; 2] {
-        [self.flat[0][k / LANES].0[k % LANES], self.flat[1][k / LANES].0[k % LANES]]
+        [self.flat[0][k / WIDTH][k % WIDTH], self.flat[1][k / WIDTH][k % WIDTH]]
     }
 
     /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than half a turn apart,
@@ -234,44 +238,24 @@ impl Ball {
 
     /// Whether a point before `i` in the tree is nearer to the centre than √`twin_sq`, or there.
     pub(super) fn has_earlier_twin(&self, i: u32, twin_sq: f32) -> bool {
+        if self.nearest_sq > twin_sq {
+            return false;
+        }
         let [x, y, z, ..] = &self.point;
         (0..self.count).any(|k| {
-            let (block, lane) = (k / LANES, k % LANES);
-            let offset = Vec3::new(x[block].0[lane], y[block].0[lane], z[block].0[lane]);
+            let (block, lane) = (k / WIDTH, k % WIDTH);
+            let offset = Vec3::new(x[block][lane], y[block][lane], z[block][lane]);
             self.index[k] < i && offset.length_squared() <= twin_sq
         })
     }
 }
 
-/// The least of many numbers, lane by lane, and where it was.
-struct Least {
-    value: Lanes,
-    block: [u32; LANES],
-}
-
-impl Default for Least {
-    fn default() -> Self {
-        Self { value: Lanes::splat(f32::INFINITY), block: [0; LANES] }
-    }
-}
-
-impl Least {
-    fn add(&mut self, block: usize, value: Lanes) {
-        for (lane, least_block) in self.block.iter_mut().enumerate() {
-            let is_less = value.0[lane] < self.value.0[lane];
-            self.value.0[lane] = if is_less { value.0[lane] } else { self.value.0[lane] };
-            *least_block = if is_less { block as u32 } else { *least_block };
-        }
-    }
-
-    /// The least number and its place over all lanes, the first lane's if there are several; none if none is finite.
-    fn first(&self) -> Option<(f32, usize)> {
-        let mut first = (f32::INFINITY, 0);
-        for (lane, (&value, &block)) in self.value.0.iter().zip(&self.block).enumerate() {
-            if value < first.0 {
-                first = (value, block as usize * LANES + lane);
-            }
-        }
-        (first.0 < f32::INFINITY).then_some(first)
-    }
+/// The least number and its place, the first one if there are several; none if none is finite.
+fn least(values: &[[f32; WIDTH]]) -> Option<(f32, usize)> {
+    let values = || values.iter().map(|&four| Vec4::from_array(four));
+    let least = values().fold(Vec4::INFINITY, Vec4::min).min_element();
+    let is_least = |four: Vec4| four.cmpeq(Vec4::splat(least)).bitmask();
+    let first = values().position(|four| is_least(four) != 0).filter(|_| least < f32::INFINITY)?;
+    let lane = is_least(values().nth(first)?).trailing_zeros() as usize;
+    Some((least, WIDTH * first + lane))
 }
