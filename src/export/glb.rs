@@ -4,7 +4,6 @@
 
 use crate::particles::Particles;
 use glam::Vec3;
-use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// Numbers of the specification: types of components and kinds of buffers.
@@ -17,11 +16,12 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// Generation levels with a colour of their own; then the colours begin again, as on the page.
 const CYCLE: u32 = 12;
 
-/// A row of a buffer: what it is used for, how its numbers are read, its bytes.
+/// A part of the buffer.
 struct Column {
     name: &'static str,
     target: u32,
-    accessor: Value,
+    /// How the numbers are read: members of an accessor.
+    accessor: String,
     bytes: Vec<u8>,
 }
 
@@ -30,7 +30,7 @@ struct Column {
 pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, triangles);
     let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
-    let mut text = document(&columns, length).to_string().into_bytes();
+    let mut text = document(&columns, length).into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     // The header, then each part after its length and its kind.
     let whole = 12 + 8 + text.len() + if length > 0 { 8 + length } else { 0 };
@@ -48,96 +48,78 @@ pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn
     columns.iter().try_for_each(|column| out.write_all(&column.bytes))
 }
 
-/// The contents of the buffer; all columns are multiples of four bytes long.
+/// The contents of the buffer; each column is a multiple of four bytes long. The triangles come last.
 fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
     if triangles.is_empty() {
         return Vec::new();
     }
-    let count = particles.len();
     let mut lo = Vec3::INFINITY;
     let mut hi = Vec3::NEG_INFINITY;
     for &p in &particles.position {
         (lo, hi) = (lo.min(p), hi.max(p));
     }
+    let accessor = |kind: u32, shape: &str, rest: &str| {
+        format!(r#""componentType":{kind},"type":"{shape}","count":{}{rest}"#, particles.len())
+    };
     let vectors =
         |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
-    let colours = particles.level.iter().flat_map(|&level| colour(level));
+    let attribute = |name, accessor, bytes| Column { name, target: ARRAY_BUFFER, accessor, bytes };
+    let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
+    let index_count = 3 * triangles.len();
     vec![
-        Column {
-            name: "POSITION",
-            target: ARRAY_BUFFER,
-            accessor: json!({
-                "componentType": FLOAT, "type": "VEC3", "count": count, "min": lo.to_array(), "max": hi.to_array(),
-            }),
-            bytes: vectors(&particles.position),
-        },
-        Column {
-            name: "NORMAL",
-            target: ARRAY_BUFFER,
-            accessor: json!({ "componentType": FLOAT, "type": "VEC3", "count": count }),
-            bytes: vectors(&particles.normal),
-        },
-        Column {
-            name: "COLOR_0",
-            target: ARRAY_BUFFER,
-            accessor: json!({
-                "componentType": UNSIGNED_BYTE, "normalized": true, "type": "VEC4", "count": count,
-            }),
-            bytes: colours.collect(),
-        },
-        Column {
-            name: "_LEVEL",
-            target: ARRAY_BUFFER,
-            // Attributes may not be whole numbers of 32 bits.
-            accessor: json!({ "componentType": FLOAT, "type": "SCALAR", "count": count }),
-            bytes: particles.level.iter().flat_map(|&level| (level as f32).to_le_bytes()).collect(),
-        },
+        attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&particles.position)),
+        attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(&particles.normal)),
+        attribute(
+            "COLOR_0",
+            accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
+            particles.level.iter().flat_map(|&level| colour(level)).collect(),
+        ),
+        // Attributes may not be whole numbers of 32 bits.
+        attribute(
+            "_LEVEL",
+            accessor(FLOAT, "SCALAR", ""),
+            particles.level.iter().flat_map(|&level| (level as f32).to_le_bytes()).collect(),
+        ),
         Column {
             name: "indices",
             target: ELEMENT_ARRAY_BUFFER,
-            accessor: json!({
-                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": 3 * triangles.len(),
-            }),
+            accessor: format!(r#""componentType":{UNSIGNED_INT},"type":"SCALAR","count":{index_count}"#),
             bytes: triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes()).collect(),
         },
     ]
 }
 
-/// The text part: a scene with one mesh, and where its columns are in the buffer.
-fn document(columns: &[Column], length: usize) -> Value {
-    let asset = json!({ "version": "2.0", "generator": "Marching Particles" });
+/// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.
+fn document(columns: &[Column], length: usize) -> String {
+    let asset = r#""asset":{"version":"2.0","generator":"Marching Particles"},"scene":0"#;
     if columns.is_empty() {
-        return json!({ "asset": asset, "scene": 0, "scenes": [{}] });
+        return format!(r#"{{{asset},"scenes":[{{}}]}}"#);
     }
+    let (mut views, mut accessors, mut attributes) = (Vec::new(), Vec::new(), Vec::new());
     let mut offset = 0;
-    let (mut views, mut accessors) = (Vec::new(), Vec::new());
-    let mut attributes = serde_json::Map::new();
-    for (k, column) in columns.iter().enumerate() {
-        views.push(json!({
-            "buffer": 0, "byteOffset": offset, "byteLength": column.bytes.len(), "target": column.target,
-        }));
-        let mut accessor = column.accessor.clone();
-        accessor["bufferView"] = json!(k);
-        accessors.push(accessor);
-        if column.target == ARRAY_BUFFER {
-            attributes.insert(column.name.to_owned(), json!(k));
+    for (k, Column { name, target, accessor, bytes }) in columns.iter().enumerate() {
+        let size = bytes.len();
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{size},"target":{target}}}"#));
+        accessors.push(format!(r#"{{"bufferView":{k},{accessor}}}"#));
+        if *target == ARRAY_BUFFER {
+            attributes.push(format!(r#""{name}":{k}"#));
         }
-        offset += column.bytes.len();
+        offset += size;
     }
-    let primitive = json!({ "attributes": attributes, "indices": columns.len() - 1, "material": 0 });
+    let [views, accessors, attributes] = [views, accessors, attributes].map(|list| list.join(","));
+    let indices = columns.len() - 1;
+    // A quarter turn about x: z becomes y.
     let half = core::f32::consts::FRAC_1_SQRT_2;
-    json!({
-        "asset": asset,
-        "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        // A quarter turn about x: z becomes y.
-        "nodes": [{ "mesh": 0, "rotation": [-half, 0, 0, half] }],
-        "meshes": [{ "primitives": [primitive] }],
-        "materials": [{ "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0.7 }, "doubleSided": true }],
-        "buffers": [{ "byteLength": length }],
-        "bufferViews": views,
-        "accessors": accessors,
-    })
+    format!(r#"{{{asset},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]}}],"#)
+        + &format!(
+            r#""meshes":[{{"primitives":[{{"attributes":{{{attributes}}},"indices":{indices},"material":0}}]}}],"#
+        )
+        + &format!(
+            r#""materials":[{{"pbrMetallicRoughness":{{"metallicFactor":0,"roughnessFactor":0.7}},"doubleSided":true}}],"#
+        )
+        + &format!(
+            r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{views}],"accessors":[{accessors}]}}"#
+        )
 }
 
 /// Colour of a generation level, linear, with opacity: a rhombus in the a–b plane of OKLab at constant lightness, the page's light
