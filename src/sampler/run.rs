@@ -285,7 +285,7 @@ impl Sampler {
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
         self.refinement = None;
         self.attempt.levels = match self.attempt.levels {
-            Some(levels) if levels > 0 && refusal.is_coarse() => Some(levels - 1),
+            Some(levels) if levels > 1 && refusal.is_coarse() => Some(levels - 1),
             _ => None,
         };
         if self.attempt.levels.is_none() {

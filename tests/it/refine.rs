@@ -134,7 +134,7 @@ fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
     let few = Settings { count: 100, ..refined(100, 0) };
     let adaptive = Settings { sampling: Sampling::Adaptive, ..refined(2_000, 0) };
     for (surface, settings, refusal) in [
-        (gyroid, refined(2_000, 0), Refusal::Border),
+        (gyroid, refined(20_000, 0), Refusal::Border),
         (heart, refined(2_000, 0), Refusal::Unsuitable),
         (sphere, few, Refusal::Unsuitable),
         (sphere, adaptive, Refusal::Unsuitable),

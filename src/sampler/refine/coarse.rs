@@ -40,8 +40,8 @@ const SHARP: f32 = 0.5;
 pub enum Refusal {
     /// What is asked for, or the surface, is of another kind.
     #[error(
-        "The front stands, and is not refined: that takes one radius, at least 180 particles, room for them all below the limit, and \
-         a surface whose gradient vanishes nowhere."
+        "The front stands, and is not refined: that takes one radius, at least 720 particles and room for them below the limit, a \
+         spacing of less than 0.45 of the smallest radius of curvature, and a gradient that vanishes nowhere on the surface."
     )]
     Unsuitable,
     /// The box cuts the surface.
@@ -82,13 +82,14 @@ pub(crate) fn max_curvature(field: &mut dyn Field, points: &[Vec3]) -> f64 {
 }
 
 /// How often a front can be refined that has `count` particles in the end, where the spacing times the largest curvature is
-/// `bend`; `None` if it has too few.
+/// `bend`; `None` if not once. Surgery on a front at full resolution does not pay: on the decocube with 20,000 particles it leaves
+/// pairs at 0.42 of the ideal distance.
 pub(crate) fn levels(bend: f64, count: f64) -> Option<u32> {
     let particles = |levels: u32| count / f64::from(1_u32 << (2 * levels));
     let is_coarse = |levels: &u32| {
         bend * f64::from(1_u32 << levels) <= MAX_BEND && particles(*levels) >= f64::from(LEAST_PARTICLES)
     };
-    (count >= f64::from(LEAST_PARTICLES)).then(|| (1..=MAX_LEVELS).rev().find(is_coarse).unwrap_or(0))
+    (1..=MAX_LEVELS).rev().find(is_coarse)
 }
 
 /// The particles of a front joined to a closed surface, if that can be had beyond doubt. Particles in no triangle are
@@ -156,10 +157,10 @@ mod tests {
             (0.001, 56_000.0, Some(4)),
             (1e-4, 1e9, Some(6)),
             (0.3, 56_000.0, Some(1)),
-            (2.0, 56_000.0, Some(0)),
-            (f64::INFINITY, 56_000.0, Some(0)),
-            (f64::NAN, 56_000.0, Some(0)),
-            (0.033, 719.0, Some(0)),
+            (2.0, 56_000.0, None),
+            (f64::INFINITY, 56_000.0, None),
+            (f64::NAN, 56_000.0, None),
+            (0.033, 719.0, None),
             (0.033, 179.0, None),
         ] {
             assert_eq!(levels(bend, count), expected, "bend {bend}, count {count}");

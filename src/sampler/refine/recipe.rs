@@ -49,15 +49,10 @@ const LAST_BUT_ONE: Recipe =
     Recipe { sweeps: 4, rounds: 4, calm: 1, centre: 0, theta: 0.9, omega: 1.5, delta: 0.012 };
 /// The last level: surgery would add more defects than it takes.
 const LAST: Recipe = Recipe { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.9, omega: 1.5, delta: 0.0 };
-/// The only level: a front at full resolution, mended in place.
-const ONLY: Recipe =
-    Recipe { sweeps: 10, rounds: 10, calm: 1, centre: 4, theta: 0.9, omega: 1.5, delta: 0.02 };
-
 impl Recipe {
     /// The recipe of a level, with so many levels to come.
     pub(super) fn of(is_first: bool, to_come: u32) -> Self {
         match (is_first, to_come) {
-            (true, 0) => ONLY,
             (true, _) => FIRST,
             (false, 0) => LAST,
             (false, 1) => LAST_BUT_ONE,
