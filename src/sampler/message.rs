@@ -9,8 +9,7 @@ impl Sampler {
     /// A sentence for the user where the reason for the end needs one.
     pub(crate) fn message(&self) -> Option<String> {
         Some(match self.phase.stop_reason()? {
-            StopReason::Complete => return self.counts.refusal.map(|refusal| refusal.to_string()),
-            StopReason::Cancelled => return None,
+            StopReason::Complete | StopReason::Cancelled => return None,
             StopReason::Cap => format!(
                 "Stopped at the limit of {} particles; raise the limit or the radius to cover the whole surface.",
                 self.settings.max_particles

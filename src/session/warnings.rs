@@ -30,7 +30,7 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
 
 /// Warnings about what became of `total` particles, of which `close` face another sheet.
 pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
     let FateCounts { not_converged, undefined, .. } = counts.fates;
     let mut troubles = Vec::new();

@@ -15,7 +15,6 @@ mod front;
 mod gallery;
 mod half_edge;
 mod mesh;
-mod mesh_export;
 #[cfg(feature = "points")]
 mod models;
 #[cfg(feature = "points")]

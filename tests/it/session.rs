@@ -2,7 +2,7 @@
 
 use marching_particles::field::formula::Parameter;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{GapPolicy, Phase, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{GapPolicy, Method, Phase, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldError, FieldRequest, Session, describe};
 
 fn request(text: &str) -> FieldRequest {
@@ -498,4 +498,21 @@ fn a_field_that_stays_is_surveyed_once_and_sampled_alike() {
         fresh.start(&coarse).expect("valid settings");
         assert_eq!(finish(&mut fresh).0, digest, "{request:?}");
     }
+}
+
+#[test]
+fn a_surface_that_was_not_refined_is_warned_of() {
+    let refined = Settings { method: Method::Refined, radius_share: 0.01, ..Settings::default() };
+    let warnings = |surface: &str| {
+        let mut session = Session::new();
+        session
+            .set_field(&request(&format!(r#"{{"surface":"{surface}"}}"#)))
+            .expect("a surface of the gallery");
+        session.start(&refined).expect("valid settings");
+        while session.step(65_536).stop_reason.is_none() {}
+        session.report().warnings
+    };
+    let of_gyroid = warnings("gyroid");
+    assert!(of_gyroid.iter().any(|warning| warning.contains("the box cuts the surface")), "{of_gyroid:?}");
+    assert_eq!(warnings("ellipsoid"), [""; 0]);
 }
