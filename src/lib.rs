@@ -40,6 +40,59 @@
 //! * A `Result` is for the user's data, a [`StopReason`](sampler::StopReason) for what a run met, a panic for a mistake
 //!   in the calling code; routines that can panic say when.
 //!
+//! # Glossary
+//!
+//! One word for one thing, in code, comments and on the page.
+//!
+//! | Term | Meaning |
+//! |---|---|
+//! | field | The function f(x, y, z); f < 0 inside. |
+//! | surface | The zero set of the field within the clip box. |
+//! | component | A connected part of the surface. |
+//! | sheet | A part of the surface near one point that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
+//! | singular point | A point of the surface where ∇f = 0, so that there is no normal. |
+//! | clip box | The axis-aligned box outside of which nothing is sampled. |
+//! | border | Where the clip box cuts the surface. |
+//! | particle | A point of the sample, with position, normal and repulsion radius. |
+//! | repulsion radius, r | Half of the wanted distance between neighbours. |
+//! | radius field | The repulsion radius as a function on the surface, in adaptive sampling. |
+//! | radius law | The repulsion radius that the curvature alone asks for. |
+//! | grading | Limiting the radius field to a Lipschitz slope. |
+//! | survey | The first look at the box on a grid: area, scale of the gradient, candidates for seeds. |
+//! | seed | A first particle, from which a front grows. |
+//! | witness | A point of the surface that interval arithmetic found, at least one on each component. |
+//! | completeness | Whether every component is proven to have a witness. |
+//! | cell | A box of the octree, or of a grid of particles. |
+//! | undecided cell | A cell of the octree that may hold a component and could not be decided. |
+//! | front | The particles of the newest generation level, which grow over the surface. |
+//! | generation level | The number of parent links from a particle to its seed; a level is placed as one batch. |
+//! | parent, child | A particle, and one that it proposed. |
+//! | slot | One of a parent's places for children; six of them 60° apart in uniform sampling. |
+//! | arc | An interval of directions around a parent that is free for children, in adaptive sampling. |
+//! | fate | What became of a slot: added, matched, not converged, outside, undefined, capped. |
+//! | match radius | The distance below which a child is identified with an existing particle. |
+//! | provisional | Said of a child that is entered but not yet projected. |
+//! | projection | Moving a point onto the surface: along a circle around its parent, or down the gradient. |
+//! | landing | The result of a projection. |
+//! | seam | Where two fronts, or two parts of one, meet out of step. |
+//! | gap | A hole at a seam wide enough for a particle. |
+//! | relaxation | Moving all particles against their repulsion, step by step. |
+//! | energy | The sum over neighbour pairs that the relaxation lowers. |
+//! | neighbour list | The particles within the range of the repulsion and a skin, kept from step to step. |
+//! | Verlet skin | What the lists reach beyond the range, so that they stay complete while particles move. |
+//! | stale list | A list whose particle has travelled half of its skin since the list was made. |
+//! | natural neighbours | The particles whose Voronoi cells share an edge in the tangent plane. |
+//! | one-ring | The natural neighbours of a particle in order around it. |
+//! | valence | The number of natural neighbours; six in a hexagonal lattice. |
+//! | hexagonal spacing, d_hex | The spacing of a perfect hexagonal lattice of as many particles on the same area. |
+//! | residual | \|f\|/\|∇f\|, the distance to the surface to first order. |
+//! | fission, death | Splitting and removal of particles, in the system of Witkin and Heckbert. |
+//! | budget | A count of work units after which a step returns. It is never a time. |
+//! | slice | A share of long work between two returns to the caller. |
+//! | tape | A formula compiled to a list of operations in single-assignment form. |
+//! | jet | A value with its gradient and Hessian. |
+//! | batch, lanes | Points evaluated by one call, and those of them computed by one SIMD instruction. |
+//!
 //! # Modules
 //!
 //! ```text
@@ -61,7 +114,7 @@
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.
-//! * [`export`]: particles as PLY, CSV, XYZ and NPY; meshes as GLB, OBJ, STL and PLY.
+//! * [`export`]: PLY, CSV, XYZ and NPY.
 //! * [`answer`]: what a command of the page is answered.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
 //! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).

@@ -3,7 +3,6 @@
 mod arguments;
 mod compare;
 mod failure;
-mod mesh;
 mod outcome;
 mod points;
 mod sample;
