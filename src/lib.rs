@@ -114,7 +114,7 @@
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.
-//! * [`export`]: PLY, CSV, XYZ and NPY.
+//! * [`export`]: particles as PLY, CSV, XYZ and NPY; meshes as GLB, OBJ, STL and PLY.
 //! * [`answer`]: what a command of the page is answered.
 //! * [`session`]: a field, a sampler and a run together; what the page talks to.
 //! * [`render`]: the renderer of the page, on slices and camera numbers alone (feature `webgpu` or `webgl`).

@@ -32,7 +32,7 @@ const ROOMS: [Room; 4] = [
             ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
             // Figures about a set of particles must not depend on what made them.
             ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
-            ("export", &["math", "spatial", "particles", "quality"]),
+            ("export", &["math", "spatial", "particles", "mesh", "quality"]),
             (
                 "session",
                 &[

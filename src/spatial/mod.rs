@@ -69,14 +69,14 @@ struct Hits {
 
 /// The indices of the lanes in a set of lanes, and their number.
 #[derive(Clone, Copy)]
-struct LanesOf {
-    lane: [u32; LANES],
-    count: usize,
+pub(crate) struct LanesOf {
+    pub(crate) lane: [u32; LANES],
+    pub(crate) count: usize,
 }
 
 /// The lanes of every set, which is given as bits. A query copies all entries and advances by their number: the end of
 /// a loop over the set alone would be mispredicted.
-static LANES_OF: [LanesOf; 1 << LANES] = {
+pub(crate) static LANES_OF: [LanesOf; 1 << LANES] = {
     let mut all = [LanesOf { lane: [0; LANES], count: 0 }; 1 << LANES];
     let mut set = 0;
     while set < all.len() {

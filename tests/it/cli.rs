@@ -132,6 +132,41 @@ fn files_hold_every_particle() {
     assert_eq!((npy.len() - 24 * count) % 64, 0);
 }
 
+#[test]
+fn mesh_files_hold_a_closed_mesh() {
+    let files = ["tube.glb", "tube.obj", "tube.stl", "tube.PLY"].map(file);
+    let mut arguments = vec!["--surface", "torus", "--radius", "1%"];
+    for path in &files {
+        arguments.extend(["--mesh", path.to_str().expect("a plain path")]);
+    }
+    let run = sample(&arguments);
+    let mesh = &run["mesh"];
+    assert_eq!(mesh["triangles"].as_u64(), run["count"].as_u64().map(|count| 2 * count));
+    for (key, expected) in [("components", 1), ("euler", 0), ("borders", 0), ("holes", 0), ("left_out", 0)] {
+        assert_eq!(mesh[key], expected, "{key}");
+    }
+    assert_eq!(run["files"].as_array().map(Vec::len), Some(4));
+    let [glb, obj, stl, ply] = files.map(|path| std::fs::read(path).expect("the file was written"));
+    assert!(glb.starts_with(b"glTF") && obj.starts_with(b"# ") && ply.starts_with(b"ply\n"));
+    let triangles = mesh["triangles"].as_u64().expect("a count") as usize;
+    assert_eq!(stl.len(), 84 + 50 * triangles);
+    assert_eq!(String::from_utf8_lossy(&obj).matches("\nf ").count(), triangles);
+
+    let text = run_text(&["--surface", "schwarz-p", "--count", "3000", "--mesh"], "cut.obj");
+    assert!(text.contains("1 component, Euler number -32, 24 border loops"), "{text}");
+    let message = fails(2, &["sample", "--surface", "torus", "--mesh", "torus.xyz"]);
+    assert!(message.contains("glb, obj, stl, ply"), "{message}");
+}
+
+/// Runs `sample` with a file as the last argument; the text that it prints.
+#[track_caller]
+fn run_text(arguments: &[&str], name: &str) -> String {
+    let path = file(name);
+    let output = run(&[&["sample"], arguments, &[path.to_str().expect("a plain path")]].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    stdout(&output)
+}
+
 #[cfg(unix)]
 #[test]
 fn file_with_a_name_that_is_not_unicode_is_written_and_reported() {

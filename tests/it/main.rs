@@ -15,6 +15,7 @@ mod front;
 mod gallery;
 mod half_edge;
 mod mesh;
+mod mesh_export;
 #[cfg(feature = "points")]
 mod models;
 #[cfg(feature = "points")]

@@ -30,6 +30,8 @@ pub(crate) enum Part {
     Shaders,
     /// The core and the solver for points as WebAssembly, in Node, against the digests of the native ones.
     Parity,
+    /// Mesh files against Khronos' glTF validator.
+    Gltf,
     /// The page: format, lint, types and unit tests.
     Page,
     /// The built site in a browser, at / and in a sub-path.
@@ -37,13 +39,14 @@ pub(crate) enum Part {
 }
 
 /// Everything, the quick checks first.
-const ALL: [Part; 8] = [
+const ALL: [Part; 9] = [
     Part::Format,
     Part::Lint,
     Part::Native,
     Part::Docs,
     Part::LintWasm,
     Part::Parity,
+    Part::Gltf,
     Part::Page,
     Part::Browser,
 ];
@@ -78,7 +81,7 @@ impl Options {
 pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     let parts = options.parts();
     // What may be missing is looked for before the long builds start.
-    if parts.iter().any(|part| matches!(part, Part::Parity | Part::Page | Part::Browser)) {
+    if parts.iter().any(|part| matches!(part, Part::Parity | Part::Gltf | Part::Page | Part::Browser)) {
         node::prepare(project)?;
     }
     let chromium = if parts.contains(&Part::Browser) { Some(chromium::find(project)?) } else { None };
@@ -92,6 +95,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
             Part::Native => native(project),
             Part::Shaders => shaders(project),
             Part::Parity => parity(project),
+            Part::Gltf => gltf(project),
             Part::Page => page(project),
             Part::Browser => {
                 let path =
@@ -190,6 +194,15 @@ fn parity(project: &Project) -> Result<()> {
         step::run(&format!("the same digests in WebAssembly as natively ({script})"), &mut command, "")?;
     }
     Ok(())
+}
+
+fn gltf(project: &Project) -> Result<()> {
+    // As in `native`, so that the tests are not compiled again.
+    let mut tests = cargo_at_root(project, &["test", "--locked", "--features", "cli", "--test", "it"]);
+    step::run("mesh files", tests.arg("mesh_export::"), "")?;
+    let mut command = Command::new(node::node()?);
+    command.current_dir(&project.root).arg("tests/gltf/validate.mjs").arg(project.target.join("tmp"));
+    step::run("mesh files: Khronos' glTF validator", &mut command, "").map(drop)
 }
 
 fn page(project: &Project) -> Result<()> {

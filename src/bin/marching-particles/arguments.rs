@@ -72,7 +72,7 @@ const SAMPLE_LONG: &str = "\
 Sample a surface, write it to files and say how good it is.
 
 Name a surface, give a formula, or give a file of points, with or without normals. Say how fine: by the radius of the particles (neighbours sit two radii apart) or by \
-their number. Without --out nothing is written, only measured.";
+their number. Without --out and --mesh nothing is written, only measured.";
 
 const SAMPLE_AFTER: &str = "\
 Formulas:
@@ -84,7 +84,7 @@ Examples:
   marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
   marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
   marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 4 --radius 0.05
-  marching-particles sample --points scan.ply --centres 400 --out even.ply
+  marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
 Exit codes:
@@ -130,6 +130,11 @@ pub(crate) struct Sample {
     /// whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
+
+    /// File for the triangle mesh over the particles; its extension is its format: glb (with normals, generation levels as
+    /// colours), obj, stl or ply (with what --out writes). May be given again; replaces what is there
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(crate) mesh: Vec<PathBuf>,
 
     /// Print one line of JSON instead of text
     #[arg(long, help_heading = "Output")]

@@ -3,6 +3,7 @@
 mod arguments;
 mod compare;
 mod failure;
+mod mesh;
 mod outcome;
 mod points;
 mod sample;

@@ -1,5 +1,6 @@
 //! Result of a run.
 
+use crate::mesh::Mesh;
 use marching_particles::field::model::ModelInfo;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::Settings;
@@ -16,6 +17,8 @@ pub(crate) struct Seconds {
     pub(crate) generation: f64,
     pub(crate) relaxation: f64,
     pub(crate) quality: f64,
+    /// Time to join the particles to triangles.
+    pub(crate) mesh: f64,
     pub(crate) writing: f64,
 }
 
@@ -33,6 +36,8 @@ pub(crate) struct Outcome {
     pub(crate) predicted_count: u64,
     #[serde(flatten)]
     pub(crate) report: Report,
+    /// The triangles over the particles, if a mesh file is requested.
+    pub(crate) mesh: Option<Mesh>,
     pub(crate) seconds: Seconds,
     /// Peak resident memory of the process in 10⁶ bytes; null if the system does not report it.
     pub(crate) peak_mb: Option<f64>,

@@ -2,10 +2,11 @@
 
 use crate::arguments::{self, Gaps, Law, Length, Placement as Placed, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
+use crate::mesh::{self, Mesh};
 use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
-use marching_particles::export::{self, Format};
+use marching_particles::export::{self, Format, MeshFormat};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
@@ -80,7 +81,8 @@ pub(crate) fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
 }
 
 pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
-    let formats = formats(&arguments.out)?;
+    let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
+    let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
     let begun = begin(&arguments.surface, &arguments.sampling, arguments.quiet)?;
     let Begun { mut session, answer, settings, predicted_count, mut seconds } = begun;
     let bar = bar(arguments.quiet);
@@ -97,8 +99,16 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let report = session.report();
     seconds.quality = clock.seconds();
     let clock = Clock::start();
+    let triangulation = (!mesh_formats.is_empty()).then(|| mesh::of(session.particles(), &answer.bounds));
+    seconds.mesh = clock.seconds();
+    let clock = Clock::start();
+    let (particles, measured) = (session.particles(), session.measured());
     for (path, format) in arguments.out.iter().zip(formats) {
-        write_file(path, format, &session).map_err(|error| Failure::File { path: path.clone(), error })?;
+        write_file(path, |out| export::write(format, particles, &measured.valence, out))?;
+    }
+    for (path, format) in arguments.mesh.iter().zip(mesh_formats) {
+        let triangles = triangulation.as_ref().map_or(&[][..], |mesh| &mesh.triangles);
+        write_file(path, |out| export::write_mesh(format, particles, &measured.valence, triangles, out))?;
     }
     seconds.writing = clock.seconds();
 
@@ -113,10 +123,11 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         settings,
         predicted_count,
         report,
+        mesh: triangulation.as_ref().map(Mesh::new),
         seconds,
         peak_mb: peak_mb(),
         peak_sampling_mb,
-        files: arguments.out.iter().map(|path| path.display().to_string()).collect(),
+        files: arguments.out.iter().chain(&arguments.mesh).map(|path| path.display().to_string()).collect(),
     };
     let mut out = std::io::stdout().lock();
     if arguments.json {
@@ -135,13 +146,17 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
 }
 
 /// Format of each file. It is checked before any work is done.
-fn formats(paths: &[PathBuf]) -> Result<Vec<Format>, Failure> {
+fn formats<T>(
+    paths: &[PathBuf],
+    of_extension: impl Fn(&str) -> Option<T>,
+    all: &[(&str, T)],
+) -> Result<Vec<T>, Failure> {
     paths
         .iter()
         .map(|path| {
             let extension = path.extension().unwrap_or_default().to_string_lossy();
-            Format::of_extension(&extension).ok_or_else(|| {
-                let known: Vec<&str> = Format::ALL.iter().map(|(name, _)| *name).collect();
+            of_extension(&extension).ok_or_else(|| {
+                let known: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
                 Failure::Usage(format!(
                     "{} has no extension that names a format; known are {}",
                     path.display(),
@@ -317,10 +332,13 @@ pub(crate) fn bar(quiet: bool) -> ProgressBar {
     bar
 }
 
-fn write_file(path: &Path, format: Format, session: &Session) -> std::io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
-    export::write(format, session.particles(), &session.measured().valence, &mut out)?;
-    out.flush()
+fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
+    let written = File::create(path).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        write(&mut out)?;
+        out.flush()
+    });
+    written.map_err(|error| Failure::File { path: path.to_owned(), error })
 }
 
 pub(crate) struct Clock(Instant);

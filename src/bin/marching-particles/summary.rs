@@ -1,5 +1,6 @@
 //! Report of a run as text.
 
+use crate::mesh::Mesh;
 use crate::outcome::Outcome;
 use marching_particles::field::model::{ModelInfo, NormalSource};
 use marching_particles::session::{ReportRow, describe};
@@ -33,7 +34,7 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     if outcome.model.is_some() {
         write!(out, "points {}, ", time(s.points))?;
     }
-    writeln!(
+    write!(
         out,
         "seeding {}, generation {}, relaxation {}, quality {}",
         time(s.seeding),
@@ -41,6 +42,10 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
         time(s.relaxation),
         time(s.quality)
     )?;
+    if let Some(mesh) = &outcome.mesh {
+        write!(out, ", mesh {}\nmesh of {}", time(s.mesh), mesh_line(mesh))?;
+    }
+    writeln!(out)?;
     if let Some(peak) = outcome.peak_mb {
         writeln!(out, "peak memory {peak:.0} MB")?;
     }
@@ -48,7 +53,8 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     table(out, outcome)?;
     writeln!(out, "\ndigest {}", report.digest)?;
     let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
-    for warning in of_points.chain(&report.warnings) {
+    let of_mesh = outcome.mesh.iter().flat_map(mesh_warnings);
+    for warning in of_points.chain(&report.warnings).cloned().chain(of_mesh) {
         writeln!(out, "warning: {warning}")?;
     }
     for file in &outcome.files {
@@ -120,6 +126,35 @@ pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
         _ => (value, ""),
     };
     format!("{value:.*}{unit}", usize::from(row.digits))
+}
+
+/// A mesh in a line.
+fn mesh_line(mesh: &Mesh) -> String {
+    let borders = match mesh.borders + mesh.holes {
+        0 => "closed".to_owned(),
+        loops => counted(loops, "border loop"),
+    };
+    let [triangles, components] = [(mesh.triangles, "triangle"), (mesh.components, "component")]
+        .map(|(count, name)| counted(count, name));
+    format!("{triangles}, {components}, Euler number {}, {borders}", mesh.euler)
+}
+
+/// What a mesh lacks, as sentences.
+fn mesh_warnings(mesh: &Mesh) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if mesh.holes > 0 {
+        warnings.push(format!("the mesh has {} that could not be filled", counted(mesh.holes, "hole")));
+    }
+    if mesh.left_out > 0 {
+        warnings.push(format!("the mesh leaves {} out", counted(mesh.left_out, "particle")));
+    }
+    warnings
+}
+
+/// A number of things, in words.
+fn counted(count: usize, name: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{} {name}{ending}", grouped(count))
 }
 
 /// Formats a count with separated thousands.

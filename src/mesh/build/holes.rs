@@ -1,14 +1,13 @@
 //! Holes: their borders are traced and the polygons are cut into triangles.
 
 use super::patch::{Gap, Patch};
-use super::stars::WIDEST;
 use crate::math::Bounds;
 
 /// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their
 /// mean where there is no other way.
 const AGREEMENT: f64 = 0.2;
 /// A vertex is at the box if it is nearer to one of the faces than this many spacings.
-const AT_BOX: f32 = WIDEST;
+const AT_BOX: f64 = 1.5;
 /// Rounds in which holes are filled and, where that fails, made larger by a vertex.
 const ROUNDS: u32 = 12;
 
@@ -24,7 +23,7 @@ impl Borders<'_> {
     /// Whether a loop is a border for certain: it is long, or most of it lies at the box.
     pub(super) fn is_border(&self, patch: &Patch, hole: &[u32]) -> bool {
         let at_box = |v: &u32| {
-            let (p, reach) = (patch.place(*v), f64::from(AT_BOX * patch.stars.spacing[*v as usize]));
+            let (p, reach) = (patch.place(*v), AT_BOX * patch.spacing(*v));
             self.bounds.is_some_and(|bounds| (p - bounds.lo()).min(bounds.hi() - p).min_element() <= reach)
         };
         hole.len() > self.largest_hole || 2 * hole.iter().filter(|v| at_box(v)).count() > hole.len()

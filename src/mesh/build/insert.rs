@@ -1,8 +1,8 @@
 //! Points in no triangle go into the triangle below them.
 
+use super::ball::MAX_LIFT;
 use super::holes::faces_as_corners;
 use super::patch::Patch;
-use super::stars::MAX_LIFT;
 use crate::spatial::tree::{Tree, unkey};
 
 /// How many of the nearest points are looked at for the triangle below a point.

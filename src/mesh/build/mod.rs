@@ -14,6 +14,7 @@
 //! Triangulation", Computer Graphics Forum 19(3), 2000; holes are cut by the dynamic programme of Klincsek, "Minimal
 //! Triangulations of Polygonal Domains", Annals of Discrete Mathematics 9, 1980.
 
+mod ball;
 mod holes;
 mod insert;
 mod patch;

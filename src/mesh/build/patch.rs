@@ -232,6 +232,14 @@ impl<'a> Patch<'a> {
         }
     }
 
+    /// Mean distance of the natural neighbours of `v`; 0 if there is none.
+    pub(super) fn spacing(&self, v: u32) -> f64 {
+        let range = self.stars.range(v as usize);
+        let count = range.len().max(1) as f64;
+        range.map(|entry| self.place(v).distance(self.place(self.stars.neighbour(entry)))).sum::<f64>()
+            / count
+    }
+
     /// Position in double precision.
     pub(super) fn place(&self, v: u32) -> DVec3 {
         self.position[v as usize].as_dvec3()

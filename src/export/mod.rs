@@ -1,4 +1,9 @@
-//! Export of particles to PLY, CSV, XYZ and NPY.
+//! Export of particles to PLY, CSV, XYZ and NPY, and of triangle meshes over them to GLB, OBJ, STL and PLY.
+
+mod glb;
+mod mesh;
+
+pub use mesh::{MeshFormat, write_mesh};
 
 use crate::particles::Particles;
 use std::io::{self, Write};
@@ -39,7 +44,7 @@ impl Format {
 /// Those of `out`.
 pub fn write(format: Format, particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result<()> {
     match format {
-        Format::Ply => ply(particles, valence, out),
+        Format::Ply => ply(particles, valence, None, out),
         Format::Csv => csv(particles, valence, out),
         Format::Xyz => xyz(particles, out),
         Format::Npy => npy(particles, out),
@@ -52,7 +57,12 @@ fn parent(particles: &Particles, i: usize) -> i32 {
     particles.parent[i].cast_signed()
 }
 
-fn ply(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result<()> {
+fn ply(
+    particles: &Particles,
+    valence: &[u8],
+    triangles: Option<&[[u32; 3]]>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     writeln!(out, "element vertex {}", particles.len())?;
     for name in ["x", "y", "z", "nx", "ny", "nz", "radius"] {
@@ -60,8 +70,12 @@ fn ply(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result
     }
     write!(
         out,
-        "property uint level\nproperty int parent\nproperty uchar valence\nproperty uchar singular\nend_header\n"
+        "property uint level\nproperty int parent\nproperty uchar valence\nproperty uchar singular\n"
     )?;
+    if let Some(triangles) = triangles {
+        write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", triangles.len())?;
+    }
+    writeln!(out, "end_header")?;
     for i in 0..particles.len() {
         // One write per particle.
         let mut record = [0_u8; 38];
@@ -77,6 +91,13 @@ fn ply(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result
         record[32..36].copy_from_slice(&parent(particles, i).to_le_bytes());
         record[36] = valence.get(i).copied().unwrap_or(0);
         record[37] = u8::from(particles.slots[i].is_singular());
+        out.write_all(&record)?;
+    }
+    for triangle in triangles.unwrap_or_default() {
+        let mut record = [3; 13];
+        for (bytes, index) in record[1..].chunks_exact_mut(4).zip(triangle) {
+            bytes.copy_from_slice(&index.to_le_bytes());
+        }
         out.write_all(&record)?;
     }
     Ok(())

@@ -1,0 +1,151 @@
+//! Binary glTF 2.0: a triangle mesh that viewers and modelling tools open at once.
+//!
+//! The specification is Khronos', <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
+
+use crate::particles::Particles;
+use glam::Vec3;
+use std::io::{self, Write};
+
+/// Numbers of the specification: types of components and kinds of buffers.
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// Generation levels with a colour of their own; then the colours begin again, as on the page.
+const CYCLE: u32 = 12;
+
+/// A part of the buffer.
+struct Column {
+    name: &'static str,
+    target: u32,
+    /// How the numbers are read: members of an accessor.
+    accessor: String,
+    bytes: Vec<u8>,
+}
+
+/// Writes the triangles with the normals of the particles, their generation levels as colours and, for programs, as the
+/// attribute `_LEVEL`. The z axis, which points up here, is turned to glTF's y. A mesh without triangles is an empty scene.
+pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
+    let columns = columns(particles, triangles);
+    let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
+    let mut text = document(&columns, length).into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    // The header, then each part after its length and its kind.
+    let whole = 12 + 8 + text.len() + if length > 0 { 8 + length } else { 0 };
+    let size = |bytes: usize| u32::try_from(bytes).map_err(|_| io::Error::other("glTF holds up to 4 GiB"));
+    out.write_all(b"glTF")?;
+    out.write_all(&2_u32.to_le_bytes())?;
+    out.write_all(&size(whole)?.to_le_bytes())?;
+    out.write_all(&size(text.len())?.to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    if length > 0 {
+        out.write_all(&size(length)?.to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+    }
+    columns.iter().try_for_each(|column| out.write_all(&column.bytes))
+}
+
+/// The contents of the buffer; each column is a multiple of four bytes long. The triangles come last.
+fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
+    if triangles.is_empty() {
+        return Vec::new();
+    }
+    let mut lo = Vec3::INFINITY;
+    let mut hi = Vec3::NEG_INFINITY;
+    for &p in &particles.position {
+        (lo, hi) = (lo.min(p), hi.max(p));
+    }
+    let accessor = |kind: u32, shape: &str, rest: &str| {
+        format!(r#""componentType":{kind},"type":"{shape}","count":{}{rest}"#, particles.len())
+    };
+    let vectors =
+        |vectors: &[Vec3]| vectors.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes).collect();
+    let attribute = |name, accessor, bytes| Column { name, target: ARRAY_BUFFER, accessor, bytes };
+    let extent = format!(r#","min":{:?},"max":{:?}"#, lo.as_dvec3().to_array(), hi.as_dvec3().to_array());
+    let index_count = 3 * triangles.len();
+    vec![
+        attribute("POSITION", accessor(FLOAT, "VEC3", &extent), vectors(&particles.position)),
+        attribute("NORMAL", accessor(FLOAT, "VEC3", ""), vectors(&particles.normal)),
+        attribute(
+            "COLOR_0",
+            accessor(UNSIGNED_BYTE, "VEC4", r#","normalized":true"#),
+            particles.level.iter().flat_map(|&level| colour(level)).collect(),
+        ),
+        // Attributes may not be whole numbers of 32 bits.
+        attribute(
+            "_LEVEL",
+            accessor(FLOAT, "SCALAR", ""),
+            particles.level.iter().flat_map(|&level| (level as f32).to_le_bytes()).collect(),
+        ),
+        Column {
+            name: "indices",
+            target: ELEMENT_ARRAY_BUFFER,
+            accessor: format!(r#""componentType":{UNSIGNED_INT},"type":"SCALAR","count":{index_count}"#),
+            bytes: triangles.as_flattened().iter().flat_map(|index| index.to_le_bytes()).collect(),
+        },
+    ]
+}
+
+/// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.
+fn document(columns: &[Column], length: usize) -> String {
+    let asset = r#""asset":{"version":"2.0","generator":"Marching Particles"},"scene":0"#;
+    if columns.is_empty() {
+        return format!(r#"{{{asset},"scenes":[{{}}]}}"#);
+    }
+    let (mut views, mut accessors, mut attributes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut offset = 0;
+    for (k, Column { name, target, accessor, bytes }) in columns.iter().enumerate() {
+        let size = bytes.len();
+        views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{size},"target":{target}}}"#));
+        accessors.push(format!(r#"{{"bufferView":{k},{accessor}}}"#));
+        if *target == ARRAY_BUFFER {
+            attributes.push(format!(r#""{name}":{k}"#));
+        }
+        offset += size;
+    }
+    let [views, accessors, attributes] = [views, accessors, attributes].map(|list| list.join(","));
+    let indices = columns.len() - 1;
+    // A quarter turn about x: z becomes y.
+    let half = core::f32::consts::FRAC_1_SQRT_2;
+    format!(r#"{{{asset},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]}}],"#)
+        + &format!(
+            r#""meshes":[{{"primitives":[{{"attributes":{{{attributes}}},"indices":{indices},"material":0}}]}}],"#
+        )
+        + &format!(
+            r#""materials":[{{"pbrMetallicRoughness":{{"metallicFactor":0,"roughnessFactor":0.7}},"doubleSided":true}}],"#
+        )
+        + &format!(
+            r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{views}],"accessors":[{accessors}]}}"#
+        )
+}
+
+/// Colour of a generation level, linear, with opacity: a rhombus in the a–b plane of OKLab at constant lightness, the page's light
+/// cycle. OKLab is Björn Ottosson's, "A perceptual color space for image processing", 2020.
+fn colour(level: u32) -> [u8; 4] {
+    const LIGHTNESS: f32 = 0.7;
+    /// Half the lengths of the rhombus' axes.
+    const A: f32 = 0.12;
+    const B: f32 = 0.125;
+    // Triangle wave of period 1: 0 → 1 → 0 → −1.
+    let triangle = |t: f32| match t - t.floor() {
+        u if u < 0.25 => 4.0 * u,
+        u if u < 0.75 => 2.0 - 4.0 * u,
+        u => 4.0 * u - 4.0,
+    };
+    let t = (level % CYCLE) as f32 / CYCLE as f32;
+    let (a, b) = (A * triangle(t), -B * triangle(t + 0.25));
+    let cube = |x: f32| x * x * x;
+    let l = cube(LIGHTNESS + 0.396_337_78 * a + 0.215_803_76 * b);
+    let m = cube(LIGHTNESS - 0.105_561_346 * a - 0.063_854_17 * b);
+    let s = cube(LIGHTNESS - 0.089_484_18 * a - 1.291_485_5 * b);
+    let linear = [
+        4.076_741_7 * l - 3.307_711_6 * m + 0.230_969_94 * s,
+        -1.268_438 * l + 2.609_757_4 * m - 0.341_319_38 * s,
+        -0.004_196_086_3 * l - 0.703_418_6 * m + 1.707_614_7 * s,
+    ];
+    let [red, green, blue] = linear.map(|share| (share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+    [red, green, blue, u8::MAX]
+}

@@ -1,0 +1,93 @@
+//! Triangle meshes of particles as files: GLB, OBJ, STL and PLY.
+
+use super::glb;
+use crate::particles::Particles;
+use std::io::{self, Write};
+
+/// A file format for triangles over particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// Binary glTF 2.0: triangles, normals, and generation levels as colours.
+    Glb,
+    /// Wavefront OBJ: triangles and normals, as text.
+    Obj,
+    /// Binary STL: triangles with their own normals. Single precision, no connectivity.
+    Stl,
+    /// Binary little-endian PLY: the columns of the particles, and the triangles.
+    Ply,
+}
+
+impl MeshFormat {
+    /// Every format with its file name extension.
+    pub const ALL: [(&str, Self); 4] =
+        [("glb", Self::Glb), ("obj", Self::Obj), ("stl", Self::Stl), ("ply", Self::Ply)];
+
+    /// The format that a file name's extension stands for, in either case; none for any other.
+    #[must_use]
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(name, _)| name.eq_ignore_ascii_case(extension)).map(|&(_, format)| format)
+    }
+}
+
+/// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
+/// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every particle is a vertex, whether it is in a
+/// triangle or not, so that indices stay. `valence` is as for [`write`](super::write).
+///
+/// # Errors
+///
+/// Those of `out`; and where a format's own counters, of 32 bits, are too small.
+///
+/// # Panics
+///
+/// If a triangle names a particle that is not there.
+pub fn write_mesh(
+    format: MeshFormat,
+    particles: &Particles,
+    valence: &[u8],
+    triangles: &[[u32; 3]],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    match format {
+        MeshFormat::Glb => glb::write(particles, triangles, out),
+        MeshFormat::Obj => obj(particles, triangles, out),
+        MeshFormat::Stl => stl(particles, triangles, out),
+        MeshFormat::Ply => super::ply(particles, valence, Some(triangles), out),
+    }
+}
+
+fn obj(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "# Marching Particles")?;
+    for p in &particles.position {
+        writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+    }
+    for n in &particles.normal {
+        writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
+    }
+    for triangle in triangles {
+        // Counted from 1; the normal has the number of the vertex.
+        let [a, b, c] = triangle.map(|v| v + 1);
+        writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
+    }
+    Ok(())
+}
+
+fn stl(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
+    let mut header = [b' '; 80];
+    // It must not begin with "solid", which marks the text form.
+    header[..18].copy_from_slice(b"Marching Particles");
+    out.write_all(&header)?;
+    let count = u32::try_from(triangles.len()).map_err(io::Error::other)?;
+    out.write_all(&count.to_le_bytes())?;
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| particles.position[v as usize]);
+        let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+        // Four vectors, and two bytes that nobody uses.
+        let mut record = [0; 50];
+        let floats = [normal, a, b, c].into_iter().flat_map(|v| v.to_array());
+        for (bytes, value) in record.chunks_exact_mut(4).zip(floats) {
+            bytes.copy_from_slice(&value.to_le_bytes());
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,261 @@
+//! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
+
+use crate::math::{LANES, tangent_frame};
+use crate::spatial::LANES_OF;
+use crate::spatial::tree::{Tree, unkey};
+use glam::{BVec4A, Vec3, Vec4};
+
+/// Most points of a ball.
+pub(super) const MOST: usize = 64;
+/// Numbers that are worked on at once.
+const WIDTH: usize = 4;
+const BLOCKS: usize = MOST / WIDTH;
+/// Two points are on one sheet if the sine squared of the line between them to the normal is at least this …
+const MIN_FLAT: f32 = 0.2;
+/// … and the line rises from one tangent plane as it sinks below the other, up to this share of its length. It tells sheets
+/// that face the same way apart.
+pub(super) const MAX_LIFT: f32 = 0.35;
+
+/// The points of a tree in a box.
+#[derive(Default)]
+pub(super) struct Surroundings {
+    index: Vec<u32>,
+    /// Positions, by coordinate; the last ones are infinitely far away.
+    place: Vec<[[f32; LANES]; 3]>,
+    /// Position and normal of each.
+    point: Vec<[f32; 6]>,
+}
+
+impl Surroundings {
+    /// Replaces the content by the points in the closed box from `lo` to `hi`.
+    pub(super) fn gather(&mut self, tree: &Tree, normal: &[Vec3], lo: Vec3, hi: Vec3) {
+        self.index.clear();
+        tree.within_box(lo, hi, &mut self.index);
+        self.place.clear();
+        self.point.clear();
+        for chunk in self.index.chunks(LANES) {
+            let mut lanes = [[f32::INFINITY; LANES]; 3];
+            for (k, &i) in chunk.iter().enumerate() {
+                let (p, n) = (tree.position[i as usize], normal[i as usize]);
+                (lanes[0][k], lanes[1][k], lanes[2][k]) = (p.x, p.y, p.z);
+                self.point.push([p.x, p.y, p.z, n.x, n.y, n.z]);
+            }
+            self.place.push(lanes);
+        }
+    }
+}
+
+/// Points round a centre, four by four. Those that are not on its sheet lie at the centre, infinitely far away.
+pub(super) struct Ball {
+    /// Number of points.
+    count: usize,
+    /// The points, by their place in the tree.
+    index: [u32; MOST],
+    /// Offset from the centre and normal.
+    point: [[[f32; WIDTH]; BLOCKS]; 6],
+    /// Place in the tangent plane, and the true distance, squared.
+    flat: [[[f32; WIDTH]; BLOCKS]; 2],
+    distance_sq: [[f32; WIDTH]; BLOCKS],
+    /// Squared distance of the nearest point, whatever its sheet.
+    nearest_sq: f32,
+}
+
+impl Default for Ball {
+    fn default() -> Self {
+        let zero = [[0.0; WIDTH]; BLOCKS];
+        Self {
+            count: 0,
+            index: [0; MOST],
+            point: [zero; 6],
+            flat: [zero; 2],
+            distance_sq: zero,
+            nearest_sq: f32::INFINITY,
+        }
+    }
+}
+
+impl Ball {
+    /// Holds the points of `surroundings` nearer to `centre` than √`bound_sq`, but not `except`; whether there is room for all.
+    pub(super) fn take(
+        &mut self,
+        surroundings: &Surroundings,
+        centre: Vec3,
+        bound_sq: f32,
+        except: u32,
+    ) -> bool {
+        self.count = 0;
+        let Surroundings { index, place, point } = surroundings;
+        let mut hits = [0_u32; MOST + LANES];
+        let mut count = 0;
+        let bound_sq = Vec4::splat(bound_sq);
+        for (block, [x, y, z]) in place.iter().enumerate() {
+            let near = |first: usize| {
+                let offset = |row: &[f32; LANES], c: f32| Vec4::from_slice(&row[first..first + WIDTH]) - c;
+                let (dx, dy, dz) = (offset(x, centre.x), offset(y, centre.y), offset(z, centre.z));
+                (dx * dx + dy * dy + dz * dz).cmplt(bound_sq).bitmask()
+            };
+            let near = (near(0) | near(WIDTH) << WIDTH) as usize & 0xff;
+            let lanes = &LANES_OF[near];
+            for (hit, lane) in hits[count..count + LANES].iter_mut().zip(lanes.lane) {
+                *hit = (block * LANES) as u32 + lane;
+            }
+            count += lanes.count;
+            if count > MOST {
+                return false;
+            }
+        }
+        for &hit in &hits[..count] {
+            let j = index[hit as usize];
+            if j != except {
+                let [x, y, z, a, b, c] = point[hit as usize];
+                self.push(j, [x - centre.x, y - centre.y, z - centre.z, a, b, c]);
+            }
+        }
+        true
+    }
+
+    /// Holds the points within `radius` of point `i`, or the nearest ones if those are too many; the square of the radius within
+    /// which all are held.
+    pub(super) fn search(&mut self, tree: &Tree, normal: &[Vec3], i: u32, radius: f32) -> f32 {
+        self.count = 0;
+        let centre = tree.position[i as usize];
+        let mut near = Vec::new();
+        let mut known_sq = radius * radius;
+        if radius > 0.0 {
+            tree.within_box(centre - radius, centre + radius, &mut near);
+            near.retain(|&j| j != i && (tree.position[j as usize] - centre).length_squared() < known_sq);
+        }
+        if near.len() > MOST || radius == 0.0 {
+            let mut keys = Vec::new();
+            tree.nearest_many(centre, MOST, |j| j != i, &mut keys);
+            known_sq = match keys.last() {
+                Some(&last) if keys.len() == MOST => unkey(last).0,
+                _ => f32::MAX, // Every point of the set is held.
+            };
+            near = keys.into_iter().map(|key| unkey(key).1).collect();
+        }
+        for j in near {
+            let ([x, y, z], [a, b, c]) =
+                ((tree.position[j as usize] - centre).to_array(), normal[j as usize].to_array());
+            self.push(j, [x, y, z, a, b, c]);
+        }
+        known_sq
+    }
+
+    fn push(&mut self, index: u32, point: [f32; 6]) {
+        let k = self.count % MOST;
+        self.index[k] = index;
+        for (row, value) in self.point.iter_mut().zip(point) {
+            row[k / WIDTH][k % WIDTH] = value;
+        }
+        self.count = k + 1;
+    }
+
+    fn blocks(&self) -> usize {
+        self.count.div_ceil(WIDTH).min(BLOCKS)
+    }
+
+    /// Lays the points of the centre's sheet, but those nearer than √`twin_sq`, into its tangent plane, at their true
+    /// distances.
+    pub(super) fn unroll(&mut self, normal: Vec3, twin_sq: f32) {
+        let (u, v) = tangent_frame(normal);
+        let dot = |x: Vec4, y: Vec4, z: Vec4, a: Vec3| x * a.x + y * a.y + z * a.z;
+        for k in self.count..self.blocks() * WIDTH {
+            // Far away, and on no sheet.
+            for (row, value) in self.point.iter_mut().zip([f32::MAX, 0.0, 0.0, 0.0, 0.0, 0.0]) {
+                row[k / WIDTH][k % WIDTH] = value;
+            }
+        }
+        let mut nearest_sq = Vec4::INFINITY;
+        for block in 0..self.blocks() {
+            let [x, y, z, a, b, c] = &self.point;
+            let [x, y, z, a, b, c] = [x, y, z, a, b, c].map(|row| Vec4::from_array(row[block]));
+            let (along_u, along_v, rise) = (dot(x, y, z, u), dot(x, y, z, v), dot(x, y, z, normal));
+            let lift = rise + (x * a + y * b + z * c);
+            let flat_sq = along_u * along_u + along_v * along_v;
+            let distance_sq = flat_sq + rise * rise;
+            nearest_sq = nearest_sq.min(distance_sq);
+            let stretch = Vec4::from_array((distance_sq / flat_sq).to_array().map(f32::sqrt));
+            let is_near: BVec4A = dot(a, b, c, normal).cmpgt(Vec4::ZERO)
+                & flat_sq.cmpge(distance_sq * MIN_FLAT)
+                & (lift * lift).cmple(distance_sq * (MAX_LIFT * MAX_LIFT))
+                & distance_sq.cmpgt(Vec4::splat(twin_sq));
+            let kept = |value: Vec4, other: Vec4| Vec4::select(is_near, value, other).to_array();
+            self.flat[0][block] = kept(along_u * stretch, Vec4::ZERO);
+            self.flat[1][block] = kept(along_v * stretch, Vec4::ZERO);
+            self.distance_sq[block] = kept(distance_sq, Vec4::INFINITY);
+        }
+        self.nearest_sq = nearest_sq.min_element();
+    }
+
+    /// The point with a number below [`MOST`], by its place in the tree.
+    pub(super) fn index(&self, k: usize) -> u32 {
+        self.index[k]
+    }
+
+    /// Squared distance of a point from the centre.
+    pub(super) fn distance_sq(&self, k: usize) -> f32 {
+        self.distance_sq[k / WIDTH][k % WIDTH]
+    }
+
+    /// The nearest point of the sheet.
+    pub(super) fn nearest(&self) -> Option<usize> {
+        least(&self.distance_sq[..self.blocks()]).map(|(_, k)| k)
+    }
+
+    /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to its right where it is −1; and
+    /// the square of the diameter of the circle through both and the centre. None, and infinite, if there is none within half a
+    /// turn.
+    pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
+        let [u, v] = self.flat(from);
+        let mut cotangents = [[0.0; WIDTH]; BLOCKS];
+        let cotangents = &mut cotangents[..self.blocks()];
+        let rows = self.flat[0].iter().zip(&self.flat[1]).zip(&self.distance_sq);
+        for (cotangent, ((&x, &y), &distance_sq)) in cotangents.iter_mut().zip(rows) {
+            let [x, y, distance_sq] = [x, y, distance_sq].map(Vec4::from_array);
+            let cross = y * (side * u) - x * (side * v);
+            // Of the angle at the point over the chord from the centre to `from`: the circle's centre is half that many chords
+            // away from the chord.
+            let value = (distance_sq - (x * u + y * v)) / cross;
+            *cotangent = Vec4::select(cross.cmpgt(Vec4::ZERO), value, Vec4::INFINITY).to_array();
+        }
+        let found = least(cotangents);
+        let cotangent = found.map_or(f32::INFINITY, |(cotangent, _)| cotangent);
+        (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))
+    }
+
+    fn flat(&self, k: usize) -> [f32; 2] {
+        [self.flat[0][k / WIDTH][k % WIDTH], self.flat[1][k / WIDTH][k % WIDTH]]
+    }
+
+    /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than half a turn apart,
+    /// counter-clockwise.
+    pub(super) fn is_between(&self, a: usize, k: usize, b: usize) -> bool {
+        let cross = |[ax, ay]: [f32; 2], [bx, by]: [f32; 2]| ax * by - ay * bx;
+        let middle = self.flat(k);
+        cross(self.flat(a), middle) > 0.0 && cross(middle, self.flat(b)) > 0.0
+    }
+
+    /// Whether a point before `i` in the tree is nearer to the centre than √`twin_sq`, or there.
+    pub(super) fn has_earlier_twin(&self, i: u32, twin_sq: f32) -> bool {
+        if self.nearest_sq > twin_sq {
+            return false;
+        }
+        let [x, y, z, ..] = &self.point;
+        (0..self.count).any(|k| {
+            let (block, lane) = (k / WIDTH, k % WIDTH);
+            let offset = Vec3::new(x[block][lane], y[block][lane], z[block][lane]);
+            self.index[k] < i && offset.length_squared() <= twin_sq
+        })
+    }
+}
+
+/// The least number and its place, the first one if there are several; none if none is finite.
+fn least(values: &[[f32; WIDTH]]) -> Option<(f32, usize)> {
+    let values = || values.iter().map(|&four| Vec4::from_array(four));
+    let least = values().fold(Vec4::INFINITY, Vec4::min).min_element();
+    let is_least = |four: Vec4| four.cmpeq(Vec4::splat(least)).bitmask();
+    let first = values().position(|four| is_least(four) != 0).filter(|_| least < f32::INFINITY)?;
+    let lane = is_least(values().nth(first)?).trailing_zeros() as usize;
+    Some((least, WIDTH * first + lane))
+}

@@ -1,0 +1,185 @@
+//! Mesh files, read back. `cargo xtask test gltf` gives the GLB files that this writes to Khronos' validator.
+
+use glam::Vec3;
+use marching_particles::export::{MeshFormat, write_mesh};
+use marching_particles::field::gallery;
+use marching_particles::mesh::build::{Options, triangulate};
+use marching_particles::particles::Particles;
+use marching_particles::sampler::{Sampler, Settings};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
+    let surface = gallery::find(id).expect("a surface of the gallery");
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    let settings = Settings { radius_share, ..Settings::default() };
+    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
+    let particles = sampler.particles().clone();
+    let options = Options { bounds: Some(&surface.bounds), ..Options::default() };
+    let mesh = triangulate(&particles.position, &particles.normal, &options);
+    assert!(mesh.triangles.len() > 1000);
+    (particles, mesh.triangles)
+}
+
+fn written(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> Vec<u8> {
+    let mut out = Vec::new();
+    let valence = vec![6; particles.len()];
+    write_mesh(format, particles, &valence, triangles, &mut out).expect("writing to memory does not fail");
+    out
+}
+
+fn word(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes"))
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+fn vectors(bytes: &[u8]) -> Vec<Vec3> {
+    floats(bytes).chunks_exact(3).map(Vec3::from_slice).collect()
+}
+
+fn triples(bytes: &[u8]) -> Vec<[u32; 3]> {
+    bytes.chunks_exact(12).map(|b| [0, 4, 8].map(|at| word(b, at))).collect()
+}
+
+/// The document of a GLB file and its buffer.
+fn parts(bytes: &[u8]) -> (Value, &[u8]) {
+    assert_eq!(bytes[..4], *b"glTF");
+    assert_eq!((word(bytes, 4), word(bytes, 8) as usize), (2, bytes.len()));
+    let text = word(bytes, 12) as usize;
+    assert_eq!(bytes[16..20], *b"JSON");
+    let document = serde_json::from_slice(&bytes[20..20 + text]).expect("a document");
+    let rest = &bytes[20 + text..];
+    if rest.is_empty() {
+        return (document, rest);
+    }
+    assert_eq!(rest[4..8], *b"BIN\0");
+    assert_eq!(word(rest, 0) as usize, rest.len() - 8);
+    (document, &rest[8..])
+}
+
+/// The bytes of an accessor.
+fn column<'a>(document: &Value, buffer: &'a [u8], accessor: &Value) -> &'a [u8] {
+    let accessor = &document["accessors"][accessor.as_u64().expect("an accessor") as usize];
+    let view = &document["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
+    let [offset, length] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().expect(key) as usize);
+    &buffer[offset..offset + length]
+}
+
+#[test]
+fn glb_holds_triangles_normals_and_levels() {
+    for (id, radius_share) in [("ellipsoid", 0.015), ("schwarz-p", 0.008)] {
+        let (particles, triangles) = sampled(id, radius_share);
+        let bytes = written(MeshFormat::Glb, &particles, &triangles);
+        std::fs::write(file(&format!("mesh-{id}.glb")), &bytes).expect("the file can be written");
+        let (document, buffer) = parts(&bytes);
+        let primitive = &document["meshes"][0]["primitives"][0];
+        let attribute = |name: &str| column(&document, buffer, &primitive["attributes"][name]);
+        assert_eq!(vectors(attribute("POSITION")), particles.position);
+        assert_eq!(vectors(attribute("NORMAL")), particles.normal);
+        assert_eq!(triples(column(&document, buffer, &primitive["indices"])), triangles);
+        let levels: Vec<f32> = particles.level.iter().map(|&level| level as f32).collect();
+        assert_eq!(floats(attribute("_LEVEL")), levels);
+        // Twelve colours, one after the other from level to level.
+        let colours = attribute("COLOR_0");
+        let colour = |i: usize| &colours[4 * i..4 * i + 4];
+        let distinct: BTreeSet<&[u8]> = (0..particles.len()).map(colour).collect();
+        assert_eq!(distinct.len(), 12);
+        for i in 1..particles.len() {
+            let same = particles.level[i] % 12 == particles.level[i - 1] % 12;
+            assert_eq!(colour(i) == colour(i - 1), same, "{id}, particle {i}");
+        }
+    }
+}
+
+#[test]
+fn a_glb_without_triangles_is_an_empty_scene() {
+    let bytes = written(MeshFormat::Glb, &Particles::default(), &[]);
+    std::fs::write(file("mesh-empty.glb"), &bytes).expect("the file can be written");
+    let (document, buffer) = parts(&bytes);
+    assert_eq!(document["asset"]["version"], "2.0");
+    assert!(document.get("meshes").is_none() && buffer.is_empty());
+}
+
+#[test]
+fn obj_holds_vertices_normals_and_triangles() {
+    let (particles, triangles) = sampled("torus", 0.01);
+    let text = String::from_utf8(written(MeshFormat::Obj, &particles, &triangles)).expect("text");
+    let rows = |key: &str| {
+        let of_key = |line: &str| line.strip_prefix(&format!("{key} ")).map(str::to_owned);
+        text.lines().filter_map(of_key).collect::<Vec<String>>()
+    };
+    let vectors = |key: &str| -> Vec<Vec3> {
+        let numbers = |row: &String| -> Vec<f32> {
+            row.split(' ').map(|number| number.parse().expect("a number")).collect()
+        };
+        rows(key).iter().map(|row| Vec3::from_slice(&numbers(row))).collect()
+    };
+    assert_eq!(vectors("v"), particles.position);
+    assert_eq!(vectors("vn"), particles.normal);
+    let faces = rows("f");
+    assert_eq!(faces.len(), triangles.len());
+    for (face, triangle) in faces.iter().zip(&triangles) {
+        let corners = triangle.map(|v| format!("{0}//{0}", v + 1));
+        assert_eq!(*face, corners.join(" "));
+    }
+}
+
+#[test]
+fn stl_holds_triangles_that_face_outward() {
+    let (particles, triangles) = sampled("torus", 0.01);
+    let bytes = written(MeshFormat::Stl, &particles, &triangles);
+    assert!(!bytes.starts_with(b"solid"));
+    assert_eq!(word(&bytes, 80) as usize, triangles.len());
+    assert_eq!(bytes.len(), 84 + 50 * triangles.len());
+    let mut volume = 0.0;
+    for (record, triangle) in bytes[84..].chunks_exact(50).zip(&triangles) {
+        let read = vectors(&record[..48]);
+        let corners = triangle.map(|v| particles.position[v as usize]);
+        assert_eq!(read[1..], corners);
+        assert!((read[0].length() - 1.0).abs() < 1e-5);
+        assert!(read[0].dot(particles.normal[triangle[0] as usize]) > 0.5);
+        volume += f64::from(corners[0].dot(corners[1].cross(corners[2]))) / 6.0;
+    }
+    // 2 π² R r², a little less for the chords.
+    let exact = 2.0 * core::f64::consts::PI.powi(2) * 0.16;
+    assert!((volume / exact - 0.99).abs() < 0.01, "{volume} of {exact}");
+}
+
+#[test]
+fn ply_holds_the_columns_and_the_triangles() {
+    let (particles, triangles) = sampled("torus", 0.01);
+    let bytes = written(MeshFormat::Ply, &particles, &triangles);
+    let end = bytes.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+    let header = std::str::from_utf8(&bytes[..end]).expect("a text header");
+    let (vertex, face) = header.split_once("element face ").expect("faces");
+    assert!(vertex.contains(&format!("element vertex {}\n", particles.len())));
+    assert!(vertex.contains("property uint level\n"));
+    let face = face.strip_suffix("end_header\n").expect("the last line");
+    assert_eq!(face, format!("{}\nproperty list uchar uint vertex_indices\n", triangles.len()));
+    let faces = &bytes[bytes.len() - 13 * triangles.len()..];
+    for (record, triangle) in faces.chunks_exact(13).zip(&triangles) {
+        assert_eq!(record[0], 3);
+        assert_eq!(triples(&record[1..]), [*triangle]);
+    }
+    let record = (bytes.len() - faces.len() - end) / particles.len();
+    for (k, row) in bytes[end..bytes.len() - faces.len()].chunks_exact(record).enumerate() {
+        assert_eq!(vectors(&row[..24]), [particles.position[k], particles.normal[k]]);
+    }
+}
+
+#[test]
+fn extension_names_the_format_in_either_case() {
+    assert_eq!(MeshFormat::of_extension("GLB"), Some(MeshFormat::Glb));
+    assert_eq!(MeshFormat::of_extension("stl"), Some(MeshFormat::Stl));
+    assert_eq!(MeshFormat::of_extension("csv"), None);
+}
+
+fn file(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+}
