@@ -13,6 +13,10 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
+/// One material, which lets the colours of the vertices through.
+const MATERIALS: &str =
+    r#""materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.7},"doubleSided":true}]"#;
+
 /// Generation levels with a colour of their own; then the colours begin again, as on the page.
 const CYCLE: u32 = 12;
 
@@ -110,16 +114,17 @@ fn document(columns: &[Column], length: usize) -> String {
     let indices = columns.len() - 1;
     // A quarter turn about x: z becomes y.
     let half = core::f32::consts::FRAC_1_SQRT_2;
-    format!(r#"{{{asset},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]}}],"#)
-        + &format!(
-            r#""meshes":[{{"primitives":[{{"attributes":{{{attributes}}},"indices":{indices},"material":0}}]}}],"#
-        )
-        + &format!(
-            r#""materials":[{{"pbrMetallicRoughness":{{"metallicFactor":0,"roughnessFactor":0.7}},"doubleSided":true}}],"#
-        )
-        + &format!(
-            r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{views}],"accessors":[{accessors}]}}"#
-        )
+    let members = [
+        asset.to_owned(),
+        r#""scenes":[{"nodes":[0]}]"#.to_owned(),
+        format!(r#""nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]}}]"#),
+        format!(
+            r#""meshes":[{{"primitives":[{{"attributes":{{{attributes}}},"indices":{indices},"material":0}}]}}]"#
+        ),
+        MATERIALS.to_owned(),
+        format!(r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{views}],"accessors":[{accessors}]"#),
+    ];
+    format!("{{{}}}", members.join(","))
 }
 
 /// Colour of a generation level, linear, with opacity: a rhombus in the a–b plane of OKLab at constant lightness, the page's light
