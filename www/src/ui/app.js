@@ -1,4 +1,4 @@
-/** Puts the interface together over an engine. */
+/** Mounts the interface on an engine. */
 import { computed, effect, signal } from '@preact/signals-core';
 import { byId, h, once } from './dom.js';
 import { explain } from './explain.js';
@@ -93,7 +93,7 @@ export function mountInterface(engine) {
   });
   effect(() => {
     void engine.theme.value;
-    // The browser's own frame takes the ground's colour, also where the theme is not the system's.
+    // The browser's frame gets the background colour, even if the theme differs from the system's.
     const { backgroundColor } = getComputedStyle(document.documentElement);
     for (const meta of document.querySelectorAll('meta[name="theme-color"]'))
       meta.setAttribute('content', backgroundColor);
@@ -131,7 +131,7 @@ export function mountInterface(engine) {
       ({ createTimeline }) => {
         timeline = createTimeline(byId('levels-body'), engine, told);
       },
-      // Without it the page does everything else.
+      // If the timeline fails to load, the rest of the page still works.
       () => {
         levels.hidden = true;
       },
@@ -139,7 +139,7 @@ export function mountInterface(engine) {
   });
 }
 
-/** Run or stop, always in reach on a phone. @param {Engine} engine */
+/** Creates the Run/Stop button that is always visible on a phone. @param {Engine} engine */
 function goButton(engine) {
   const active = computed(() => engine.busy.value || engine.loading.value !== null);
   const press = once(() => {

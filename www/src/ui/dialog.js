@@ -1,4 +1,4 @@
-/** A modal dialog with a title and a way out. */
+/** Creates modal dialogs with a title and a close button. */
 import { h, uniqueId } from './dom.js';
 import { icon } from './icons.js';
 
@@ -23,7 +23,7 @@ export function createDialog(title, ...content) {
     ),
     content,
   );
-  // A press on the backdrop closes it.
+  // A press on the backdrop closes the dialog.
   element.addEventListener('click', (event) => {
     if (event.target === element) element.close();
   });

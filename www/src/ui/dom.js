@@ -1,6 +1,6 @@
 /**
- * Building and binding elements. Text always becomes text nodes, styles are set through the CSS object model, so
- * nothing here needs more than the strict content security policy of the page.
+ * Creates and binds elements. Text becomes text nodes and styles are set through the CSS object model, as the page's
+ * strict content security policy requires.
  */
 import { effect } from '@preact/signals-core';
 
@@ -8,10 +8,10 @@ import { effect } from '@preact/signals-core';
 /** @typedef {{ [name: string]: any }} Props */
 
 /**
- * A new element.
+ * Creates an element.
  *
- * In `props`, `on` holds event listeners, `data` the data attributes, `prop` properties of the object; the rest are attributes:
- * `true` gives an empty one, `false`, `null` and `undefined` none.
+ * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All
+ * others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none.
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
@@ -33,7 +33,7 @@ export function h(tag, props, ...children) {
 }
 
 /**
- * Sets, or with `false`, `null` and `undefined` removes, an attribute.
+ * Sets an attribute, or removes it if the value is `false`, `null` or `undefined`.
  * @param {Element} element
  * @param {string} name
  * @param {unknown} value
@@ -55,7 +55,7 @@ function append(parent, children) {
 }
 
 /**
- * Replaces what `parent` holds.
+ * Replaces the children of `parent`.
  * @param {Element} parent
  * @param {...(Child | Child[])} children
  */
@@ -65,7 +65,7 @@ export function fill(parent, ...children) {
 }
 
 /**
- * Keeps the text of `element` equal to `read()`, and leaves the node alone while the text stays the same.
+ * Keeps the text of `element` equal to `read()`. The node is only changed when the text changes.
  * @param {Element} element
  * @param {() => string} read
  * @returns {() => void} ends the binding
@@ -77,17 +77,17 @@ export function bindText(element, read) {
   });
 }
 
-/** The one element with this id of the page's own markup. @param {string} id @returns {HTMLElement} */
+/** Returns the element with this id from the page's markup. @param {string} id @returns {HTMLElement} */
 export function byId(id) {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no element #${id}`);
   return element;
 }
 
-/** A second press so soon after the first is a double click, not a second wish. */
+/** Time in which a second press counts as part of a double click. */
 const DOUBLE_CLICK_MS = 500;
 
-/** Does `act` once for a double click. @param {() => void} act */
+/** Wraps `act` so that a double click calls it once. @param {() => void} act */
 export function once(act) {
   let last = -Infinity;
   return () => {
@@ -99,14 +99,14 @@ export function once(act) {
 }
 
 let last = 0;
-/** An id that no other element has. @param {string} stem */
+/** Returns an id that no other element has. @param {string} stem */
 export function uniqueId(stem) {
   last += 1;
   return `${stem}-${last}`;
 }
 
 /**
- * Collects what has to be ended when a piece of the page is replaced.
+ * Collects the cleanup functions of a part of the page, to be called when that part is replaced.
  * @returns {{ add(end: () => void): void, end(): void }}
  */
 export function createScope() {
@@ -121,7 +121,7 @@ export function createScope() {
   };
 }
 
-/** True on a keyboard-driven page: the last input was a key other than a modifier. */
+/** Whether the last input was a key other than a modifier. */
 let keyboard = false;
 addEventListener(
   'keydown',
@@ -139,5 +139,5 @@ addEventListener(
 );
 export const usesKeyboard = () => keyboard;
 
-/** Whether the reader asked for less motion. */
+/** Returns whether the user prefers reduced motion. */
 export const reducedMotion = () => matchMedia('(prefers-reduced-motion: reduce)').matches;

@@ -1,6 +1,6 @@
 /**
- * Explanations: one shared popover that says what a figure or a control means, on hover, on keyboard focus and on tap.
- * It can be dismissed with Escape and stays while the pointer is on it (WCAG 1.4.13).
+ * Shows explanations of figures and controls in one shared popover, on hover, on keyboard focus and on tap. Escape
+ * dismisses the popover, and it stays while the pointer is on it (WCAG 1.4.13).
  */
 import { fill, h, usesKeyboard } from './dom.js';
 import { clamp } from './scale.js';
@@ -15,7 +15,10 @@ const MARGIN_PX = 8;
 let popover = null;
 /** @type {Element | null} */
 let owner = null;
-/** The element that assistive technology reads the explanation with: the anchor, or the control inside it. @type {Element | null} */
+/**
+ * The element that the explanation describes for assistive technology: the anchor, or the control inside it.
+ * @type {Element | null}
+ */
 let described = null;
 let timer = 0;
 
@@ -55,7 +58,7 @@ function hide() {
   if (popover?.matches(':popover-open')) popover.hidePopover();
 }
 
-/** Where a popover stands if there is room. @typedef {'below' | 'above' | 'left'} Side */
+/** The preferred side of a popover, used if there is room. @typedef {'below' | 'above' | 'left'} Side */
 
 /** @param {Element} anchor @param {Explanation} explanation @param {Side} [side] */
 function show(anchor, explanation, side) {
@@ -77,7 +80,7 @@ function show(anchor, explanation, side) {
 }
 
 /**
- * Places a popover below its anchor, or above, or on the left of it, where that is asked for and fits.
+ * Places a popover below its anchor, or above or to the left of it if requested and possible.
  * @param {HTMLElement} element
  * @param {DOMRect} anchor
  * @param {Side} [side]
@@ -95,7 +98,7 @@ export function place(element, anchor, side = 'below') {
 }
 
 /**
- * Gives `target` an explanation.
+ * Attaches an explanation to `target`.
  * @param {Element} target hovered or focused
  * @param {() => Explanation | null} read
  * @param {{ tap?: boolean, side?: Side }} [options] with `tap`, a press toggles it (for elements that do nothing else)
@@ -113,7 +116,7 @@ export function explain(target, read, options = {}) {
     if (!options.tap) hide();
   });
   target.addEventListener('focusin', () => {
-    // Focus may come back from a menu that is closing, and no popover can be shown while another one is being hidden.
+    // Focus may return from a closing menu, and no popover can be shown while another one is being hidden.
     if (usesKeyboard()) later(open, 0);
   });
   target.addEventListener('focusout', hide);

@@ -1,12 +1,13 @@
-/** Numbers as the reader's language writes them, with thin spaces and a true minus sign. */
+/** Formats numbers in the user's locale, with thin spaces and a true minus sign. */
 
-/** U+2212, as wide as a digit, where Intl writes a hyphen. */
+/** U+2212, which is as wide as a digit. Intl writes a hyphen instead. */
 const MINUS = '\u2212';
 const THIN_NO_BREAK = '\u202f';
 export const MISSING = '\u2013';
 
 /**
- * Those that are language tags. A browser under the POSIX locale may give its name, `C` or `en-US@posix`, which Intl refuses.
+ * Returns the valid language tags. Under the POSIX locale a browser may report `C` or `en-US@posix`, which Intl
+ * rejects.
  * @param {readonly string[]} tags
  */
 export function validLocales(tags) {
@@ -24,7 +25,7 @@ let locale = typeof navigator === 'undefined' ? undefined : validLocales(navigat
 /** @type {Map<string, Intl.NumberFormat>} */
 const formats = new Map();
 
-/** For tests. @param {string | string[] | undefined} tag */
+/** Sets the locale in tests. @param {string | string[] | undefined} tag */
 export function setLocale(tag) {
   locale = tag;
   formats.clear();
@@ -50,16 +51,16 @@ function write(value, options) {
 /** @param {unknown} value @returns {value is number} */
 const isNumber = (value) => typeof value === 'number' && !Number.isNaN(value);
 
-/** A whole number with grouped digits. @param {unknown} value */
+/** Formats an integer with grouped digits. @param {unknown} value */
 export function formatCount(value) {
   return isNumber(value) ? write(value, { maximumFractionDigits: 0 }) : MISSING;
 }
 
-/** A sentence with its counts written so. @param {string} text */
+/** Formats the integers within a sentence. @param {string} text */
 export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
 
 /**
- * A number with exactly `digits` decimals; a value that rounds to nothing is written as a power of ten instead.
+ * Formats a number with exactly `digits` decimals. A value that would round to zero is written as a power of ten.
  * @param {unknown} value
  * @param {number} [digits]
  */
@@ -71,13 +72,13 @@ export function formatFixed(value, digits = 3) {
   return write(rounded === 0 ? 0 : value, { minimumFractionDigits: digits, maximumFractionDigits: digits });
 }
 
-/** As many decimals as a grid of width `step` needs. @param {unknown} value @param {number} step */
+/** Formats a number with as many decimals as `step` has. @param {unknown} value @param {number} step */
 export function formatStep(value, step) {
   if (!isNumber(value)) return MISSING;
   return write(value, { maximumFractionDigits: decimalsOf(step) });
 }
 
-/** `digits` significant digits. @param {unknown} value @param {number} [digits] */
+/** Formats a number with `digits` significant digits. @param {unknown} value @param {number} [digits] */
 export function formatSignificant(value, digits = 3) {
   if (!isNumber(value)) return MISSING;
   if (!Number.isFinite(value)) return value > 0 ? '∞' : `${MINUS}∞`;
@@ -99,19 +100,19 @@ const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({
   9: '⁹',
 });
 
-/** 3.1·10⁻⁶. @param {number} value */
+/** Formats a number as a power of ten, such as 3.1·10⁻⁶. @param {number} value */
 function formatPower(value) {
   const [mantissa, exponent] = value.toExponential(1).split('e');
   const power = String(Number(exponent)).replace(/./g, (sign) => SUPERSCRIPTS[sign] ?? sign);
   return `${write(Number(mantissa), { maximumFractionDigits: 1 })}·10${power}`;
 }
 
-/** A share as per cent. @param {unknown} value @param {number} [digits] */
+/** Formats a share as a percentage. @param {unknown} value @param {number} [digits] */
 export function formatShare(value, digits = 1) {
   return isNumber(value) ? write(value, { style: 'percent', maximumFractionDigits: digits }) : MISSING;
 }
 
-/** A time span: ms below one second, else s. @param {unknown} seconds */
+/** Formats a duration: in ms below one second, else in s. @param {unknown} seconds */
 export function formatSeconds(seconds) {
   if (!isNumber(seconds)) return MISSING;
   if (seconds < 0.0995) return `${write(seconds * 1000, { maximumFractionDigits: 1 })}${THIN_NO_BREAK}ms`;
@@ -119,10 +120,13 @@ export function formatSeconds(seconds) {
   return `${write(seconds, { minimumFractionDigits: 2, maximumFractionDigits: 2 })}${THIN_NO_BREAK}s`;
 }
 
-/** How long a run took without the measuring after it. @param {import('../engine/types.js').Seconds} seconds */
+/**
+ * Returns the sampling time of a run, without its measurement.
+ * @param {import('../engine/types.js').Seconds} seconds
+ */
 export const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + generation + relaxation;
 
-/** The decimals of a step such as 0.05 or 1e-4. @param {number} step */
+/** Returns the number of decimals of a step such as 0.05 or 1e-4. @param {number} step */
 export function decimalsOf(step) {
   if (!(step > 0) || !Number.isFinite(step)) return 6;
   for (let digits = 0; digits < 12; digits += 1) {
@@ -132,7 +136,7 @@ export function decimalsOf(step) {
 }
 
 /**
- * '12 particles', '1 particle'.
+ * Returns a count with its noun, such as '12 particles' or '1 particle'.
  * @param {number} count
  * @param {string} one
  * @param {string} [many]

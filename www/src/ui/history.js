@@ -1,6 +1,6 @@
 /**
- * What can be undone: surface, formula, parameters, clip box and settings, the last hundred of them. Typing and dragging count as
- * one change for as long as they go on. The browser's own history is left alone: Back leaves the page, as it does everywhere.
+ * Records the undo history: the last hundred changes of surface, formula, parameters, clip box and settings. Continuous
+ * typing or dragging counts as one change. The browser's history is not used, so Back leaves the page as usual.
  */
 import { effect, signal } from '@preact/signals-core';
 
@@ -9,7 +9,7 @@ import { effect, signal } from '@preact/signals-core';
 /** @typedef {import('../engine/types.js').Shape} Shape */
 
 export const MOST_ENTRIES = 100;
-/** Changes of the same thing that follow one another faster than this are one. */
+/** Largest pause between changes of the same value that are recorded as one. */
 const PAUSE_MS = 800;
 
 /** @param {State} state @returns {Shape} */
@@ -23,7 +23,7 @@ export const shapeOf = ({ surface, formula, parameters, declared, bounds, settin
 });
 
 /**
- * The one thing in which two states differ, such as `formula` or `settings.count`; null where there are several.
+ * Returns the only value in which two states differ, such as `formula` or `settings.count`; null if several differ.
  * @param {Shape} before
  * @param {Shape} after
  */
@@ -41,7 +41,7 @@ export function difference(before, after) {
   return found.length === 1 ? found[0] : null;
 }
 
-/** The entries, and where among them the page is. Pure. */
+/** The undo entries and the present position among them. */
 export class History {
   /** @param {number} [most] */
   constructor(most = MOST_ENTRIES) {
@@ -49,7 +49,10 @@ export class History {
     /** @type {Shape[]} */
     this.entries = [];
     this.at = -1;
-    /** What the newest entry changed, while more of the same may follow. @type {string | null} */
+    /**
+     * Name of the value that the newest entry changed, while further changes of it are merged.
+     * @type {string | null}
+     */
     this.open = null;
     this.lastMs = 0;
   }
@@ -65,7 +68,7 @@ export class History {
   /**
    * @param {Shape} shape
    * @param {number} nowMs
-   * @param {boolean} [faulty] the entry before holds a formula with an error: nothing to come back to
+   * @param {boolean} [faulty] whether the previous entry has an invalid formula, which is not worth restoring
    */
   record(shape, nowMs, faulty = false) {
     const present = this.entries[this.at];
@@ -82,7 +85,7 @@ export class History {
     this.at = this.entries.length - 1;
   }
 
-  /** @param {-1 | 1} step @returns {Shape | null} what is to be restored */
+  /** @param {-1 | 1} step @returns {Shape | null} the entry to restore */
   move(step) {
     const entry = this.entries[this.at + step];
     if (!entry) return null;
@@ -92,7 +95,7 @@ export class History {
   }
 }
 
-/** Records what the engine's state holds. @param {Engine} engine */
+/** Records the changes of the engine's state. @param {Engine} engine */
 export function createHistory(engine) {
   const history = new History();
   const canUndo = signal(false);
@@ -103,7 +106,7 @@ export function createHistory(engine) {
   };
   effect(() => {
     const state = engine.state.value;
-    // Before the core has arrived there is nothing to come back to.
+    // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
     history.record(shapeOf(state), performance.now(), engine.fieldError.peek() !== null);
     tell();

@@ -1,4 +1,4 @@
-/** The icons: strokes on a 16 by 16 grid. */
+/** The icons, as strokes on a 16 × 16 grid. */
 
 const PATHS = /** @type {const} */ ({
   plus: 'M8 3.500v9M3.500 8h9',
@@ -27,7 +27,7 @@ const PATHS = /** @type {const} */ ({
 /** @typedef {keyof typeof PATHS} IconName */
 
 /**
- * A decorative icon; whatever holds it carries the name.
+ * Creates a decorative icon. The element that contains it carries the accessible name.
  * @param {IconName} name
  */
 export const icon = (name) => drawIcon(PATHS[name]);

@@ -1,11 +1,13 @@
-/** Folding, hiding, tabs of the compact layout, and the part of the window that stays free for the picture. */
+/**
+ * Manages the layout: folding and hiding of panels, the tabs of the compact layout, and the free area for the picture.
+ */
 import { h } from './dom.js';
 import { explain } from './explain.js';
 import { icon } from './icons.js';
 
-/** Below this width the report starts folded, so that the picture has room. */
+/** Width below which the report is initially folded, to leave room for the picture. */
 const NARROW = '(max-width: 67.45em)';
-/** A phone held upright: panels and tabs below the picture. */
+/** Width of a phone in portrait orientation, with panels and tabs below the picture. */
 const COMPACT = '(max-width: 44.95em)';
 
 /** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
@@ -66,7 +68,7 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   const compact = matchMedia(COMPACT);
   const measure = () => {
     const { left, top, right, bottom } = view.getBoundingClientRect();
-    // On a phone tools and legend would lie over the surface: they stand beside it and above it.
+    // On a phone the tools and the legend would cover the surface, so their areas are not free.
     const side = (/** @type {string} */ part) =>
       (compact.matches && view.querySelector(part)) || { clientWidth: 0, clientHeight: 0 };
     inset({
@@ -82,7 +84,7 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   measure();
 
   return {
-    /** Makes room for a part of the view, however large it is. @param {HTMLElement} part */
+    /** Updates the free area whenever a part of the view changes its size. @param {HTMLElement} part */
     follow: (part) => sizes.observe(part),
     toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
   };

@@ -1,4 +1,4 @@
-/** The formula as MathML elements, from the tree that the core gives. */
+/** Builds MathML elements from the core's expression tree. */
 
 /** @typedef {import('../engine/types.js').MathNode} MathNode */
 
@@ -15,12 +15,12 @@ function element(tag, attributes, children) {
 /** @param {MathNode} node @returns {Element} */
 const build = (node) => element(node.tag, {}, 'text' in node ? [node.text] : node.children.map(build));
 
-/** The formula as one element, set as a display. @param {MathNode} node */
+/** Returns the formula as one display element. @param {MathNode} node */
 export const mathElement = (node) => element('math', { display: 'block' }, [build(node)]);
 
-/** Where a long formula may go on in the next line: before these. */
+/** Operators before which a long formula may break into the next line. */
 const BREAKS = new Set(['=', '+', '−', '\u2062']);
-/** Invisible multiplication: breaks, but shows nothing. */
+/** Invisible multiplication. A line may break there, but nothing is shown. */
 const INVISIBLE = '\u2062';
 
 /** @param {MathNode} node */
@@ -30,7 +30,7 @@ const operatorOf = (node) => (node.tag === 'mo' ? node.text : null);
 const isBreak = (node) => BREAKS.has(operatorOf(node) ?? '');
 
 /**
- * The formula in pieces that may stand in different lines: sums and products outside brackets are taken apart.
+ * Splits a formula into parts that may be on different lines: at the operators of sums and products outside brackets.
  * @param {MathNode} node
  * @returns {MathNode[][]}
  */
@@ -51,17 +51,17 @@ export function piecesOfMath(node) {
 }
 
 /**
- * A row that is not in brackets.
+ * Returns whether a node is a row without brackets.
  * @param {MathNode} node
  * @returns {node is Extract<MathNode, {children: unknown}>}
  */
 const isOpen = (node) => node.tag === 'mrow' && (operatorOf(node.children[0]) === null || isBreak(node.children[0]));
 
-/** The formula as several elements, between which a line may end. @param {MathNode} node */
+/** Returns the formula as several elements, between which a line may break. @param {MathNode} node */
 export const mathPieces = (node) =>
   piecesOfMath(node).map((piece) => {
     const children = piece.map(build);
-    // At the head of a piece an operator would be taken for a sign and lose its spaces.
+    // At the start of a part, an operator would be treated as a sign and lose its spaces.
     if (isBreak(piece[0])) children[0].setAttribute('form', 'infix');
     return element('math', { displaystyle: 'true' }, [element('mrow', {}, children)]);
   });

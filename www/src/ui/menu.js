@@ -1,4 +1,4 @@
-/** A button that opens a small menu in the top layer. */
+/** Attaches a menu in the top layer to a button. */
 import { h, uniqueId } from './dom.js';
 import { place } from './explain.js';
 

@@ -1,4 +1,4 @@
-/** Between a slider's place (0 to 1) and its value, on linear and logarithmic scales. */
+/** Converts between the position of a slider (0 to 1) and its value, on linear and logarithmic scales. */
 import { decimalsOf } from './format.js';
 
 /**
@@ -13,10 +13,10 @@ import { decimalsOf } from './format.js';
 /** @param {number} value @param {number} lo @param {number} hi */
 export const clamp = (value, lo, hi) => Math.min(Math.max(value, lo), hi);
 
-/** Whether the logarithm is defined on the whole range. @param {Scale} scale */
+/** Returns whether a scale is logarithmic and its logarithm is defined on the whole range. @param {Scale} scale */
 const isLog = (scale) => scale.scale === 'log' && scale.min > 0 && scale.max > scale.min;
 
-/** Place of `value`, 0 to 1. @param {Scale} scale @param {number} value */
+/** Returns the position of `value`, 0 to 1. @param {Scale} scale @param {number} value */
 export function toPlace(scale, value) {
   const { min, max } = scale;
   if (!(max > min) || Number.isNaN(value)) return 0;
@@ -25,7 +25,7 @@ export function toPlace(scale, value) {
 }
 
 /**
- * Value at a place, on the grid. `fineness` divides the grid (10 under shift).
+ * Returns the grid value at a position. `fineness` divides the grid (10 with Shift).
  * @param {Scale} scale
  * @param {number} place
  * @param {number} [fineness]
@@ -37,12 +37,12 @@ export function toValue(scale, place, fineness = 1) {
   return snap(scale, value, fineness);
 }
 
-/** Significant digits that a logarithmic scale keeps. */
+/** Significant digits of values on a logarithmic scale. */
 const LOG_DIGITS = 3;
 
 /**
- * The nearest grid value within the range: multiples of the step, or on a logarithmic scale three significant digits.
- * `fineness` divides the grid; whole numbers stay whole.
+ * Returns the nearest grid value within the range: a multiple of the step, or three significant digits on a logarithmic
+ * scale. `fineness` divides the grid; integers stay integers.
  * @param {Scale} scale
  * @param {number} value
  * @param {number} [fineness]
@@ -53,12 +53,12 @@ export function snap(scale, value, fineness = 1) {
   if (isLog(scale)) step = value > 0 ? 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS + 1) / fineness : 0;
   if (integer) step = Math.max(1, Math.round(step));
   if (!(step > 0)) return clamp(value, min, max);
-  // The grid does not start at `min`: 0.05 to 3 by 0.1 should still give 0.1, 0.2 …
+  // The grid starts at 0, not at `min`: 0.05 to 3 in steps of 0.1 gives 0.1, 0.2 …
   return clamp(Number((Math.round(value / step) * step).toFixed(decimalsOf(step))), min, max);
 }
 
 /**
- * The value a number of key presses away.
+ * Returns the value after a number of key presses.
  * @param {Scale} scale
  * @param {number} value
  * @param {number} presses signed; 10 for a page
@@ -69,7 +69,7 @@ export function nudge(scale, value, presses, fine) {
   if (isLog(scale)) {
     const moved = snap(scale, value * (1 + scale.step / fineness) ** presses, 10);
     if (moved !== value) return moved;
-    // Too coarse a grid for so small a factor: one unit of the grid instead.
+    // If the grid is coarser than the factor, the value moves by one grid unit.
     return snap(
       scale,
       value + Math.sign(presses) * (scale.integer ? 1 : 10 ** (Math.floor(Math.log10(value)) - LOG_DIGITS)),
@@ -80,11 +80,11 @@ export function nudge(scale, value, presses, fine) {
   return snap(scale, value + presses * step, fineness);
 }
 
-/** Beyond so many places a slider cannot be aimed: seeds get a number box alone. */
+/** Largest number of values that a slider can select. Random seeds have more and get only a number box. */
 const SLIDER_PLACES = 20000;
 
 /**
- * Whether a slider helps to choose this number.
+ * Returns whether a slider is useful for a setting.
  * @param {{ kind: string, scale: string, min: number, max: number, step: number }} info
  */
 export function wantsSlider(info) {

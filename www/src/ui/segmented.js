@@ -1,9 +1,9 @@
-/** Two or three values side by side, chosen like radio buttons: which they are. */
+/** Creates a segmented control: two or three radio buttons side by side. */
 import { h, uniqueId } from './dom.js';
 
 /**
  * @param {object} options
- * @param {string} options.name what assistive technology calls it
+ * @param {string} options.name accessible name
  * @param {{ value: string, label: string }[]} options.choices
  * @param {(value: string) => void} options.change
  */

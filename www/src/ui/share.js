@@ -1,9 +1,9 @@
-/** Taking things away: a link, a picture, a file. */
+/** Copies a link, saves a picture or exports a file. */
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
 /** @typedef {import('./toasts.js').Toast} Toast */
 
-/** Width of a saved picture in pixels; its height follows the window. */
+/** Width of a saved picture in pixels. Its height has the proportion of the window. */
 const PICTURE_WIDTH_PX = 2400;
 
 /** @param {Engine} engine @param {Toast} toast */

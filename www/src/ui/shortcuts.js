@@ -1,11 +1,15 @@
-/** Single-key shortcuts, the sheet that lists them, and the switch that turns them off (WCAG 2.1.4). */
+/** Handles single-key shortcuts, the dialog that lists them, and the switch that disables them (WCAG 2.1.4). */
 
 import { createDialog } from './dialog.js';
 import { h } from './dom.js';
 
-/** `ctrl` asks for Control or Command, `shift` then for Shift as well or for none. @typedef {{ keys: string[], shown: string, label: string, act: () => void, ctrl?: boolean, shift?: boolean }} Shortcut */
+/**
+ * `ctrl` requires Control or Command; `shift` then requires Shift or its absence.
+ * @typedef {{ keys: string[], shown: string, label: string, act: () => void, ctrl?: boolean, shift?: boolean }}
+ *   Shortcut
+ */
 
-/** The key that commands go with. */
+/** Name of the command key on this platform. */
 export const COMMAND_KEY = /Mac|iPhone|iPad/.test(navigator.platform) ? '⌘' : 'Ctrl';
 
 const STORED = 'marching-particles.shortcuts';
@@ -82,6 +86,6 @@ function write(enabled) {
   try {
     localStorage.setItem(STORED, enabled ? 'on' : 'off');
   } catch {
-    // Without storage the choice lasts as long as the page.
+    // Without storage the choice is lost when the page closes.
   }
 }

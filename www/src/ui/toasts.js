@@ -1,4 +1,4 @@
-/** Notices: short lines that come, say what happened, and leave; those that need an answer stay. */
+/** Shows notices as short lines. They disappear after a while, unless they need an answer. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from './dom.js';
 import { icon } from './icons.js';
@@ -11,7 +11,7 @@ const STAY_MS = 6000;
 /**
  * @param {HTMLElement} host
  * @param {import('../engine/types.js').Engine} engine
- * @param {(notice: Notice) => boolean} isTold whether another place of the page already says it
+ * @param {(notice: Notice) => boolean} isTold whether another part of the page already shows it
  * @returns {Toast}
  */
 export function mountToasts(host, engine, isTold) {

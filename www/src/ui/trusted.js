@@ -1,6 +1,6 @@
 /**
- * The only trusted type that the page makes: addresses of its own scripts, for the workers. Markup is never made from
- * text, so nothing else may pass.
+ * Defines the page's only trusted type: URLs of its own scripts, for the workers. The page never creates markup from
+ * text, so everything else is rejected.
  */
 
 /** @typedef {{ createPolicy(name: string, rules: object): unknown }} Factory */

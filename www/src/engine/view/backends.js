@@ -1,5 +1,6 @@
 /**
- * The ways to draw, best first. Each gets a canvas of its own: a canvas that once had one kind of context gives no other.
+ * Opens the graphics back ends, best first. Each gets a new canvas, because a canvas keeps the kind of its first
+ * context.
  *
  * @module
  */
@@ -17,13 +18,13 @@
 /** @type {readonly BackendKind[]} */
 export const BACKENDS = ['webgpu', 'webgl2', 'canvas2d'];
 
-/** An adapter that has not answered by then never will. */
+/** Time after which a request for an adapter counts as failed. */
 const ADAPTER_MS = 5000;
 
 /** @template T @param {Promise<T>} promise @param {number} ms @returns {Promise<T | null>} */
 const within = (promise, ms) => Promise.race([promise, new Promise((resolve) => setTimeout(() => resolve(null), ms))]);
 
-/** Whether it is worth fetching the bundle of a back end at all. @param {BackendKind} kind */
+/** Returns whether the browser supports a back end, so that its bundle is worth fetching. @param {BackendKind} kind */
 async function available(kind) {
   if (kind === 'canvas2d') return true;
   if (kind === 'webgpu') {
@@ -36,7 +37,7 @@ async function available(kind) {
     }
   }
   const probe = document.createElement('canvas').getContext('webgl2');
-  // Browsers keep few contexts: the probe's is given back at once.
+  // Browsers limit the number of contexts, so the probe releases its own at once.
   probe?.getExtension('WEBGL_lose_context')?.loseContext();
   return probe !== null;
 }
@@ -46,12 +47,13 @@ const bundle = (kind) =>
   kind === 'webgpu' ? import('../../wasm/render-webgpu/render.js') : import('../../wasm/render-webgl/render.js');
 
 /**
- * Makes a device of this kind on a new canvas in `host`.
+ * Opens a device of this kind on a new canvas in `host`.
  * @param {BackendKind} kind
  * @param {HTMLElement} host
- * @param {{onLost: (reason: string, message: string) => void, onError: (message: string) => void}} events  of this device only
+ * @param {{onLost: (reason: string, message: string) => void, onError: (message: string) => void}} events  callbacks of
+ *   this device only
  * @returns {Promise<Device>}
- * @throws when the browser does not have it, or its bundle does not start
+ * @throws if the browser lacks the back end or its bundle fails to start
  */
 export async function openDevice(kind, host, events) {
   if (!(await available(kind))) throw new Error(`${kind} is not available`);
@@ -67,8 +69,8 @@ export async function openDevice(kind, host, events) {
   canvas.setAttribute('aria-hidden', 'true');
   let closed = false;
   const lost = (/** @type {string} */ reason, /** @type {string} */ message) => {
-    // Loss that we caused ourselves needs no mending.
-    // The renderer may be in the middle of a call: it is left to finish that first.
+    // A loss that the page caused itself is not reported. The report is deferred, because the renderer may be in the
+    // middle of a call.
     queueMicrotask(() => {
       if (!closed && reason !== 'destroyed') events.onLost(reason, message);
     });
@@ -99,7 +101,7 @@ export async function openDevice(kind, host, events) {
           renderer.destroy();
           renderer.free();
         } catch {
-          // A trapped instance cannot be tidied up; the canvas goes with everything on it.
+          // A trapped instance cannot be freed. Removing the canvas releases its resources.
         }
         canvas.remove();
       },

@@ -1,7 +1,9 @@
 /**
- * An orbit camera: the eye on a sphere around a target, z up. Pure arithmetic; the controls and the viewer own the clock.
+ * An orbit camera: the eye is on a sphere around a target, with z up. The functions are pure; the caller passes the
+ * time step.
  *
- * A rotation eases out after the hand lets go and a fit glides to its place; with `calm` (reduced motion) both are instant.
+ * A rotation slows down gradually after its release, and a fit is animated. With `calm` (reduced motion) both are
+ * instant.
  *
  * @module
  */
@@ -17,13 +19,13 @@
  * }} View
  */
 
-/** Angle of view across the shorter side of the free part of the picture: a quiet lens, little distortion. */
+/** Angle of view across the shorter side of the free part of the picture. A narrow angle keeps the distortion small. */
 export const FIELD_OF_VIEW_RAD = (30 * Math.PI) / 180;
-/** Just short of the poles, where the up direction would turn over. */
+/** Largest pitch. At the poles the up direction would flip. */
 export const PITCH_LIMIT_RAD = (89 * Math.PI) / 180;
-/** Time in which a thrown rotation loses 63 % of its speed, and a fit covers 63 % of its way. */
+/** Time constant in which a released rotation loses 63 % of its speed and a fit covers 63 % of its distance. */
 const EASE_S = 0.11;
-/** Speeds below this are rest: 0.02 pixels a frame at 1,000 px. */
+/** Speed below which the rotation stops: 0.02 pixels per frame at 1,000 px. */
 const REST_RAD_PER_S = 0.002;
 
 /** @param {number} v @param {number} low @param {number} high */
@@ -33,7 +35,7 @@ const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
 export const homeCamera = () => ({ target: [0, 0, 0], distance: 5, yaw: 0.62, pitch: 0.42, fit: true });
 
 /**
- * The axes of the eye: right, up, forward, all of length 1.
+ * Returns the unit axes of the eye: right, up, forward.
  * @param {{yaw: number, pitch: number}} camera
  * @returns {{right: Vec3, up: Vec3, forward: Vec3}}
  */
@@ -43,12 +45,13 @@ export function axes({ yaw, pitch }) {
 }
 
 /**
- * What the renderers and the picker need of a camera.
+ * Returns the matrices and vectors that the renderers and the picker need.
  * @param {CameraState} camera
  * @param {number} widthPx
  * @param {number} heightPx
- * @param {{centre: Vec3, radius: number}} scene  a ball around everything drawn: it places the near and far planes
- * @param {Insets} [insets]  the target is drawn in the middle of what they leave free
+ * @param {{centre: Vec3, radius: number}} scene  a ball around everything drawn, which determines the near and far
+ *   planes
+ * @param {Insets} [insets]  covered margins; the target is drawn in the middle of the free part
  * @returns {View}
  */
 export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, right: 0, top: 0, bottom: 0 }) {
@@ -68,7 +71,8 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
   /** @type {Vec3} */
   const eye = [target[0] - forward[0] * distance, target[1] - forward[1] * distance, target[2] - forward[2] * distance];
   const depth = dot(forward, [scene.centre[0] - eye[0], scene.centre[1] - eye[1], scene.centre[2] - eye[2]]);
-  // Near is kept above a thousandth of far: below that a 24-bit depth buffer no longer tells neighbouring discs apart.
+  // The near plane is at least a thousandth of the far plane. Below that, a 24-bit depth buffer cannot separate
+  // neighbouring discs.
   const far = Math.max(depth + scene.radius * 1.05, distance * 0.02, 1e-6);
   const near = Math.max(depth - scene.radius * 1.05, far * 1e-3);
   const a = far / (near - far);
@@ -95,10 +99,15 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
   return { clipFromWorld, eye, forward, right, up, tanX, tanY, shiftX, shiftY, worldPerPx, packed };
 }
 
-/** However much panels cover, this share of a side counts as free. */
+/** Smallest share of a side that counts as free, however much the panels cover. */
 const LEAST_FREE = 0.2;
 
-/** Two insets of one side, shrunk together until they leave enough free. @param {number} a @param {number} b @param {number} side */
+/**
+ * Scales down two opposite insets until they leave enough of the side free.
+ * @param {number} a
+ * @param {number} b
+ * @param {number} side
+ */
 function fair(a, b, side) {
   const [p, q] = [Math.max(0, a) || 0, Math.max(0, b) || 0];
   const scale = Math.min(1, ((1 - LEAST_FREE) * side) / (p + q || 1));
@@ -109,7 +118,7 @@ function fair(a, b, side) {
 export const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 
 /**
- * Direction (length 1) of the ray through a pixel.
+ * Returns the unit direction of the ray through a pixel.
  * @param {View} view @param {number} xPx @param {number} yPx @param {number} widthPx @param {number} heightPx
  * @returns {Vec3}
  */
@@ -122,12 +131,12 @@ export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
 }
 
 /**
- * The distance at which a ball of this radius fills the free part of the picture, with a margin of a twentieth.
+ * Returns the distance at which a ball of this radius fills the free part of the picture, with a margin of 5 %.
  * @param {number} radius
  */
 export const fitDistance = (radius) => (radius * 1.05) / Math.sin(FIELD_OF_VIEW_RAD / 2);
 
-/** The ball around a box. @param {Bounds} bounds @returns {{centre: Vec3, radius: number}} */
+/** Returns the ball around a box. @param {Bounds} bounds @returns {{centre: Vec3, radius: number}} */
 export function ballOf({ min, max }) {
   const half = [0, 1, 2].map((k) => (max[k] - min[k]) / 2);
   return {
@@ -136,7 +145,7 @@ export function ballOf({ min, max }) {
   };
 }
 
-/** The moving camera: a state, a speed, and perhaps a place to glide to. */
+/** A camera in motion: its state, its angular speed, and the destination of a fit, if any. */
 export class Camera {
   /** @param {CameraState} [state] */
   constructor(state = homeCamera()) {
@@ -145,9 +154,9 @@ export class Camera {
     this.pitchPerS = 0;
     /** @type {{target: Vec3, distance: number} | null} */
     this.glide = null;
-    /** Reduced motion: no easing, no glide. */
+    /** Whether motion is reduced: no easing and no animation. */
     this.calm = false;
-    /** Distances allowed, from the size of the scene. */
+    /** Limits of the distance, from the size of the scene. */
     this.nearLimit = 1e-3;
     this.farLimit = 1e4;
   }
@@ -170,18 +179,22 @@ export class Camera {
     this.farLimit = radius * 60;
   }
 
-  /** Turns by the given angles: a positive dx moves the near side to the right. @param {number} dxRad @param {number} dyRad */
+  /**
+   * Turns the camera by two angles. A positive dx moves the near side of the surface to the right.
+   * @param {number} dxRad
+   * @param {number} dyRad
+   */
   orbit(dxRad, dyRad) {
     const { yaw, pitch } = this.state;
     this.state = {
       ...this.state,
-      // Kept within a turn, so that links stay short and floats exact.
+      // The yaw stays within a turn, so that links stay short and no precision is lost.
       yaw: (yaw - dxRad) % (2 * Math.PI),
       pitch: clamp(pitch + dyRad, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
     };
   }
 
-  /** The hand let go at this speed. @param {number} yawPerS @param {number} pitchPerS */
+  /** Continues a rotation at the speed of its release. @param {number} yawPerS @param {number} pitchPerS */
   fling(yawPerS, pitchPerS) {
     if (this.calm) return;
     this.yawPerS = clamp(yawPerS, -12, 12);
@@ -189,7 +202,7 @@ export class Camera {
   }
 
   /**
-   * Comes nearer by `factor` (> 1) and keeps the world point under the cursor where it is.
+   * Reduces the distance by `factor` (> 1) and keeps the world point under the cursor in place.
    * @param {number} factor
    * @param {{view: View, xPx: number, yPx: number, widthPx: number, heightPx: number} | null} [at]
    */
@@ -201,7 +214,7 @@ export class Camera {
     let moved = target;
     if (at) {
       const ray = rayThrough(at.view, at.xPx, at.yPx, at.widthPx, at.heightPx);
-      // Where the ray meets the plane through the target that faces the eye, relative to the target.
+      // The fixed point is the intersection of the ray with the plane through the target that faces the eye.
       const along = distance / dot(ray, at.view.forward);
       const share = 1 - next / distance;
       moved = /** @type {Vec3} */ (target.map((t, k) => t + share * (at.view.eye[k] + ray[k] * along - t)));
@@ -210,7 +223,7 @@ export class Camera {
     this.glide = null;
   }
 
-  /** Moves the target with the hand, in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
+  /** Moves the target by a drag in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
   pan(dxPx, dyPx, view) {
     const scale = view.worldPerPx * this.state.distance;
     this.state = {
@@ -223,7 +236,11 @@ export class Camera {
     this.glide = null;
   }
 
-  /** Glides (or jumps) to show the whole ball. @param {{centre: Vec3, radius: number}} ball @param {boolean} [jump] */
+  /**
+   * Moves the camera so that the whole ball is visible, with an animation unless `jump` is set.
+   * @param {{centre: Vec3, radius: number}} ball
+   * @param {boolean} [jump]
+   */
   fit(ball, jump = false) {
     this.limits(ball.radius);
     const goal = { target: ball.centre, distance: fitDistance(ball.radius) };
@@ -237,15 +254,15 @@ export class Camera {
   }
 
   /**
-   * Moves on by `dtS`.
+   * Advances the motion by `dtS`.
    * @param {number} dtS
-   * @returns {boolean} whether there is more to come
+   * @returns {boolean} whether the motion continues
    */
   step(dtS) {
     const keep = Math.exp(-dtS / EASE_S);
     let moving = false;
     if (this.yawPerS !== 0 || this.pitchPerS !== 0) {
-      // The exact way covered while the speed decays.
+      // The exact angle covered while the speed decays exponentially.
       const way = EASE_S * (1 - keep);
       this.orbit(this.yawPerS * way, this.pitchPerS * way);
       this.yawPerS *= keep;
@@ -263,7 +280,7 @@ export class Camera {
       const left =
         Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance +
         Math.abs(log - Math.log(distance));
-      // A thousandth of the distance is under a pixel.
+      // The motion ends at a thousandth of the distance, which is less than a pixel.
       if (left < 1e-3) {
         this.state = { ...state, target, distance };
         this.glide = null;

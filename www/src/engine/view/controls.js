@@ -1,6 +1,6 @@
 /**
- * Hands on the picture: mouse, pen, touch, trackpad and keys move the camera; hover and tap choose a particle. Only the canvas
- * keeps touches to itself; the rest of the page scrolls as it always does.
+ * Handles input on the picture: mouse, pen, touch, trackpad and keys move the camera; hover and tap select a particle.
+ * Only the canvas captures touches; the rest of the page scrolls as usual.
  *
  * @module
  */
@@ -8,26 +8,33 @@ import { Pointers, placeOn, zoomAt } from './pointers.js';
 
 /** @typedef {import('./pointers.js').Stage} Stage */
 
-/** Wheel units to the logarithm of the distance: a notch of 100 pixels is 14 %, a pinch unit about ten times as much. */
+/**
+ * Change in the logarithm of the distance per wheel pixel. A notch of 100 pixels is 14 %; a pinch unit counts about ten
+ * times.
+ */
 const WHEEL_LOG = 0.0013;
 const PINCH_LOG = 0.012;
-/** The most that one event of each kind counts for, in pixels. */
+/** Largest pixel count of one event of each kind. */
 const MOST_WHEEL_PX = 400;
 const MOST_PINCH_PX = 60;
 const KEY_TURN_RAD = Math.PI / 24;
 const KEY_ZOOM = 1.15;
 const KEY_PAN_PX = 40;
 
-/** Which way the arrow keys turn: to the right, and up. @type {Record<string, [number, number]>} */
+/** Turning directions of the arrow keys: right and up. @type {Record<string, [number, number]>} */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-/** Pixels of a wheel event, whatever unit it came in. @param {{deltaY: number, deltaMode: number}} event @param {number} pagePx */
+/**
+ * Returns the pixels of a wheel event, whatever its unit.
+ * @param {{deltaY: number, deltaMode: number}} event
+ * @param {number} pagePx
+ */
 export const wheelPixels = ({ deltaY, deltaMode }, pagePx) =>
   deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? pagePx : 1);
 
 /**
  * @param {Stage} stage
- * @returns {() => void} takes every listener off again
+ * @returns {() => void} removes all listeners
  */
 export function attachControls(stage) {
   const { host, moved } = stage;
@@ -51,12 +58,12 @@ export function attachControls(stage) {
   on('pointercancel', (event) => pointers.end(event, false));
   on('lostpointercapture', (event) => pointers.end(event, false));
   on('pointerleave', (event) => {
-    // A finger leaves whenever it is lifted: what it tapped stays chosen.
+    // A finger also leaves when it is lifted. The particle that it tapped stays selected.
     if (event.pointerType === 'touch') return;
     hover.cancel();
     stage.leave();
   });
-  // The right button pans; its menu would swallow the release.
+  // The right button pans. Its context menu would swallow the release event.
   on('contextmenu', (event) => event.preventDefault());
   on('wheel', (event) => {
     event.preventDefault();
@@ -75,7 +82,7 @@ export function attachControls(stage) {
   };
 }
 
-/** One look per frame at what is under the pointer, which may report a thousand times a second. @param {Stage} stage */
+/** Limits picking to once per frame, because a pointer may send a thousand events per second. @param {Stage} stage */
 function hoverOf({ point }) {
   let frame = 0;
   let last = { x: 0, y: 0 };
@@ -96,15 +103,15 @@ function hoverOf({ point }) {
   };
 }
 
-/** How much nearer a turn of the wheel brings the surface. @param {WheelEvent} event @param {number} pagePx */
+/** Returns the zoom factor of a wheel event. @param {WheelEvent} event @param {number} pagePx */
 function wheelZoom(event, pagePx) {
   const pixels = wheelPixels(event, pagePx);
   const within = (/** @type {number} */ most) => Math.min(most, Math.max(-most, pixels));
-  // A trackpad pinch arrives as a wheel with ctrl, in finer units.
+  // A trackpad pinch arrives as a wheel event with ctrl set, in finer units.
   return Math.exp(-(event.ctrlKey ? within(MOST_PINCH_PX) * PINCH_LOG : within(MOST_WHEEL_PX) * WHEEL_LOG));
 }
 
-/** @param {KeyboardEvent} event @param {Stage} stage @returns {boolean} whether the key means something here */
+/** @param {KeyboardEvent} event @param {Stage} stage @returns {boolean} whether the key is handled */
 function pressed(event, { camera, currentView, fit }) {
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
   camera.rest();

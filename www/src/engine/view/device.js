@@ -1,5 +1,6 @@
 /**
- * Keeps a device at hand: opens the best one, opens it again when it is lost, and goes to the next kind when that does not help.
+ * Keeps a graphics device open: opens the best one, reopens it after a loss, and falls back to the next kind after
+ * repeated losses.
  *
  * @module
  */
@@ -10,21 +11,22 @@ import { BACKENDS, openDevice } from './backends.js';
  * @typedef {import('./backends.js').BackendKind} BackendKind
  */
 
-/** Losses of one kind of device within this time are counted together. */
+/** Time window in which losses of one kind of device are counted. */
 const WINDOW_MS = 60_000;
-/** As many losses are mended with the same kind; the next one goes to the next kind. */
+/** Number of losses after which the same kind is reopened. One more loss leads to the next kind. */
 export const TRIES = 3;
-/** Waits before each try: a graphics process that restarts needs a moment. */
+/** Delay before each attempt, because a graphics process takes a moment to restart. */
 const WAIT_MS = [0, 300, 1000];
 
 export class DeviceKeeper {
   /**
    * @param {object} options
    * @param {HTMLElement} options.host
-   * @param {(device: Device) => void} options.onOpen  a device is there, empty; fill it
-   * @param {(kind: BackendKind, message: string) => void} options.onLost  it is gone, another is being opened
-   * @param {(kind: BackendKind, message: string) => void} options.onFallback  a kind of device was given up
-   * @param {BackendKind | null} [options.first]  where to begin
+   * @param {(device: Device) => void} options.onOpen  a new device, without particles, is open
+   * @param {(kind: BackendKind, message: string) => void} options.onLost  the device is lost and another is being
+   *   opened
+   * @param {(kind: BackendKind, message: string) => void} options.onFallback  a kind of device was abandoned
+   * @param {BackendKind | null} [options.first]  kind to try first
    * @param {typeof openDevice} [options.open]
    * @param {{now: () => number, wait: (ms: number) => Promise<void>}} [options.clock]
    */
@@ -41,15 +43,15 @@ export class DeviceKeeper {
     this.rank = first ? BACKENDS.indexOf(first) : 0;
     /** @type {Device | null} */
     this.device = null;
-    /** Goes up with every change of device, so that late answers are known as such. */
+    /** Counter of device changes, by which late answers are recognised. */
     this.epoch = 0;
     /** @type {number[]} */
     this.losses = [];
-    /** Devices opened so far. */
+    /** Number of devices opened so far. */
     this.opened = 0;
   }
 
-  /** Opens the first device from the present rank on that works. @returns {Promise<void>} */
+  /** Opens the first working device, starting from the present rank. @returns {Promise<void>} */
   async start() {
     this.epoch += 1;
     const { epoch } = this;
@@ -61,7 +63,7 @@ export class DeviceKeeper {
             if (this.epoch === epoch) this.lost(`${reason}: ${message}`);
           },
           onError: (message) => {
-            // The device refuses what it is told: asking again would change nothing.
+            // The device reports an error. Reopening the same kind would not help.
             if (this.epoch === epoch) this.giveUp(message);
           },
         });
@@ -108,7 +110,7 @@ export class DeviceKeeper {
     void this.clock.wait(wait).then(() => (this.epoch === epoch ? this.start() : undefined));
   }
 
-  /** This kind of device is of no use here. @param {string} message */
+  /** Abandons this kind of device and opens the next one. @param {string} message */
   giveUp(message) {
     const kind = BACKENDS[this.rank];
     this.close();

@@ -1,10 +1,11 @@
 /**
- * How far the picture is dimmed: gradually, while the surface on the page is not the one asked for.
+ * Computes how far the picture is dimmed. It is dimmed gradually while the surface on the page is not the requested
+ * one.
  *
  * @module
  */
 
-/** Time the picture takes to dim or come back. */
+/** Duration of dimming and of its reversal. */
 const DIM_S = 0.15;
 const DIM = 0.62;
 
@@ -15,12 +16,17 @@ export class Dimmer {
     this.startS = -Infinity;
   }
 
-  /** Whether the picture is dimmed, or about to be. */
+  /** Whether the picture is dimmed or dimming. */
   get on() {
     return this.to > 0;
   }
 
-  /** @param {boolean} on @param {number} nowS @param {boolean} calm  at once @returns {boolean} whether that is a change */
+  /**
+   * @param {boolean} on
+   * @param {number} nowS
+   * @param {boolean} calm  without a transition
+   * @returns {boolean} whether the state changed
+   */
   set(on, nowS, calm) {
     const to = on ? DIM : 0;
     if (to === this.to) return false;
@@ -30,7 +36,7 @@ export class Dimmer {
     return true;
   }
 
-  /** The share by which the picture is dimmed. @param {number} nowS @param {boolean} calm */
+  /** Returns the share by which the picture is dimmed. @param {number} nowS @param {boolean} calm */
   at(nowS, calm) {
     const t = calm ? 1 : Math.min(1, (nowS - this.startS) / DIM_S);
     return this.from + (this.to - this.from) * t;

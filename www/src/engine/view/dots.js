@@ -1,18 +1,21 @@
 /**
- * The points that a model interpolates, as dots on the picture.
+ * Draws the points that a model interpolates as dots on the picture.
  *
- * A dot is two discs that face the eye, ink on a casing, of a fixed size on the screen. They are written behind the particles
- * into the same buffer, so that every way of drawing has them without a line of its own; since they face the eye they are
- * written anew for every picture, which for the few hundred points of a model costs nothing.
+ * A dot is a pair of discs that face the eye, ink on a casing, of a fixed size on the screen. They follow the particles
+ * in the same buffer, so that no back end needs code for them. Because they face the eye, they are rewritten for every
+ * frame, which is cheap for the few hundred points of a model.
  *
  * @module
  */
 import { NO_LEVEL } from '../columns.js';
 
-/** Radius of the ink, and what the casing adds, in page pixels. */
+/** Radius of the ink, and width of the casing around it, in page pixels. */
 const INK_PX = 1.7;
 const CASING_PX = 0.9;
-/** Smaller discs, in pixels of the canvas, are drawn as soft points: the ink would be lost in its casing. */
+/**
+ * Smallest radius of the ink in canvas pixels. The renderers draw smaller discs as soft points, in which the ink would
+ * disappear.
+ */
 const LEAST_INK = 2.4;
 
 /**
@@ -20,8 +23,8 @@ const LEAST_INK = 2.4;
  * @param {import('./camera.js').View} view  made for page pixels
  * @param {object} options
  * @param {number} options.px  canvas pixels per page pixel
- * @param {number} options.size  the renderer draws discs at this share of their radius
- * @param {number} options.lift  how far a dot is moved towards the eye, out of the discs around it
+ * @param {number} options.size  disc scale of the renderer, which the radii compensate
+ * @param {number} options.lift  distance by which a dot is moved towards the eye, in front of the discs around it
  * @param {{ink: number, casing: number}} options.palette
  */
 export function dotsOf(points, view, { px, size, lift, palette }) {
@@ -42,7 +45,7 @@ export function dotsOf(points, view, { px, size, lift, palette }) {
       [2 * i + 1, inkPx, palette.ink],
     ]) {
       const radius = radiusPx * worldPerPx;
-      // The ink lies before its casing by more than the depth buffer's step.
+      // The ink is in front of its casing by more than the resolution of the depth buffer.
       const forth = Math.min(lift + (j & 1 ? radius : 0), 0.5 * distance) / distance;
       for (let k = 0; k < 3; k += 1) {
         positions[3 * j + k] = points[3 * i + k] + toEye[k] * forth;

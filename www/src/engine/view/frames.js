@@ -1,41 +1,41 @@
 /**
- * When to draw: on demand, at most once per frame of the browser. While nobody asks, no frame is drawn.
+ * Schedules frames: on demand, and at most one per frame of the browser.
  *
  * @module
  */
 
-/** A picture that the screen did not take is drawn again this much later, and so many times. */
+/** Delay before a frame that the screen did not accept is drawn again, and the largest number of such attempts. */
 const RETRY_MS = 60;
 const MOST_SKIPS = 20;
-/** After a pause the first step is one frame long: nothing jumps. */
+/** Largest time step. It prevents a jump in the first frame after a pause. */
 const LONGEST_STEP_S = 1 / 20;
 
-/** The clock of everything that moves in the picture. */
+/** Returns the time for all animations, in seconds. */
 export const nowS = () => performance.now() / 1000;
 
 /**
- * What became of a frame. `skipped`: the screen was not ready to take the picture, so it has not been seen; `none`: there was
- * nothing to draw with, or nothing to draw on.
+ * The outcome of a frame. `skipped`: the screen did not accept the picture; `none`: there was no device or no visible
+ * canvas.
  * @typedef {'drawn' | 'skipped' | 'none'} Outcome
  */
 
 export class FrameLoop {
-  /** @param {(nowS: number, dtS: number) => Outcome} draw  draws one frame; it may ask for the next */
+  /** @param {(nowS: number, dtS: number) => Outcome} draw  draws one frame and may request the next */
   constructor(draw) {
     this.draw = draw;
-    /** The frame asked for of the browser, 0 for none. */
+    /** Handle of the requested frame, 0 for none. */
     this.asked = 0;
     this.lastS = 0;
-    /** Frames that the screen took. */
+    /** Number of frames that the screen accepted. */
     this.drawn = 0;
-    /** Frames in a row that it did not take. */
+    /** Number of consecutive frames that the screen did not accept. */
     this.skipped = 0;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.retry = undefined;
-    /** Called when what they wait for is on screen. @type {(() => void)[]} */
+    /** Callbacks to run after the next frame. @type {(() => void)[]} */
     this.waiting = [];
     this.frame = this.frame.bind(this);
-    // A tab that comes back has lost its last picture on some systems.
+    // On some systems a tab loses its picture while it is hidden.
     this.onVisible = () => {
       if (document.hidden) this.flush();
       else this.ask();
@@ -43,7 +43,7 @@ export class FrameLoop {
     document.addEventListener('visibilitychange', this.onVisible);
   }
 
-  /** Asks for a frame. */
+  /** Requests a frame. */
   ask() {
     if (this.asked === 0 && !document.hidden) this.asked = requestAnimationFrame(this.frame);
   }

@@ -1,18 +1,18 @@
 /**
- * The way of particles from where they were drawn to where they now are: a relaxation step is seen as a motion and not as a
- * jump. Only for as many particles as can be told to the graphics card anew in every frame.
+ * Animates particles from the positions last drawn to the present ones, so that a relaxation step appears as a motion.
+ * It is limited to as many particles as can be uploaded to the graphics card in every frame.
  *
  * @module
  */
 
-/** Beyond this many particles the copies would cost more than the motion shows. */
+/** Largest number of animated particles. Beyond it the uploads take too long. */
 export const MOST_GLIDING = 20_000;
-/** Long enough to be seen, short enough that the next step of a running relaxation is not waited for. */
+/** Duration of the motion: long enough to be seen, and shorter than the usual interval between relaxation steps. */
 const GLIDE_S = 0.1;
 
 export class Glide {
   constructor() {
-    /** Positions as last drawn. */
+    /** Positions that were drawn last. */
     this.shown = new Float32Array(0);
     this.count = 0;
     this.from = new Float32Array(0);
@@ -20,13 +20,13 @@ export class Glide {
     this.active = false;
   }
 
-  /** Another surface: nothing glides from one to the next. */
+  /** Drops the positions, because another surface follows. */
   forget() {
     this.count = 0;
     this.active = false;
   }
 
-  /** Particles that are already drawn have moved. @param {number} nowS */
+  /** Starts a motion of particles that are already drawn. @param {number} nowS */
   begin(nowS) {
     this.from = this.shown.slice(0, 3 * this.count);
     this.startS = nowS;
@@ -34,8 +34,8 @@ export class Glide {
   }
 
   /**
-   * Where to draw the particles now.
-   * @param {Float32Array} positions  where they are going
+   * Returns the positions at which the particles are drawn at this time.
+   * @param {Float32Array} positions  the present positions
    * @param {number} count
    * @param {number} nowS
    */
@@ -49,7 +49,12 @@ export class Glide {
     return out;
   }
 
-  /** These positions were drawn. @param {Float32Array} positions @param {number} first @param {number} last */
+  /**
+   * Records the positions that were drawn.
+   * @param {Float32Array} positions
+   * @param {number} first
+   * @param {number} last
+   */
   note(positions, first, last) {
     if (last > MOST_GLIDING) {
       this.forget();

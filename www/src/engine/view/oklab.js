@@ -1,18 +1,18 @@
 /**
- * Colours in OKLab and OKLCH (Björn Ottosson, 2020) and back to sRGB bytes.
+ * Converts colours between OKLab, OKLCH (Björn Ottosson, 2020) and sRGB bytes.
  *
  * @module
  */
 
 /** @typedef {[number, number, number]} Triple */
 
-/** sRGB transfer function, 0 … 1 to linear. @param {number} v */
+/** Decodes sRGB in 0 … 1 to linear light. @param {number} v */
 export const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
-/** Its inverse. @param {number} v */
+/** Encodes linear light as sRGB in 0 … 1. @param {number} v */
 export const encoded = (v) => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
 
 /**
- * Linear sRGB of an OKLab colour; outside 0 … 1 where the colour has no place in sRGB.
+ * Returns the linear sRGB of an OKLab colour. Components are outside 0 … 1 if the colour is outside the sRGB gamut.
  * @param {Triple} lab
  * @returns {Triple}
  */
@@ -28,7 +28,7 @@ export function linearFromOklab([L, a, b]) {
 }
 
 /**
- * OKLab of a linear sRGB colour.
+ * Returns the OKLab of a linear sRGB colour.
  * @param {Triple} rgb
  * @returns {Triple}
  */
@@ -43,11 +43,11 @@ export function oklabFromLinear([r, g, b]) {
   ];
 }
 
-/** Whether a linear colour lies in sRGB, to half a byte. @param {Triple} rgb */
+/** Returns whether a linear colour is in the sRGB gamut, to half a byte. @param {Triple} rgb */
 const inGamut = (rgb) => rgb.every((v) => v >= -0.0015 && v <= 1.0015);
 
 /**
- * `0xAABBGGRR` (opaque) of an OKLab colour. Where sRGB lacks it, the chroma is lowered until it fits; lightness and hue stay.
+ * Returns an OKLab colour as opaque `0xAABBGGRR`. Outside the sRGB gamut the chroma is reduced; lightness and hue stay.
  * @param {Triple} lab
  */
 export function packedFromOklab(lab) {
@@ -55,7 +55,7 @@ export function packedFromOklab(lab) {
   if (!inGamut(rgb)) {
     let inside = 0;
     let outside = 1;
-    // 12 halvings place the border to 1/4096 of the chroma, well under a byte.
+    // 12 bisections find the gamut boundary to 1/4096 of the chroma, well below one byte.
     for (let i = 0; i < 12; i += 1) {
       const k = (inside + outside) / 2;
       if (inGamut(linearFromOklab([lab[0], lab[1] * k, lab[2] * k]))) inside = k;
@@ -67,24 +67,30 @@ export function packedFromOklab(lab) {
   return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
-/** OKLab of lightness 0 … 1, chroma and hue in degrees. @param {number} L @param {number} C @param {number} hDeg @returns {Triple} */
+/**
+ * Returns the OKLab of a lightness 0 … 1, a chroma and a hue in degrees.
+ * @param {number} L
+ * @param {number} C
+ * @param {number} hDeg
+ * @returns {Triple}
+ */
 export function oklch(L, C, hDeg) {
   const h = (hDeg * Math.PI) / 180;
   return [L, C * Math.cos(h), C * Math.sin(h)];
 }
 
-/** sRGB 0 … 1 of `0xAABBGGRR`. @param {number} packed @returns {Triple} */
+/** Returns the sRGB components of `0xAABBGGRR`, 0 … 1. @param {number} packed @returns {Triple} */
 export const rgbFromPacked = (packed) => [
   (packed & 255) / 255,
   ((packed >> 8) & 255) / 255,
   ((packed >> 16) & 255) / 255,
 ];
 
-/** `#rrggbb` of `0xAABBGGRR`. @param {number} packed */
+/** Returns `#rrggbb` for `0xAABBGGRR`. @param {number} packed */
 export const hexFromPacked = (packed) =>
   `#${[packed & 255, (packed >> 8) & 255, (packed >> 16) & 255].map((v) => v.toString(16).padStart(2, '0')).join('')}`;
 
-/** OKLab of `0xAABBGGRR`. @param {number} packed @returns {Triple} */
+/** Returns the OKLab of `0xAABBGGRR`. @param {number} packed @returns {Triple} */
 export function oklabFromPacked(packed) {
   const [r, g, b] = rgbFromPacked(packed);
   return oklabFromLinear([linear(r), linear(g), linear(b)]);

@@ -1,24 +1,25 @@
 /**
- * The last resort: discs painted on a 2-D canvas without any graphics API. Every disc is an ellipse on screen, filled pixel by
- * pixel with its own plane's depth, so that the picture is the one the graphics card would draw, without smooth edges.
+ * Draws discs on a 2-D canvas without a graphics API, as the last fallback. Each disc is an ellipse on the screen,
+ * filled pixel by pixel with the depth of its plane. The picture equals that of a graphics card, but without
+ * antialiasing.
  *
- * It has the methods of the WebAssembly renderers, so that the viewer need not know which one it drives.
+ * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *
  * @module
  */
 import { NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
 
-/** Byte → linear light, and linear light in 1/1023 steps → byte. */
+/** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
 const ENCODED = Uint8Array.from({ length: 1024 }, (_, v) => Math.round(255 * encoded(v / 1023)));
 
-/** Discs smaller than this on screen are drawn as single pixels. */
+/** Radius on the screen below which a disc is drawn as one pixel. */
 const POINT_PX = 0.7;
 
-/** Discs larger than this on screen have a darker rim. */
+/** Radius on the screen above which a disc has a darker rim. */
 const RIM_FROM_PX = 4;
-/** How far discs before the newest level fade towards the ground. */
+/** Share by which discs of earlier levels fade towards the background. */
 const MUTE = 0.5;
 
 /**
@@ -27,20 +28,20 @@ const MUTE = 0.5;
  * @property {number} disc_scale
  * @property {[number, number, number]} key_light_view
  * @property {number} dim
- * @property {number} dim_backfaces  how far discs seen from behind fade towards the ground
+ * @property {number} dim_backfaces  share by which discs seen from behind fade towards the background
  * @property {number} [fade_s]
  * @property {number | null} [level]  newest generation level drawn, null for all
  * @property {number} outline  index of the highlighted particle, −1 for none
  * @property {{min: number[], max: number[], colour: number[]} | null} box
  */
 
-/** The page's colour of three linear shares. @param {number} r @param {number} g @param {number} b */
+/** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
 const packed = (r, g, b) =>
   (255 << 24) | (ENCODED[(b * 1023) | 0] << 16) | (ENCODED[(g * 1023) | 0] << 8) | ENCODED[(r * 1023) | 0];
 
 /**
- * The axes of the eye, of length 1, and what a step to the right makes on screen. The rows of clip_from_world give them up to
- * their lengths, and up to the share along the view that moves the picture aside.
+ * Returns the unit axes of the eye and the screen displacement of a unit step to the right. The rows of clip_from_world
+ * give them up to scale and up to the component along the view that shifts the picture.
  * @param {Float32Array} m  a packed view
  */
 function eyeAxes(m) {
@@ -57,8 +58,9 @@ function eyeAxes(m) {
 }
 
 /**
- * The same light as in shaders/discs.wgsl: a wrapped key light, a hemisphere, dimmer at the silhouette.
- * @param {number} keyward  the normal's share towards the light @param {number} skyward  and upwards
+ * Returns the brightness as in shaders/discs.wgsl: a wrapped key light and a hemisphere light, darker at the
+ * silhouette.
+ * @param {number} keyward  component of the normal towards the light @param {number} skyward component upwards
  * @param {number} edgeOn  1 at the silhouette
  */
 function shadeOf(keyward, skyward, edgeOn) {
@@ -67,10 +69,10 @@ function shadeOf(keyward, skyward, edgeOn) {
 }
 
 /**
- * Fills the ellipse as which a disc is seen: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its middle.
+ * Fills the projected ellipse of a disc: dx² + dy² + dz² ≤ px² with dz = −(ka·dx + kb·dy), in pixels around its centre.
  * @param {{out: Uint32Array, depth: Float32Array, width: number, height: number}} target
  * @param {{sx: number, sy: number, px: number, ka: number, kb: number, inv: number, depthPerPx: number, value: number, rim: number, coreSq: number}} disc
- *   `inv` is the depth of the middle; beyond `coreSq` from it, squared, the disc has the colour of its rim
+ *   `inv` is the depth at the centre; beyond the squared distance `coreSq` the disc has the colour of its rim
  */
 function fillDisc({ out, depth, width, height }, { sx, sy, px, ka, kb, inv, depthPerPx, value, rim, coreSq }) {
   const y0 = Math.max(0, Math.ceil(sy - px - 0.5));
@@ -115,7 +117,7 @@ export class Painter {
     this.radii = new Float32Array(0);
     this.levels = new Uint32Array(0);
     this.colours = new Uint32Array(0);
-    /** Second at which a particle appears. */
+    /** Time in seconds at which each particle appears. */
     this.births = new Float64Array(0);
     this.view = new Float32Array(23);
     /** @type {Style} */
@@ -224,7 +226,7 @@ export class Painter {
   async read_pixels(widthPx, heightPx, transparent) {
     const image = new ImageData(widthPx, heightPx);
     const onScreen = this.view.slice();
-    // All that the canvas shows stays in a picture of another shape, and circles stay round.
+    // A picture of another aspect ratio keeps everything that the canvas shows, without distortion.
     const wider = widthPx / heightPx / (Math.max(1, this.width) / Math.max(1, this.height));
     for (let k = 0; k < 4; k += 1) {
       if (wider > 1) this.view[4 * k] /= wider;
@@ -251,7 +253,7 @@ export class Painter {
     const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view, level = null } = this.style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
-    // Depth is kept as 1/w, which is linear across a plane on screen: larger is nearer.
+    // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
     depth.fill(0);
     const m = this.view;
     const [ex, ey, ez] = [m[16], m[17], m[18]];
@@ -305,7 +307,7 @@ export class Painter {
         );
       const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
       const rim = i === outline ? value : lit(shade * 0.78);
-      // A rim of a tenth of the radius shows the order; on small discs it would only be noise.
+      // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise.
       const coreSq = px > RIM_FROM_PX ? 0.81 * px * px : Infinity;
       if (px < POINT_PX) {
         const at = (sy | 0) * width + (sx | 0);
@@ -315,11 +317,11 @@ export class Painter {
         }
         continue;
       }
-      // The disc in view axes: its plane a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first order
-      // in the disc's size, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
+      // In view axes the disc's plane is a·dx + b·dy + c·dz = 0 with c > 0 towards the eye. In screen pixels, to first
+      // order in the size of the disc, it is the ellipse dx² + dy² + dz² ≤ px² with dz = −(a·dx + b·dy)/c.
       const a = nx * right[0] + ny * right[1] + nz * right[2];
       const b = -(nx * up[0] + ny * up[1] + nz * up[2]);
-      // Edge on, a disc is kept at least a twelfth as wide as it is long: it never vanishes.
+      // Seen edge on, a disc keeps a width of at least a twelfth of its length, so that it never vanishes.
       const c = Math.max(1 / 12, -(nx * forward[0] + ny * forward[1] + nz * forward[2]));
       const depthPerPx = (r / px) * inv * inv;
       fillDisc(target, { sx, sy, px, ka: a / c, kb: b / c, inv, depthPerPx, value, rim, coreSq });
@@ -328,7 +330,7 @@ export class Painter {
   }
 
   /**
-   * The twelve edges of the clip box, one pixel wide, hidden behind discs.
+   * Draws the twelve edges of the clip box, one pixel wide, where no disc hides them.
    * @param {Uint32Array} out @param {Float32Array} depth @param {number} width @param {number} height
    * @param {{min: number[], max: number[], colour: number[]}} box
    */

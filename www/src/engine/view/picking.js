@@ -1,6 +1,6 @@
 /**
- * Which particle lies under a point of the picture: a ray against every disc, on the processor. At 200,000 particles this is
- * one pass over two columns, about a millisecond; no second picture has to be drawn and read back.
+ * Finds the particle under a point of the picture by intersecting a ray with every disc on the CPU. For 200,000
+ * particles this is one pass over two columns, about a millisecond, and no id buffer has to be drawn and read back.
  *
  * @module
  */
@@ -9,16 +9,17 @@
 /** @typedef {import('../columns.js').Columns} Columns */
 
 /**
- * Three discs around a gap of a hexagonal packing meet in its middle at this radius, relative to the particle's: so far a gap
- * belongs to the nearest of them, and not to a disc on the far side of the surface that can be seen through it.
+ * Disc radius, relative to the particle's, at which three discs of a hexagonal packing meet in the gap between them.
+ * Within it, a gap belongs to the nearest of them, not to a disc on the far side that is visible through it.
  */
 const GAP = 2 / Math.sqrt(3);
-/** Where discs are smaller than this share of the particle's radius, what lies behind them is meant to be seen. */
+/** Disc scale below which gaps are transparent, because the user wants to see through them. */
 const DENSE = 0.8;
 
 /**
- * The nearest disc that the ray meets, or between dense discs the nearest of these; else, for discs too small to hit, the particle nearest to the ray within `tolerance`
- * (an angle, in radians).
+ * Returns the index of the nearest disc that the ray meets; in a gap between dense discs, the nearest of them;
+ * otherwise, for discs too small to hit, the particle nearest to the ray within the angle `toleranceRad`. It is null if
+ * there is none.
  * @param {Columns} columns
  * @param {Vec3} eye
  * @param {Vec3} ray  length 1
@@ -54,7 +55,7 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
     const ny = normals[j + 1];
     const nz = normals[j + 2];
     const facing = nx * dx + ny * dy + nz * dz;
-    // A disc seen exactly edge on cannot be hit.
+    // A disc that is exactly edge on cannot be hit.
     if (facing !== 0) {
       const t = (px * nx + py * ny + pz * nz) / facing;
       const qx = dx * t - px;
@@ -66,7 +67,7 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
           hitT = t;
           hit = i;
         }
-        // On one sheet the nearest middle counts; sheets lie farther apart than that.
+        // Within a sheet the nearest centre wins. Different sheets are farther apart than this term.
         const cost = t + Math.sqrt(qSq);
         if (cost < gapCost) {
           gapCost = cost;
@@ -74,20 +75,27 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
         }
       }
     }
-    // Nearer to the ray counts, and among equals nearer to the eye; a particle on the far side never wins over a near one.
+    // The particle nearest to the ray wins, and among equals the one nearest to the eye. A particle on the far side
+    // never wins over a near one.
     const cost = along * (1 + offSq / (slack * slack + 1e-30));
     if (offSq <= slack * slack && cost < closeCost) {
       closeCost = cost;
       close = i;
     }
   }
-  // Seen flat, a disc is met far behind a gap beside it: neighbours are told by their distance.
+  // At a grazing angle the ray meets a neighbouring disc far behind the gap, so neighbours are recognised by their
+  // distance.
   if (gap >= 0 && (hit < 0 || !near(columns, gap, hit))) return gap;
   if (hit >= 0) return hit;
   return close >= 0 ? close : null;
 }
 
-/** Whether two particles are no farther apart than neighbours and their neighbours. @param {Columns} columns @param {number} i @param {number} j */
+/**
+ * Returns whether two particles are at most second neighbours by their distance.
+ * @param {Columns} columns
+ * @param {number} i
+ * @param {number} j
+ */
 function near({ positions, radii }, i, j) {
   const way = [0, 1, 2].map((k) => positions[3 * i + k] - positions[3 * j + k]);
   return Math.hypot(way[0], way[1], way[2]) <= 2 * (radii[i] + radii[j]);

@@ -1,33 +1,33 @@
 /**
- * Pointers held on the picture: one turns the surface or carries it along, two carry and zoom it, a short press taps.
+ * Tracks the pointers pressed on the picture: one rotates or pans, two pan and zoom, a short press is a tap.
  *
- * A drag ends with its pointer, whatever happens to it: release, cancel, lost capture.
+ * A drag ends with the release, the cancellation or the lost capture of its pointer.
  *
  * @module
  */
 
 /** @typedef {{x: number, y: number}} Place  in CSS pixels of the host */
 /**
- * What the hands act on.
+ * The objects on which the pointers act.
  * @typedef {object} Stage
  * @property {HTMLElement} host
  * @property {import('./camera.js').Camera} camera
  * @property {() => import('./camera.js').View} currentView
  * @property {() => void} moved
  * @property {() => void} fit
- * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer rests on, or tapped, this place
+ * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer hovers over or tapped this place
  * @property {() => void} leave
  */
 
-/** A drag across the whole shorter side turns the surface by this much. */
+/** Rotation of a drag across the whole shorter side. */
 const TURN_PER_SIDE_RAD = Math.PI * 0.9;
-/** A press that moves less than this, and lasts less long, is a tap. */
+/** Largest motion and duration of a tap. */
 const TAP_PX = 4;
 const TAP_MS = 400;
-/** The speed of a throw is measured over this last stretch of the drag, of so many steps at most. */
+/** Duration at the end of a drag over which the release speed is measured, and the largest number of its steps. */
 const THROW_MS = 80;
 const MOST_STEPS = 64;
-/** Less than this, in time and between two fingers, tells no speed and no scale. */
+/** Smallest duration from which a speed is computed, and smallest distance between fingers from which a scale is. */
 const LEAST_THROW_MS = 8;
 const LEAST_SPAN_PX = 8;
 
@@ -37,7 +37,7 @@ export function placeOn(host, event) {
   return { x: event.clientX - box.left, y: event.clientY - box.top };
 }
 
-/** Comes nearer by a factor to what is at a place. @param {Stage} stage @param {number} factor @param {Place} at */
+/** Zooms by a factor towards a place. @param {Stage} stage @param {number} factor @param {Place} at */
 export function zoomAt({ camera, currentView, host }, factor, at) {
   const { clientWidth: widthPx, clientHeight: heightPx } = host;
   camera.zoom(factor, { view: currentView(), xPx: at.x, yPx: at.y, widthPx, heightPx });
@@ -47,12 +47,12 @@ export class Pointers {
   /** @param {Stage} stage */
   constructor(stage) {
     this.stage = stage;
-    /** Where each pointer is. @type {Map<number, Place>} */
+    /** Position of each pressed pointer. @type {Map<number, Place>} */
     this.held = new Map();
     this.panning = false;
-    /** The press that may become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
+    /** The press that may still become a tap. @type {(Place & {atMs: number, still: boolean}) | null} */
     this.press = null;
-    /** The last steps of a turn. @type {{dx: number, dy: number, atMs: number}[]} */
+    /** The last steps of a rotation. @type {{dx: number, dy: number, atMs: number}[]} */
     this.trail = [];
   }
 
@@ -65,7 +65,7 @@ export class Pointers {
     try {
       host.setPointerCapture(event.pointerId);
     } catch {
-      // The pointer is gone already; its end will still be heard.
+      // The pointer is already gone. Its end event still follows.
     }
     this.panning = event.button !== 0 || event.shiftKey;
     this.trail = [];
@@ -73,7 +73,7 @@ export class Pointers {
     leave();
   }
 
-  /** @param {PointerEvent} event  of a pointer that is held */
+  /** @param {PointerEvent} event  of a pressed pointer */
   move(event) {
     const { held, press, stage } = this;
     const before = held.get(event.pointerId);
@@ -103,7 +103,12 @@ export class Pointers {
     if (this.trail.length > MOST_STEPS) this.trail.shift();
   }
 
-  /** One of two fingers moved. @param {Place} before @param {Place} at @param {Place} other  where the other is */
+  /**
+   * Handles the motion of one of two fingers.
+   * @param {Place} before
+   * @param {Place} at
+   * @param {Place} other  position of the other
+   */
   pinch(before, at, other) {
     const { camera, currentView } = this.stage;
     const spanBefore = Math.hypot(before.x - other.x, before.y - other.y);
@@ -114,7 +119,10 @@ export class Pointers {
     }
   }
 
-  /** @param {PointerEvent} event @param {boolean} released  by the hand, not taken away */
+  /**
+   * @param {PointerEvent} event
+   * @param {boolean} released  whether the user released it, rather than the browser cancelled it
+   */
   end(event, released) {
     const { held, press, stage } = this;
     if (!held.delete(event.pointerId)) return;
@@ -122,7 +130,7 @@ export class Pointers {
     this.press = null;
     this.trail = [];
     if (held.size > 0) {
-      // The finger that stays goes on from where it is.
+      // The remaining finger continues from its position.
       this.panning = false;
       return;
     }
@@ -135,7 +143,7 @@ export class Pointers {
     stage.moved();
   }
 
-  /** The hand let go in motion: the surface turns on. @param {Pointers['trail']} trail @param {number} nowMs */
+  /** Continues the rotation at the speed of the release. @param {Pointers['trail']} trail @param {number} nowMs */
   throw(trail, nowMs) {
     const recent = trail.filter((step) => nowMs - step.atMs < THROW_MS);
     const since = recent.length ? nowMs - recent[0].atMs : 0;

@@ -1,17 +1,19 @@
 /**
- * The pace at which a new surface appears. A sampler that is done in a blink shows nothing of how it works, so the picture
- * lets the generation levels appear one after another, in their true order, within a little more than a second. A slow run is
- * shown as it comes.
+ * Sets the times at which the generation levels of a new surface appear. A fast sampler would finish before its front
+ * can be seen, so the levels appear one after another within about a second. A slow run is shown as it progresses.
  *
  * @module
  */
 
-/** Time for a whole surface, whatever its number of levels. */
+/** Duration for a whole surface, whatever its number of levels. */
 const WHOLE_S = 1.1;
-/** Bounds on the time between two levels: below one frame nothing is gained, above the eye waits. */
+/**
+ * Limits of the time between two levels. Below one frame nothing is gained; above the upper limit the viewer has to
+ * wait.
+ */
 const FASTEST_S = 1 / 120;
 const SLOWEST_S = 0.06;
-/** Levels assumed while the front is still running: a surface at the paper's usual radius has about so many. */
+/** Number of levels assumed while the front is running, typical of a surface at the paper's usual radius. */
 const USUAL_LEVELS = 90;
 
 export class Reveal {
@@ -19,7 +21,7 @@ export class Reveal {
     this.active = false;
     this.startS = 0;
     this.stepS = 0;
-    /** Second at which each level appears. @type {number[]} */
+    /** Time in seconds at which each level appears. @type {number[]} */
     this.births = [];
   }
 
@@ -37,7 +39,7 @@ export class Reveal {
   }
 
   /**
-   * Second at which a level appears; fixed the first time it is asked for. Levels come in order.
+   * Returns the time in seconds at which a level appears. The first call fixes it, and levels must come in order.
    * @param {number} level @param {number} nowS
    */
   birthOf(level, nowS) {
@@ -50,9 +52,9 @@ export class Reveal {
   }
 
   /**
-   * Runs of particles that appear at the same time: one while nothing is being revealed, else one for each level.
+   * Returns the ranges of particles that appear together: one range without a reveal, otherwise one for each level.
    * @param {Uint32Array} levels @param {number} first @param {number} last @param {number} nowS
-   * @returns {[number, number, number][]} first, last and second of appearance of each
+   * @returns {[number, number, number][]} first, last and time of appearance of each
    */
   runs(levels, first, last, nowS) {
     if (!this.active) return [[first, last, -Infinity]];
@@ -68,14 +70,14 @@ export class Reveal {
     return out;
   }
 
-  /** The last level that has begun to appear, −1 before the first. @param {number} nowS */
+  /** Returns the last level that has begun to appear, −1 before the first. @param {number} nowS */
   levelAt(nowS) {
     let k = this.births.length - 1;
     while (k >= 0 && this.births[k] > nowS) k -= 1;
     return k;
   }
 
-  /** Second at which everything known so far is there. */
+  /** Returns the time in seconds at which all known levels have appeared. */
   endS() {
     return this.births.length ? this.births[this.births.length - 1] : this.startS;
   }

@@ -1,5 +1,5 @@
 /**
- * Where the things in the picture are: the clip boxes and the balls that the camera is fitted to.
+ * The extents of the scene: the clip boxes and the balls to which the camera is fitted.
  *
  * @module
  */
@@ -11,7 +11,10 @@ import { ballOf } from './camera.js';
  * @typedef {import('../types.js').Vec3} Vec3
  */
 
-/** A surface seldom reaches the corners of its box: the ball through the middles of the edges is the better guess. */
+/**
+ * Radius of the ball in which a surface probably lies, as a share of the box's circumscribed ball. Surfaces seldom
+ * reach the corners of their box.
+ */
 const LIKELY_SHARE = 0.72;
 
 /** @param {Vec3} a @param {Vec3} b @returns {Vec3} */
@@ -21,32 +24,43 @@ const most = (a, b) => [Math.max(a[0], b[0]), Math.max(a[1], b[1]), Math.max(a[2
 
 export class Scene {
   constructor() {
-    /** The clip box of the field asked for. @type {Bounds} */
+    /** The clip box of the requested field. @type {Bounds} */
     this.bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
-    /** That of the particles on the page. */
+    /** The clip box of the particles on the page. */
     this.shown = this.bounds;
   }
 
-  /** The ball around everything: the surface on the page may be that of another box than the one asked for. */
+  /** Returns the ball around both clip boxes, since the surface on the page may belong to an earlier box. */
   ball() {
     const { bounds, shown } = this;
     return ballOf({ min: least(bounds.min, shown.min), max: most(bounds.max, shown.max) });
   }
 
-  /** The ball to be seen before there are particles: of the whole clip box where it is drawn. @param {boolean} boxDrawn */
+  /**
+   * Returns the ball to show before there are particles. It encloses the whole clip box if the box is drawn.
+   * @param {boolean} boxDrawn
+   */
   boxBall(boxDrawn) {
     const { centre, radius } = ballOf(this.bounds);
     return { centre, radius: boxDrawn ? radius : radius * LIKELY_SHARE };
   }
 
-  /** What a fit shows: the particles of the present field, else its clip box. @param {Columns} columns @param {boolean} boxDrawn */
+  /**
+   * Returns the ball that a fit shows: around the particles of the present field, or else its clip box.
+   * @param {Columns} columns
+   * @param {boolean} boxDrawn
+   */
   fitBall(columns, boxDrawn) {
     const bounds = columns.stale ? null : columns.bounds();
     return bounds ? ballAround(columns, ballOf(bounds).centre) : this.boxBall(boxDrawn);
   }
 }
 
-/** The smallest ball around this centre that holds all particles with their discs. @param {Columns} columns @param {Vec3} centre */
+/**
+ * Returns the smallest ball around this centre that encloses the discs of all particles.
+ * @param {Columns} columns
+ * @param {Vec3} centre
+ */
 function ballAround({ positions, radii, count }, centre) {
   let radius = 1e-6;
   for (let i = 0; i < count; i += 1) {

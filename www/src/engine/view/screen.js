@@ -1,28 +1,28 @@
 /**
- * The size of the picture: of its host in page pixels, of its canvas in pixels of the screen.
+ * Tracks the size of the picture: the host in page pixels and the canvas in screen pixels.
  *
  * @module
  */
 
-/** More pixels than two per page pixel cannot be told apart, and cost as much again. */
+/** Largest pixel ratio. Finer pixels are not visible but cost drawing time. */
 const LARGEST_PIXEL_RATIO = 2;
-/** The painter without a graphics card counts its pixels. */
+/** Largest pixel ratio of the painter, whose cost grows with the number of pixels. */
 const LARGEST_PAINTED_RATIO = 1;
 
 export class Screen {
   /**
    * @param {HTMLElement} host
-   * @param {() => void} onResize  the size or the pixel ratio may be another
+   * @param {() => void} onResize  the size or the pixel ratio may have changed
    */
   constructor(host, onResize) {
     this.host = host;
     this.onResize = onResize;
     this.cssWidth = 0;
     this.cssHeight = 0;
-    /** Size of the canvas. */
+    /** Size of the canvas in its own pixels. */
     this.width = 0;
     this.height = 0;
-    /** Pixels of the canvas per page pixel. */
+    /** Canvas pixels per page pixel. */
     this.ratio = 1;
     this.largestRatio = LARGEST_PIXEL_RATIO;
     this.observer = new ResizeObserver(() => this.measure());
@@ -31,7 +31,7 @@ export class Screen {
     this.measure();
   }
 
-  /** Another kind of device draws. @param {import('./backends.js').BackendKind} kind */
+  /** Adopts the pixel ratio limit of a kind of device. @param {import('./backends.js').BackendKind} kind */
   drawnBy(kind) {
     this.largestRatio = kind === 'canvas2d' ? LARGEST_PAINTED_RATIO : LARGEST_PIXEL_RATIO;
     this.measure();
@@ -48,7 +48,7 @@ export class Screen {
     this.onResize();
   }
 
-  /** A window that moves to another monitor keeps its size and changes its pixels. */
+  /** Watches the pixel ratio, which changes without a resize when a window moves to another monitor. */
   watchRatio() {
     this.monitor = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
     this.monitor.onchange = () => {

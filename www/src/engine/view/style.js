@@ -1,14 +1,14 @@
 /**
- * How the picture looks: what a person chose, and the renderer's style that follows from it.
+ * The appearance of the picture: the user's options, and the renderer's style derived from them.
  *
  * @module
  */
 import { rgbFromPacked } from './oklab.js';
 import { PALETTES } from './palettes.js';
 
-/** Time a new particle takes to appear. */
+/** Duration in which a new particle fades in. */
 export const FADE_S = 0.12;
-/** How far discs seen from behind fade towards the ground. */
+/** Share by which discs seen from behind fade towards the background. */
 const DIM_BACKFACES = 0.55;
 
 /**
@@ -16,9 +16,9 @@ const DIM_BACKFACES = 0.55;
  * @property {import('../types.js').ColourMode} colour
  * @property {number} size  disc radius as a share of the particle's radius
  * @property {'light' | 'dark'} theme
- * @property {import('../types.js').Bounds | null} box  the clip box, where it is drawn
+ * @property {import('../types.js').Bounds | null} box  the clip box, or null if it is not drawn
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
- * @property {number | null} level  the newest generation level to be seen, null for all of them
+ * @property {number | null} level  the newest visible generation level, null for all
  * @property {number} highlight  index of the particle with an outline, −1 for none
  * @property {import('./camera.js').Insets} insets
  */
@@ -35,11 +35,15 @@ export const firstLook = ({ colour, size }) => ({
   insets: { left: 0, right: 0, top: 0, bottom: 0 },
 });
 
-/** The newest level in the picture: one that does not exist counts as the last. @param {Look} look @param {number} lastLevel */
+/**
+ * Returns the newest visible level. A level beyond the last counts as the last.
+ * @param {Look} look
+ * @param {number} lastLevel
+ */
 export const shownLevel = ({ level }, lastLevel) => (level === null ? null : Math.min(level, lastLevel));
 
 /**
- * The renderers' style record.
+ * Returns the renderers' style record.
  * @param {Look} look
  * @param {{lastLevel: number, dim: number, calm: boolean, pixelRatio: number}} present
  */
@@ -51,7 +55,7 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
     dim,
     fade_s: calm ? 0 : FADE_S,
     level: shownLevel(look, lastLevel),
-    // Level by level one often looks into a surface that is still open.
+    // While levels are stepped through, the surface is often open and its inside visible.
     dim_backfaces: look.level === null ? DIM_BACKFACES : DIM_BACKFACES / 2,
     outline: look.highlight,
     box: look.box && { ...look.box, colour: [...rgbFromPacked(palette.box), 0.9] },

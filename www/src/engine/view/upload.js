@@ -1,5 +1,5 @@
 /**
- * What the graphics device holds of the columns: tells it the particles and colours that are new, and the points of a model.
+ * Uploads the columns to the graphics device: new particles, changed colours, and the points of a model.
  *
  * @module
  */
@@ -14,10 +14,10 @@ import { PALETTES } from './palettes.js';
  * @typedef {import('./style.js').Look} Look
  */
 
-/** Change of a ramp's end, as a share of the ramp, that nobody sees: half a step of 64. */
+/** Largest invisible change of a ramp's end, as a share of the ramp: half of one of its 64 steps. */
 const RANGE_SLACK = 1 / 128;
 
-/** A range of particles: `first` up to and without `last`. */
+/** A range of particles from `first`, inclusive, to `last`, exclusive. */
 class Span {
   first = Infinity;
   last = 0;
@@ -38,32 +38,32 @@ export class ParticleUpload {
   constructor(columns) {
     this.columns = columns;
     this.glide = new Glide();
-    /** Particles that the device has not been told. */
+    /** Particles that have not been uploaded. */
     this.dirty = new Span();
-    /** Particles whose colour it has not been told. */
+    /** Particles whose colours have not been uploaded. */
     this.recoloured = new Span();
-    /** Values at the ends of the present colouring's ramp. @type {[number, number] | null} */
+    /** Values at the ends of the present colour ramp. @type {[number, number] | null} */
     this.range = null;
-    /** Times that the device was told of particles. */
+    /** Number of uploads of particles. */
     this.writes = 0;
   }
 
-  /** Particles are new or have moved. @param {number} first @param {number} last */
+  /** Marks particles as new or moved. @param {number} first @param {number} last */
   changed(first, last) {
     this.dirty.include(first, last);
   }
 
-  /** Colours may be others. @param {number} first @param {number} last */
+  /** Marks colours as possibly changed. @param {number} first @param {number} last */
   recolour(first, last) {
     this.recoloured.include(first, last);
   }
 
-  /** Everything is to be told again. */
+  /** Marks everything for upload. */
   all() {
     this.dirty.include(0, this.columns.count);
   }
 
-  /** Another surface, or a device that knows nothing: no particle glides from where the last was. */
+  /** Starts over for another surface or a new device, without an animation from the earlier positions. */
   restart() {
     this.glide.forget();
     this.dirty = new Span();
@@ -71,11 +71,11 @@ export class ParticleUpload {
   }
 
   /**
-   * Tells the device what is new.
+   * Uploads what has changed.
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {{reveal: import('./reveal.js').Reveal, calm: boolean, nowS: number}} present
-   * @returns {number} particles that it holds
+   * @returns {number} number of particles on the device
    */
   write(renderer, look, { reveal, calm, nowS }) {
     const { columns, glide, dirty } = this;
@@ -116,7 +116,10 @@ export class ParticleUpload {
     return coloursOf(colour, theme, this.columns, first, last, this.range);
   }
 
-  /** The ramp's ends follow the particles; when they move by more than can be seen, every colour is another. @param {Look} look */
+  /**
+   * Updates the ends of the ramp from the particles. If they change visibly, all colours are uploaded again.
+   * @param {Look} look
+   */
   followRange({ colour }) {
     const range = rangeOf(colour, this.columns);
     const old = this.range;
@@ -127,7 +130,7 @@ export class ParticleUpload {
   }
 
   /**
-   * Writes the model's points behind the particles, as discs that face the eye, and so anew for every picture.
+   * Writes the model's points after the particles, as discs that face the eye, and therefore again for every frame.
    * @param {Renderer} renderer
    * @param {Look} look
    * @param {import('./camera.js').View} view
@@ -137,7 +140,7 @@ export class ParticleUpload {
   writePoints(renderer, { points, size, theme }, view, { count, ratio }) {
     if (!points) return 0;
     const { columns } = this;
-    // A dot comes forward by this much, so that the discs around it do not cut it.
+    // A dot is moved forward by this distance, so that the discs around it do not cut it.
     const lift = columns.count > 0 ? columns.radii[columns.count >> 1] : 0;
     const dots = dotsOf(points, view, { px: ratio, size, lift, palette: PALETTES[theme] });
     if (count + dots.radii.length > renderer.max_particles()) return 0;

@@ -1,5 +1,5 @@
 /**
- * The picture: puts the camera, the frames, the look and what the device holds together.
+ * The picture: combines the camera, the frame schedule, the appearance and the uploads to the device.
  *
  * @module
  */
@@ -23,7 +23,7 @@ import { ParticleUpload } from './upload.js';
  * @typedef {import('./style.js').Look} Look
  */
 /**
- * What the viewer tells.
+ * The events of the viewer.
  * @typedef {object} ViewerEvents
  * @property {(device: Device) => void} onDevice
  * @property {(kind: string, message: string) => void} onLost
@@ -33,7 +33,7 @@ import { ParticleUpload } from './upload.js';
  * @property {(reveal: import('../types.js').Reveal | null) => void} onReveal
  */
 
-/** Discs smaller than this are picked by their neighbourhood, in page pixels. */
+/** Picking tolerance around small discs, in page pixels. */
 const PICK_PX = 6;
 
 export class Viewer {
@@ -42,7 +42,7 @@ export class Viewer {
    * @param {HTMLElement} options.host
    * @param {Columns} options.columns
    * @param {import('../types.js').ViewState} options.look
-   * @param {import('./backends.js').BackendKind | null} options.first  the way of drawing to begin with
+   * @param {import('./backends.js').BackendKind | null} options.first  the back end to try first
    * @param {ViewerEvents} events
    */
   constructor({ host, columns, look, first }, events) {
@@ -53,15 +53,15 @@ export class Viewer {
     this.look = firstLook(look);
     this.scene = new Scene();
     this.reveal = new Reveal();
-    /** Whether the front is still placing particles: a reveal does not end before it. */
+    /** Whether the front is still placing particles. A reveal does not end before the front. */
     this.growing = false;
     this.dimmer = new Dimmer();
     this.upload = new ParticleUpload(columns);
-    /** What has changed since it was told. */
+    /** What has changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
     this.frames = new FrameLoop((nowS, dtS) => this.frame(nowS, dtS));
     this.screen = new Screen(host, () => this.resized());
-    /** Whether the system asks for less motion. */
+    /** Whether the system requests reduced motion. */
     this.calm = matchMedia('(prefers-reduced-motion: reduce)');
     this.camera.calm = this.calm.matches;
     this.calm.onchange = () => this.calmed();
@@ -87,10 +87,10 @@ export class Viewer {
 
   // ---- what is to be drawn ------------------------------------------------------------------------------------------------
 
-  /** A new surface takes the place of the old one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
+  /** Replaces the old surface by a new one. @param {{grow: boolean, fit: boolean, bounds: Bounds | null}} options */
   begin({ grow, fit, bounds }) {
     this.scene.shown = bounds ?? this.scene.bounds;
-    // One of another size would grow around the camera, or far from it.
+    // A surface of another size could otherwise grow around the camera or far from it.
     if (fit) this.fit(true);
     if (grow && this.look.level === null && !this.calm.matches && !document.hidden) {
       this.reveal.begin(nowS());
@@ -107,9 +107,9 @@ export class Viewer {
   changed(first, last, onDrawn) {
     this.upload.changed(first, last);
     this.due.legend = true;
-    // The newest level that there is may be another.
+    // The last level may have changed.
     if (this.look.level !== null) this.due.style = true;
-    // Where nobody looks the sampler need not wait for pictures.
+    // Without a visible picture the sampler does not wait for frames.
     if (document.hidden || !this.keeper.device) onDrawn();
     else this.frames.afterNext(onDrawn);
     this.frames.ask();
@@ -133,7 +133,7 @@ export class Viewer {
     this.look = { ...before, ...patch };
     const { colour, theme, level } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
-    // What grows of itself would go on behind the levels that are stepped through.
+    // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
       this.endReveal();
       this.upload.all();
@@ -164,14 +164,20 @@ export class Viewer {
 
   // ---- where it is seen from ----------------------------------------------------------------------------------------------
 
-  /** The clip box, for the near and far planes and for a fit before there are particles. @param {Bounds} bounds */
+  /**
+   * Sets the clip box, which determines the near and far planes and a fit before there are particles.
+   * @param {Bounds} bounds
+   */
   setBounds(bounds) {
     this.scene.bounds = bounds;
     this.camera.limits(ballOf(bounds).radius);
     this.frames.ask();
   }
 
-  /** @param {boolean} [jump]  at once, to the box of a surface that is still to come: the one on the page stays until then */
+  /**
+   * @param {boolean} [jump]  without an animation, to the box of a surface that is still to come; the present one stays
+   *   until then
+   */
   fit(jump = false) {
     const boxDrawn = this.look.box !== null;
     const ball = jump ? this.scene.boxBall(boxDrawn) : this.scene.fitBall(this.columns, boxDrawn);
@@ -179,7 +185,7 @@ export class Viewer {
     this.moved();
   }
 
-  /** The camera was moved by hand, a link or a glide. */
+  /** Handles a motion of the camera. */
   moved() {
     this.events.onCamera(this.camera.state);
     this.frames.ask();
@@ -191,7 +197,7 @@ export class Viewer {
     return viewOf(this.camera.state, cssWidth, cssHeight, this.scene.ball(), this.look.insets);
   }
 
-  /** Index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
+  /** Returns the index of the particle under a point of the host, in CSS pixels. @param {number} x @param {number} y */
   pick(x, y) {
     const { columns, look } = this;
     const { cssWidth, cssHeight } = this.screen;
@@ -224,7 +230,7 @@ export class Viewer {
       this.tell(device, nowS);
       outcome = device.renderer.draw(nowS);
     } catch (error) {
-      // The renderer trapped: its instance is not to be called again.
+      // The renderer has trapped. Its instance must not be called again.
       this.keeper.giveUp(error instanceof Error ? error.message : String(error));
       return 'none';
     }
@@ -237,7 +243,7 @@ export class Viewer {
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
   }
 
-  /** Everything that changed since the last frame. @param {Device} device @param {number} nowS */
+  /** Passes the changes since the last frame to the device. @param {Device} device @param {number} nowS */
   tell({ renderer }, nowS) {
     const { screen, due, upload, look, reveal } = this;
     if (due.size) {
@@ -264,7 +270,7 @@ export class Viewer {
     this.events.onLegend(legendOf(colour, theme, this.columns, this.upload.range));
   }
 
-  /** @param {number} nowS @returns {boolean} whether more is to appear */
+  /** @param {number} nowS @returns {boolean} whether further levels are to appear */
   tellReveal(nowS) {
     const { reveal, columns } = this;
     if (!reveal.active) return false;
@@ -288,7 +294,7 @@ export class Viewer {
   }
 
   /**
-   * The picture without panels, drawn into a texture and read back.
+   * Draws the picture, without panels, into a texture and reads it back.
    * @param {number} widthPx @param {number} heightPx @param {boolean} transparent
    * @returns {Promise<{width: number, height: number, pixels: Uint8Array<ArrayBuffer>}>}
    */
@@ -297,7 +303,7 @@ export class Viewer {
     if (!device) throw new Error('There is no picture yet.');
     const { renderer } = device;
     const now = nowS();
-    // A picture on file shows the particles where they are, not on their way.
+    // A saved picture shows the particles at their final positions, not during an animation.
     if (this.upload.glide.active) this.upload.restart();
     this.tell(device, now);
     const [width, height] = renderer.picture_size(widthPx, heightPx);

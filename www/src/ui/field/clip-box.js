@@ -1,4 +1,4 @@
-/** The box that bounds the surface, axis by axis. */
+/** The controls of the clip box, one row per axis. */
 import { computed, effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { formatSignificant } from '../format.js';
@@ -7,7 +7,7 @@ import { formatSignificant } from '../format.js';
 /** @typedef {import('../../engine/types.js').Bounds} Bounds */
 
 const AXES = /** @type {const} */ (['x', 'y', 'z']);
-/** A step of the number boxes, as a share of the box's side, rounded to a power of ten. */
+/** Step of the number boxes, as a share of the box's side. It is rounded to a power of ten. */
 const STEP_SHARE = 0.02;
 
 /** @param {Engine} engine */

@@ -1,6 +1,6 @@
 /**
- * The full formula editor, loaded on the first focus: colours, bracket pairs, completion with help, and the place of an
- * error underlined. It lives in a shadow root, where its style sheets are constructed and need no inline style.
+ * The full formula editor, which is loaded on the first focus. It has syntax colours, bracket pairs, completion with
+ * help, and an underline at an error. It is in a shadow root, where constructed style sheets replace inline styles.
  */
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
@@ -15,7 +15,7 @@ import { h } from '../dom.js';
  * @property {string} text
  * @property {{ anchor: number, head: number }} selection
  * @property {Functions} functions
- * @property {() => string[]} names the parameters of the formula
+ * @property {() => string[]} names returns the names of the formula's parameters
  * @property {(text: string) => void} change
  */
 
@@ -65,7 +65,7 @@ const faultField = StateField.define({
   ],
 });
 
-/** Colours for numbers, functions, coordinates and parameters. @param {Functions} functions */
+/** Returns the extension that colours numbers, functions, coordinates and parameters. @param {Functions} functions */
 function tokens(functions) {
   const known = new Set(functions.map(({ name }) => name));
   const marks = Object.fromEntries(

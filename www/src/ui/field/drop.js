@@ -1,4 +1,4 @@
-/** A file dropped anywhere on the page becomes a surface; while one is dragged over it, the page says so. */
+/** Opens a file that is dropped anywhere on the page, and shows a hint while a file is dragged over it. */
 import { h } from '../dom.js';
 import { carriesFiles, FORMATS, LIMIT, listOf } from './files.js';
 
@@ -27,12 +27,12 @@ export function mountDrop(engine, toast) {
   });
   addEventListener('dragover', (event) => {
     if (!carriesFiles(event.dataTransfer)) return;
-    // Without this the browser would leave the page and show the file.
+    // Otherwise the browser would leave the page and show the file.
     event.preventDefault();
     if (event.dataTransfer) event.dataTransfer.dropEffect = 'copy';
     show(true);
   });
-  // The drag left the window, and not only one element for the next.
+  // The hint disappears only when the drag leaves the window, not when it moves between elements.
   addEventListener('dragleave', (event) => {
     if (event.relatedTarget === null) show(false);
   });
@@ -44,7 +44,7 @@ export function mountDrop(engine, toast) {
       const { dataTransfer } = event;
       if (!dataTransfer || !carriesFiles(dataTransfer)) return;
       event.preventDefault();
-      // The formula's editor would take the file for text.
+      // Otherwise the formula editor would insert the file as text.
       event.stopPropagation();
       const [file, ...others] = dataTransfer.files;
       if (!file) return;

@@ -1,4 +1,4 @@
-/** What is known of a model from points, as rows. Pure. */
+/** Lists the facts about a model from points. */
 import { formatCount, formatSignificant } from '../format.js';
 
 const NORMALS = { given: 'given', from_mesh: 'from the mesh', estimated: 'estimated' };
@@ -41,7 +41,7 @@ export function factsOf({ points, centres, condition, residual_mean, residual_ma
       help: 'Largest distance of a point read from the surface, as a share of the diagonal of their box.',
     },
   ];
-  // Where every point was fitted, one row says it.
+  // If every point is a centre, one row is enough.
   return points === centres
     ? rows
         .filter(({ label }) => label !== 'Points read')

@@ -1,4 +1,4 @@
-/** What is wrong with a formula, in words and as repairs, or not yet to be judged. Pure: the elements are built elsewhere. */
+/** Describes the error in a formula and its possible repairs, or returns a hint while the formula is unfinished. */
 
 /** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
 /**
@@ -10,7 +10,7 @@
  */
 /** @typedef {{ label: string, declare?: string, replace?: { start: number, end: number, text: string } }} Repair */
 
-/** Characters of context around the place of an error. */
+/** Number of characters of context around an error. */
 const CONTEXT = 22;
 
 /**
@@ -41,14 +41,14 @@ export function describeFault(formula, fault) {
         : mending === ''
           ? `Remove ${shorten(marked)}`
           : `Change to ${shorten(mending)}`;
-    // An ellipsis stands for what the reader has to fill in.
+    // An ellipsis stands for text that the user has to fill in.
     repairs.unshift({ label, replace: { start, end, text: mending.replace('…', '') } });
   }
   return { tone: 'fault', message: fault.message, excerpt: excerptOf(formula, start, end), repairs };
 }
 
 /**
- * The place of the error with a little of the formula on both sides.
+ * Returns the part of the formula at an error, with some context on both sides.
  * @param {string} formula
  * @param {number} start
  * @param {number} end
@@ -68,23 +68,23 @@ export function excerptOf(formula, start, end) {
 const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
 
 /**
- * A message in pieces: what stands between backticks is code.
+ * Splits a message into segments. Text between backticks is code.
  * @param {string} message
  * @returns {{ text: string, code: boolean }[]}
  */
 export function piecesOf(message) {
   const parts = message.split('`');
-  // An unpaired backtick is one of the formula's own characters.
+  // An unpaired backtick is a character of the formula.
   if (parts.length % 2 === 0) return [{ text: message, code: false }];
   return parts.map((text, i) => ({ text, code: i % 2 === 1 })).filter(({ text }) => text !== '');
 }
 
 /**
- * Whether a text ends in a name that is new and may become a function's with the next keys, as `sq` does on the way to `sqrt`. The
- * constant e is not new.
+ * Returns whether a text ends in an unknown name that is the beginning of a function's name, as `sq` is of `sqrt`. The
+ * constant e is known.
  * @param {string} text  up to the caret
  * @param {import('../../engine/types.js').Description['functions']} functions
- * @param {string[]} parameters  that the formula has
+ * @param {string[]} parameters  of the formula
  */
 export function beginsFunction(text, functions, parameters) {
   const [name] = /[\p{L}_][\p{L}\p{N}_]*$/u.exec(text) ?? [''];

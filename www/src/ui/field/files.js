@@ -1,7 +1,7 @@
-/** Files of points: what is read, and how a drag is told from others. Pure. */
+/** Describes the point files that can be read, and the errors in reading them. */
 import { FILE_TYPES, LARGEST_FILE_BYTES } from '../../engine/types.js';
 
-/** PLY, OBJ … in words for a person; `.txt` is only another name for XYZ. */
+/** Names of the file formats, such as PLY and OBJ. `.txt` is only another extension of XYZ. */
 export const FORMATS = FILE_TYPES.split(',')
   .filter((type) => type !== '.txt')
   .map((type) => type.slice(1).toUpperCase());
@@ -12,10 +12,13 @@ export const listOf = (words) =>
 
 export const LIMIT = `${Math.round(LARGEST_FILE_BYTES / 1e6)}\u202fMB`;
 
-/** Whether a drag carries files, and not text or a picture of the page. @param {{ types: readonly string[] } | null} transfer */
+/**
+ * Returns whether a drag carries files rather than text or an image of the page.
+ * @param {{ types: readonly string[] } | null} transfer
+ */
 export const carriesFiles = (transfer) => transfer?.types.includes('Files') ?? false;
 
-/** What can be done about a refused file or model, by the core's word for the reason. @type {Record<string, string>} */
+/** Advice after the refusal of a file or model, by the kind of error. @type {Record<string, string>} */
 const ADVICE = {
   too_large: `Thin the points out, or save fewer decimals: files up to ${LIMIT} are read.`,
   unreadable: 'Check that the file is still there and may be read.',
@@ -25,7 +28,7 @@ const ADVICE = {
 };
 
 /**
- * What went wrong, in a person's words.
+ * Describes an error in loading for the user.
  * @param {import('../../engine/types.js').LoadingError} error
  */
 export function describeLoadingError({ name, kind, message, line }) {

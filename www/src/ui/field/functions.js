@@ -1,4 +1,4 @@
-/** The list of functions that a formula may use, generated from the core's description. */
+/** Shows the functions that a formula may use, from the core's description. */
 
 import { createDialog } from '../dialog.js';
 import { h } from '../dom.js';

@@ -1,4 +1,7 @@
-/** The gallery: one picture per surface, chosen like radio buttons; formulas first, then models from points and the file opened last. */
+/**
+ * The gallery: one picture per surface, as radio buttons. Formulas come first, then models from points and the file
+ * opened last.
+ */
 import { computed, effect } from '@preact/signals-core';
 import { FILE_SURFACE, FILE_TYPES } from '../../engine/types.js';
 import { h } from '../dom.js';
@@ -51,7 +54,7 @@ export function createGallery(engine, description) {
     return createTile(id, name, picture, () => ({ title: name, text: story, ideal: credit }));
   }
 
-  /** Choosing the present surface again takes its own formula back. @param {string} id */
+  /** Restores the original formula when the present surface is chosen again. @param {string} id */
   function again(id) {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
   }
@@ -63,7 +66,7 @@ export function createGallery(engine, description) {
   );
   const open = createOpen(engine);
   models.append(...open);
-  // The file opened last gets a tile of its own: one press leads back to it.
+  // The file opened last has its own tile, by which the user can return to it.
   const file = computed(() =>
     engine.field.value?.surface === FILE_SURFACE ? (engine.field.value.model?.name ?? 'File') : null,
   );
@@ -87,7 +90,7 @@ export function createGallery(engine, description) {
   effect(() => {
     void chosen.value;
     check();
-    // In a strip the chosen one may stand outside: bring it in.
+    // In the compact layout the gallery is a strip that scrolls. The chosen tile is scrolled into view.
     if (chosen.value)
       inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   });
@@ -104,7 +107,7 @@ export function createGallery(engine, description) {
 /** @param {string} name */
 const extensionOf = (name) => /\.([a-z0-9]{1,4})$/i.exec(name)?.[1].toUpperCase() ?? 'File';
 
-/** The button that opens a file, and the chooser behind it. @param {Engine} engine @returns {HTMLElement[]} */
+/** Creates the button that opens a file, and its file chooser. @param {Engine} engine @returns {HTMLElement[]} */
 function createOpen(engine) {
   const chooser = h('input', {
     type: 'file',
@@ -113,7 +116,7 @@ function createOpen(engine) {
     on: {
       change: () => {
         const file = chooser.files?.[0];
-        // The same file may be chosen again after it was changed.
+        // Without this, choosing the same file again after a change would send no event.
         chooser.value = '';
         if (file) void engine.openFile(file);
       },

@@ -1,4 +1,4 @@
-/** A model or a file on its way: how far it is, a way to give up, and what to do where it was refused. */
+/** Shows the progress of a model or a file that is loading, a Cancel button, and advice after a refusal. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatShare } from '../format.js';
@@ -6,7 +6,7 @@ import { describeLoadingError } from './files.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
-/** Assistive technology hears of the progress in steps of this share. */
+/** Step of the progress that is announced to assistive technology. */
 const SPOKEN_SHARE = 0.25;
 
 /** @param {Engine} engine */
@@ -32,7 +32,7 @@ export function createLoading(engine) {
   const name = computed(() => engine.loading.value?.name ?? null);
   effect(() => {
     const present = name.value;
-    // Who pressed Cancel keeps a place on the page.
+    // The Cancel button disappears, so the focus moves to the button that opens a file.
     if (present === null && document.activeElement === cancel)
       /** @type {HTMLElement | null} */ (document.querySelector('.open-file'))?.focus();
     working.hidden = present === null;

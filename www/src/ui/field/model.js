@@ -1,4 +1,6 @@
-/** In the place of the formula: what a surface from points is made of, how well it fits, and the way back to a formula. */
+/**
+ * Replaces the formula for a surface from points: its facts, how well it fits, and a button that returns to a formula.
+ */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -32,7 +34,7 @@ export function createModel(engine, description) {
     warnings,
   );
 
-  // The formula left last, with its sliders and box.
+  // The last formula, with its parameters and box, for the way back.
   /** @type {Shape | null} */
   let left = null;
   effect(() => {

@@ -1,4 +1,4 @@
-/** The field panel: which surface, its formula, its parameters, its box. */
+/** The field panel: the surface, its formula, its parameters and its clip box. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { createClipBox } from './clip-box.js';
@@ -30,7 +30,11 @@ export function mountField(body, engine, description) {
   );
 }
 
-/** Name, facts, story and credit of the surface at hand. @param {Engine} engine @param {Description} description */
+/**
+ * Shows the name, facts, story and credit of the present surface.
+ * @param {Engine} engine
+ * @param {Description} description
+ */
 function createStory(engine, description) {
   const section = h('div', { class: 'section story' });
   const story = computed(() => {

@@ -1,4 +1,4 @@
-/** One slider and one number box for every parameter of the formula. */
+/** Creates a slider and a number box for every parameter of the formula. */
 import { computed, effect } from '@preact/signals-core';
 import { createScope, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -17,7 +17,7 @@ export function createParameters(engine) {
     h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), resetAll(engine)),
     rows,
   );
-  // The controls are rebuilt only when the parameters themselves change, not with their values.
+  // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
     JSON.stringify(
       (engine.field.value?.parameters ?? []).map(({ name, label, min, max, step }) => [name, label, min, max, step]),
@@ -69,7 +69,7 @@ function resetAll(engine) {
 function createRow(engine, { name, label, value, min, max, step }, values, scope) {
   const title = label && label !== name ? label : `Parameter ${name}`;
   const slider = createSlider({
-    // With the symbol: a setting of the sampling may have the same name, as the radius of the sphere has.
+    // The accessible name includes the symbol, because a sampling setting may have the same label, such as the radius.
     name: label && label !== name ? `${label} ${name}` : title,
     scale: { min, max, step },
     value: values.peek()[name] ?? value,

@@ -1,10 +1,10 @@
-/** What is told of the surface at hand. Pure. */
+/** Returns the description of the present surface. */
 import { FILE_SURFACE } from '../../engine/types.js';
 import { plural } from '../format.js';
 
 /**
  * @param {import('../../engine/types.js').Description} description
- * @param {string | null} id null for a formula that is nobody's
+ * @param {string | null} id null for a formula that is not in the gallery
  * @param {import('../../engine/types.js').ModelInfo | null} info of a surface from points
  * @returns {{ name: string, facts: string, text: string, credit: string }}
  */

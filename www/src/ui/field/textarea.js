@@ -1,4 +1,4 @@
-/** The formula in a native text area: there at once, works everywhere. */
+/** The formula in a native text area, which is available before the full editor has loaded and where it cannot load. */
 import { h } from '../dom.js';
 
 /**

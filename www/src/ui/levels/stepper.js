@@ -1,6 +1,5 @@
 /**
- * Stepping through the generation levels, by hand and by itself. The level is part of the state; what is drawn of it is the
- * picture's affair.
+ * Steps through the generation levels, manually and by playback. The level is part of the state; the viewer draws it.
  */
 import { computed, effect, signal } from '@preact/signals-core';
 import { levelTable } from './table.js';
@@ -9,20 +8,20 @@ import { turnToSeed } from './turn.js';
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
 export class Stepper {
-  /** @param {Engine} engine @param {() => number} perSecond  levels per second while it goes by itself */
+  /** @param {Engine} engine @param {() => number} perSecond  levels per second during playback */
   constructor(engine, perSecond) {
     this.engine = engine;
     this.perSecond = perSecond;
     this.table = signal(levelTable(engine.columns));
-    /** The newest level to be seen, null while all are shown. */
+    /** The newest visible level, null while all are shown. */
     this.chosen = computed(() => engine.state.value.view.level);
-    /** Whether there is any level. */
+    /** Whether there are levels. */
     this.some = computed(() => this.table.value.count > 0 && !engine.empty.value);
     /** The newest level that is drawn. */
     this.at = computed(() => Math.min(this.chosen.value ?? Infinity, this.table.value.last));
     this.playing = signal(false);
     this.timer = 0;
-    // However many pieces a run comes in, the table is made once a frame.
+    // The table is computed at most once per frame, however many column messages a run sends.
     let asked = false;
     effect(() => {
       void engine.revision.value;
@@ -47,7 +46,7 @@ export class Stepper {
     this.engine.setView({ level });
   }
 
-  /** Goes to a level by hand. @param {number | null} level */
+  /** Shows a level at the user's request and stops the playback. @param {number | null} level */
   seek(level) {
     this.pause();
     if (this.some.peek()) this.show(level);
@@ -56,7 +55,7 @@ export class Stepper {
   /** @param {1 | -1} by */
   step(by) {
     const to = this.at.peek() + by;
-    // From the whole picture a step back leads to the last level, a step forward from that to the whole picture.
+    // While all levels are shown, a step back shows the last level; a step forward from that shows all.
     if (this.chosen.peek() === null) this.seek(by < 0 ? this.last : null);
     else this.seek(to > this.last ? null : Math.max(0, to));
   }
@@ -84,7 +83,7 @@ export class Stepper {
 
   next() {
     const level = this.chosen.peek();
-    // Another run may have begun meanwhile; after the last level all of them are shown alike.
+    // Another run may have started meanwhile. After the last level, all levels are shown.
     if (level === null || level >= this.last) {
       this.show(null);
       this.pause();

@@ -1,22 +1,23 @@
-/** What each generation level holds and how it came about, read from the particles; and that in words. Pure. */
+/** Counts the particles and slot fates of each generation level, and describes them in words. */
 import { FATE, NO_PARENT } from '../../engine/columns.js';
 import { formatCount, plural } from '../format.js';
 
 /** @typedef {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'parents' | 'slots' | 'adaptive' | 'lastLevel'>} Particles */
 /**
- * One row per level. `fates` has eight numbers for each: how the children fared that the level before proposed.
+ * The table has one row per level. `fates` has eight counts per level: the fates of the children that the previous
+ * level proposed.
  * @typedef {object} LevelTable
  * @property {number} count  particles in all
- * @property {number} last  the last level
+ * @property {number} last  number of the last level
  * @property {Uint32Array} fresh  particles of each level
- * @property {Uint32Array} total  and of all levels up to it
- * @property {Uint32Array} seeds  those of them without a parent
+ * @property {Uint32Array} total  particles of all levels up to each one
+ * @property {Uint32Array} seeds  particles of each level without a parent
  * @property {Uint32Array} fates
  * @property {boolean} adaptive
  */
 
 const FATES = 8;
-/** Three bits each in one number. */
+/** Largest number of slots in a 32-bit number, at three bits per slot. */
 const MOST_SLOTS = 10;
 
 /** @param {Particles} particles @returns {LevelTable} */
@@ -24,7 +25,7 @@ export function levelTable({ count, levels, parents, slots, adaptive, lastLevel 
   const last = count > 0 ? lastLevel : 0;
   const fresh = new Uint32Array(last + 1);
   const seeds = new Uint32Array(last + 1);
-  // One level more: the last one's children found no place.
+  // There is one more level, for the fates of the last level's children.
   const fates = new Uint32Array(FATES * (last + 2));
   for (let i = 0; i < count; i += 1) {
     const level = levels[i];
@@ -38,7 +39,7 @@ export function levelTable({ count, levels, parents, slots, adaptive, lastLevel 
   return { count, last, fresh, total, seeds, fates, adaptive };
 }
 
-/** How the children fared that were not placed, in the order in which it is said. */
+/** Fates of the children that were not placed, in the order of the description. */
 const REST = /** @type {const} */ ([
   ['matched', 'met an existing particle', 'met existing particles'],
   ['outside', 'fell outside the box', 'fell outside the box'],
@@ -47,19 +48,23 @@ const REST = /** @type {const} */ ([
   ['capped', 'was over the limit', 'were over the limit'],
 ]);
 
-/** Particles of a level on a flat plane around one seed; null where there is no such figure. @param {LevelTable} table @param {number} level */
+/**
+ * Returns the number of particles of a level on a plane around one seed; null for adaptive runs or several seeds.
+ * @param {LevelTable} table
+ * @param {number} level
+ */
 export function flatCount({ adaptive, seeds }, level) {
   return !adaptive && level > 0 && seeds.reduce((sum, n) => sum + n, 0) === 1 ? 6 * level : null;
 }
 
-/** For the slider. @param {LevelTable} table @param {number} level */
+/** Returns the short text of a level for the slider. @param {LevelTable} table @param {number} level */
 export const shortOf = ({ last, fresh, total }, level) =>
   `Level ${formatCount(level)} of ${formatCount(last)}: ${plural(fresh[level], 'particle')}, ${formatCount(total[level])} so far`;
 
 /**
- * The level in words: what there is, and how it came about.
+ * Describes a level: its particles, and the fates of the children proposed.
  * @param {LevelTable} table @param {number} level
- * @param {number} relaxSteps  by which the particles have been moved since
+ * @param {number} relaxSteps  number of relaxation steps since
  */
 export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates } = table;

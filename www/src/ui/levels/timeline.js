@@ -1,5 +1,5 @@
 /**
- * The timeline of the generation levels: a bar for the new particles of each, a slider over them, and buttons to go level by level.
+ * The timeline of the generation levels: a bar per level for its new particles, a slider over the bars, and buttons.
  */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
@@ -61,7 +61,7 @@ export function createTimeline(body, engine, told) {
   return commands;
 }
 
-/** The bars with the slider over them. @param {Stepper} stepper */
+/** Creates the bars and the slider over them. @param {Stepper} stepper */
 function trackOf(stepper) {
   const { table, chosen, some, at } = stepper;
   const range = sliderOf(stepper);
@@ -69,7 +69,7 @@ function trackOf(stepper) {
   const track = h('div', { class: 'levels-track' }, chart, range);
   effect(() => {
     const { fresh, last } = table.value;
-    // Once pale, and once in colour as far as the level goes.
+    // The bars are drawn twice: pale in full, and coloured up to the present level.
     fill(chart, bars(fresh), bars(fresh));
     track.style.setProperty('--bars', String(last + 1));
     range.max = String(last);
@@ -95,7 +95,7 @@ function sliderOf(stepper) {
     const { left, width } = range.getBoundingClientRect();
     return clamp(Math.floor(((clientX - left) / Math.max(1, width)) * (stepper.last + 1)), 0, stepper.last);
   };
-  // By hand, so that a press anywhere in a bar leads there, on every system.
+  // The page handles the press itself, so that a press anywhere in a bar selects it on every system.
   range.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || range.disabled) return;
     range.setPointerCapture(event.pointerId);
@@ -113,7 +113,7 @@ function sliderOf(stepper) {
   return range;
 }
 
-/** Which level is shown. @param {Stepper} stepper */
+/** Creates the caption with the present level. @param {Stepper} stepper */
 function captionOf({ table, chosen, some, at }) {
   const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
   const unit = (/** @type {string} */ text) => h('span', { class: 'unit' }, text);
@@ -176,14 +176,14 @@ function button(name, label, text, key, act, enabled) {
   return element;
 }
 
-/** A bar per level as one path, stretched to the room there is. @param {Uint32Array} fresh */
+/** Draws a bar per level as one path, which is stretched to the available width. @param {Uint32Array} fresh */
 function bars(fresh) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
   const most = fresh.reduce((a, b) => Math.max(a, b), 1);
   svg.setAttribute('viewBox', `0 0 ${fresh.length} 1`);
   svg.setAttribute('preserveAspectRatio', 'none');
-  // A level with one particle among hundreds is still to be seen.
+  // A minimum height keeps a level with few particles visible.
   path.setAttribute(
     'd',
     Array.from(fresh, (n, k) => `M${k + GAP} 1V${(1 - Math.max(n / most, LEAST)).toFixed(3)}h${1 - 2 * GAP}V1z`).join(
@@ -193,6 +193,6 @@ function bars(fresh) {
   svg.append(path);
   return svg;
 }
-/** Room on each side of a bar, as a share of a level's width; and the least height of a bar. */
+/** Gap on each side of a bar, as a share of a level's width, and the minimum height of a bar. */
 const GAP = 0.1;
 const LEAST = 0.06;

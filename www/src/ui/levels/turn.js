@@ -1,4 +1,4 @@
-/** Turns the picture so that the place where the front starts is seen: it often lies on the far side. */
+/** Turns the picture so that the seed of the front is visible, since it is often on the far side. */
 import { reducedMotion } from '../dom.js';
 import { clamp } from '../scale.js';
 import { facing } from './facing.js';
@@ -16,7 +16,7 @@ export function turnToSeed(engine) {
   const start = performance.now();
   let done = 0;
   let held = false;
-  // The hand has the last word.
+  // Any input by the user stops the rotation.
   addEventListener(
     'pointerdown',
     () => {

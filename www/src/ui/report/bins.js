@@ -1,9 +1,9 @@
-/** Bins of a histogram. Pure. */
+/** Functions on the bins of a histogram. */
 
 /** @typedef {{ min: number, max: number, bins: number[] }} Bins */
 
 /**
- * At most `rows` wider bins that hold the same counts, empty ones at both ends left out.
+ * Merges bins into at most `rows` wider ones with the same counts, and removes empty bins at both ends.
  * @param {Bins} histogram
  * @param {number} rows
  */
@@ -26,7 +26,7 @@ export function coarsen({ min, max, bins }, rows) {
 }
 
 /**
- * Without the empty bins at both ends, but with the place `keep` and a little air around.
+ * Removes the empty bins at both ends, but keeps the value `keep` and a small margin.
  * @param {Bins} histogram
  * @param {number} keep
  * @returns {Bins}
@@ -44,7 +44,7 @@ export function trim({ min, max, bins }, keep) {
 }
 
 /**
- * Distances over the diameters of the particles, in the bins of the core's own histogram.
+ * Counts the nearest distances, relative to the particles' diameters, in the bins of the core's histogram.
  * @param {ArrayLike<number>} nearest @param {ArrayLike<number>} radii
  */
 export function overDiameters(nearest, radii) {

@@ -1,10 +1,10 @@
-/** The histogram's drawing, loaded with the first report. */
+/** Draws the histogram. This module is loaded with the first report. */
 import uPlot from 'uplot';
 import { formatSignificant } from '../format.js';
 
 /** @param {string} name */
 const token = (name) => {
-  // A canvas does not resolve light-dark(): let an element do it.
+  // A canvas does not resolve light-dark(), so an element does.
   const probe = document.createElement('span');
   probe.style.color = `var(${name})`;
   document.body.append(probe);
@@ -70,7 +70,7 @@ export function drawHistogram(host, { min, max, bins }) {
   plots.set(host, { plot, colours, observer });
 }
 
-/** A dashed line at the distance of the perfect hexagonal lattice. @param {uPlot} u @param {string} stroke */
+/** Draws a dashed line at the spacing of the perfect hexagonal lattice. @param {uPlot} u @param {string} stroke */
 function drawIdeal(u, stroke) {
   const x = Math.round(u.valToPos(1, 'x', true));
   const { left, top, width, height } = u.bbox;

@@ -1,4 +1,4 @@
-/** How the distances to the nearest particle spread: a plot, and the same as a table. */
+/** Shows the distribution of the nearest distances, as a plot and as a table. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
@@ -7,7 +7,10 @@ import { coarsen, overDiameters, trim } from './bins.js';
 /** @typedef {import('../../engine/types.js').Report} Report */
 
 const TABLE_ROWS = 12;
-/** Distances are given over the spacing of a perfect hexagonal lattice of as many particles, or of particles that touch. */
+/**
+ * Distance of a perfect lattice. Distances are relative to the hexagonal spacing, or in adaptive runs to the particles'
+ * diameters.
+ */
 const IDEAL = 1;
 
 /**
@@ -47,7 +50,7 @@ export function createHistogram(report, { theme, columns }) {
   );
   effect(() => {
     const current = report.value;
-    // Where every particle has a size of its own, so has its distance.
+    // In an adaptive run each distance is relative to the diameter of its particle.
     const bins =
       columns.adaptive && columns.nearest ? overDiameters(columns.nearest, columns.radii) : current?.nearest_histogram;
     unit.textContent = columns.adaptive ? 'own diameter 1' : 'perfect lattice 1';

@@ -1,4 +1,4 @@
-/** The report: how good the particles are, how long it took, how their distances spread. */
+/** The report panel: the quality figures, the timing, and the distribution of the nearest distances. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -22,7 +22,7 @@ const DRAWN = {
  * @param {import('../../engine/types.js').Description} description
  */
 export function mountReport(body, engine, description) {
-  // While a run is under way the figures of the one before stay, dimmed.
+  // During a run the figures of the previous one stay, dimmed.
   let kept = engine.report.peek();
   const report = computed(() => {
     kept = engine.empty.value ? null : (engine.report.value ?? kept);

@@ -1,11 +1,12 @@
-/** Figures of a report by their path, and how they are written. Pure. */
+/** Reads the figures of a report by their path and formats them. */
 import { formatCount, formatFixed, formatSignificant, MISSING } from '../format.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
 
 /**
- * The value at a path such as `quality.six`; null for a number that is not finite, which is what an undefined figure is.
+ * Returns the value at a path such as `quality.six`. It is null for a non-finite number, which stands for an undefined
+ * figure.
  * @param {unknown} root
  * @param {string} key
  * @returns {unknown}
@@ -20,14 +21,17 @@ export function valueAt(root, key) {
   return typeof value === 'number' && !Number.isFinite(value) ? null : value;
 }
 
-/** Whether a relaxation step was made: there is an energy before the first step and after each. @param {Report} report */
+/**
+ * Returns whether a relaxation step was made. The energies are those before the first step and after each step.
+ * @param {Report} report
+ */
 const isRelaxed = ({ energy }) => energy.length > 1;
 
 /**
- * The figure of the whole run or, of quality, the one before relaxation and the one after.
+ * Returns a figure of the whole run or, for a quality figure, its values before and after relaxation.
  * @param {Report} report
  * @param {string} key
- * @returns {{ paired: boolean, now: unknown, before: unknown }} what does not exist is undefined
+ * @returns {{ paired: boolean, now: unknown, before: unknown }} undefined for a value that does not exist
  */
 export function figuresOf(report, key) {
   const value = valueAt(report, key);
@@ -37,8 +41,7 @@ export function figuresOf(report, key) {
 }
 
 /**
- * Whether a report says anything of a figure: not every run has every one. Without a report every row has
- * its place.
+ * Returns whether a report has a figure, as not every run has all of them. Without a report all rows are shown.
  * @param {Report | null} report
  * @param {Pick<ReportRow, 'key' | 'unless'>} row
  */
@@ -51,12 +54,12 @@ export function isTold(report, { key, unless }) {
   return (!report || has(key)) && !(unless && has(unless));
 }
 
-/** The core's words, in those of a person. @type {Record<string, string>} */
+/** Words shown for the core's values. @type {Record<string, string>} */
 const WORDS = { proven: 'proven', searched: 'by dense search' };
 
-/** Digits of a figure in all: decimals of large numbers say nothing. */
+/** Largest number of digits of a figure. Decimals of large numbers are not significant. */
 const MOST_DIGITS = 5;
-/** More decimals than this are not written out. */
+/** Number of decimals beyond which a figure is written as a power of ten. */
 const TINY_DIGITS = 4;
 
 /** @param {ReportRow} row @param {unknown} value */
@@ -64,7 +67,7 @@ export function writeFigure({ digits, unit }, value) {
   if (typeof value === 'string') return WORDS[value] ?? value;
   if (typeof value !== 'number') return MISSING;
   if (unit === '%') return formatFixed(value * 100, digits);
-  // So many decimals are there for very small figures, which read better as powers of ten.
+  // Such figures are usually very small and easier to read as powers of ten.
   if (digits > TINY_DIGITS) return value === 0 ? '0' : formatSignificant(value, 2);
   if (digits === 0) return formatCount(value);
   const whole = Math.max(0, Math.floor(Math.log10(Math.abs(value) || 1)));
@@ -72,7 +75,7 @@ export function writeFigure({ digits, unit }, value) {
 }
 
 /**
- * A range as its two ends, or as one figure where they are the same.
+ * Formats a range by its two ends, or as one figure if they are equal.
  * @param {ReportRow} row
  * @param {Report} report
  */
@@ -82,7 +85,7 @@ export function writeRange({ key, to }, report) {
 }
 
 /**
- * Whether relaxation made the figure better, worse, or neither.
+ * Returns whether relaxation has made a figure better, worse, or neither.
  * @param {ReportRow} row
  * @param {unknown} before
  * @param {unknown} now
@@ -96,7 +99,7 @@ export function compare({ better, digits, unit }, before, now) {
   return change > 0 === (better === 'higher') ? 'better' : 'worse';
 }
 
-/** The groups in the order of their first row. @param {ReportRow[]} rows */
+/** Groups the rows, in the order of their first row. @param {ReportRow[]} rows */
 export function groupRows(rows) {
   /** @type {Map<string, ReportRow[]>} */
   const groups = new Map();

@@ -1,4 +1,4 @@
-/** The report's rows as a table; every name explains its figure. */
+/** Shows the report's rows as a table. Every label has an explanation of its figure. */
 import { effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -8,7 +8,7 @@ import { compare, figuresOf, groupRows, isTold, writeFigure, writeRange } from '
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
 
 /**
- * One table, so that every figure stands in the same column; units go with the names.
+ * Creates one table for all groups, so that the figures are aligned. Units are part of the labels.
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
  */
@@ -78,7 +78,7 @@ function createRow(report, row) {
     const current = report.value;
     line.hidden = !isTold(current, row);
     if (paired) return;
-    // A range or a word needs the room of two figures.
+    // A range or a word spans both columns.
     const wide = row.to || (current && typeof figuresOf(current, row.key).now === 'string');
     head.colSpan = wide ? 1 : 2;
     now.colSpan = wide ? 2 : 1;

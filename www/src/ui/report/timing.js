@@ -1,4 +1,4 @@
-/** Time of the sampling and of each of its phases, as figures and as bars; and of the measuring after it. */
+/** Shows the times of the sampling, of each of its phases as figures and bars, and of the measurement. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatSeconds, formatSignificant, samplingSeconds } from '../format.js';
@@ -11,7 +11,7 @@ const PHASES = /** @type {const} */ ([
 
 /**
  * @param {import('../../engine/types.js').Engine} engine
- * @param {import('@preact/signals-core').ReadonlySignal<unknown>} report the times appear together with the figures
+ * @param {import('@preact/signals-core').ReadonlySignal<unknown>} report the report, with which the times appear
  */
 export function createTiming(engine, report) {
   const section = h('div', { class: 'section timing' });

@@ -1,4 +1,4 @@
-/** The sampling bar: which kind, what to do, how far it is, and the settings that the core describes. */
+/** The sampling panel: the kind of sampling, the actions, the progress, and the settings that the core describes. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
@@ -28,9 +28,9 @@ export function mountSampling(body, engine, { settings }, { head }) {
   );
 }
 
-/** How far the run is. @param {Engine} engine */
+/** Creates the progress bar. @param {Engine} engine */
 function createTrack({ busy, reveal, progress, loading }) {
-  // The bar follows the picture while that still grows, and what is done for it otherwise.
+  // The bar follows the reveal of the picture while it lasts, and otherwise the run.
   const growing = computed(() => busy.value || reveal.value !== null || loading.value !== null);
   const fraction = computed(() => {
     if (loading.value) return loading.value.fraction;
@@ -92,7 +92,7 @@ function createActions(engine) {
  */
 function action(label, help, act, enabled, kind = '') {
   const press = once(act);
-  // It stays focusable while it can do nothing, so that a keyboard user does not lose the place.
+  // The button stays focusable while it is disabled, so that keyboard users do not lose their position.
   const button = h(
     'button',
     {
@@ -115,7 +115,7 @@ function action(label, help, act, enabled, kind = '') {
 }
 
 /**
- * Settings that few need, behind a button that says how many of them were changed.
+ * Creates the advanced settings behind a button that shows how many of them were changed.
  * @param {Engine} engine
  * @param {SettingInfo[]} all
  * @param {SettingInfo[]} advanced

@@ -1,4 +1,4 @@
-/** One setting of the sampler as a control, from the core's description of it. */
+/** Creates the control of one setting from the core's description. */
 import { computed, effect } from '@preact/signals-core';
 import { h, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
@@ -27,9 +27,9 @@ export function createSetting(engine, all, info) {
   const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
   const element = h('div', { class: 'setting', data: { setting: info.name, kind: kindOf(info) } }, label, control);
   const help = () => ({ title: info.label, text: info.help });
-  // Below it would lie over the next row.
+  // The popover is above, because below it would cover the next row.
   explain(element, help, { side: 'above' });
-  // A finger cannot hover: it taps the name.
+  // Touch has no hover, so a tap on the label shows the explanation.
   explain(label, help, { tap: true, side: 'above' });
 
   const holds = computed(() => isShown(info, all, engine.state.value.settings));

@@ -1,12 +1,12 @@
-/** Which settings of the sampler are shown, where, and as what. Pure. */
+/** Decides which settings are shown, where, and with which control. */
 
 /** @typedef {import('../../engine/types.js').SettingInfo} SettingInfo */
 /** @typedef {import('../../engine/types.js').Settings} Settings */
 
-/** The setting that decides which of the others there are: it stands at the head of the bar. */
+/** The setting on which the others depend. It is shown first. */
 const KIND = 'sampling';
 const ADVANCED = 'Advanced';
-/** As many letters in all fit side by side as a segmented control. */
+/** Largest number of letters in a segmented control. */
 const SEGMENTED_LETTERS = 24;
 
 /** @param {SettingInfo[]} settings */
@@ -19,7 +19,10 @@ export function arrange(settings) {
   };
 }
 
-/** Two or three short values are easier to see side by side than in a list. @param {SettingInfo} info */
+/**
+ * Returns whether a choice has two or three short values, which are shown as a segmented control.
+ * @param {SettingInfo} info
+ */
 export function isSegmented({ kind, choices = [] }) {
   return (
     kind === 'choice' &&
@@ -30,15 +33,15 @@ export function isSegmented({ kind, choices = [] }) {
 }
 
 /**
- * The value in force.
+ * Returns the effective value of a setting.
  * @param {SettingInfo[]} all
- * @param {Settings} values what differs from the defaults
+ * @param {Settings} values values that differ from the defaults
  * @param {string} name
  */
 export const settingValue = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
 
 /**
- * Whether every condition of a setting holds.
+ * Returns whether all conditions of a setting hold.
  * @param {SettingInfo} info
  * @param {SettingInfo[]} all
  * @param {Settings} values
@@ -48,7 +51,7 @@ export function isShown({ when = [] }, all, values) {
 }
 
 /**
- * How many of the shown settings were changed.
+ * Counts the visible settings that were changed.
  * @param {SettingInfo[]} some
  * @param {SettingInfo[]} all
  * @param {Settings} values

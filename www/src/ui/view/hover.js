@@ -1,4 +1,4 @@
-/** The card of the particle under the pointer, or tapped. */
+/** Shows a card for the particle under the pointer or the tapped one. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../format.js';

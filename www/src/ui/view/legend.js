@@ -1,4 +1,4 @@
-/** What the colours mean: the choice of the colouring, and its legend with range and unit. */
+/** Shows the choice of the colouring and its legend, with range and unit. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -75,13 +75,13 @@ const SCALES = {
   ],
   normal: (legend) => (legend.entries?.length ? SCALES.categories(legend) : SCALES.cyclic(legend)),
   sequential: (legend) => rampOf(legend, ([low, high]) => [formatSignificant(low), formatSignificant(high)]),
-  // Values beyond the ends have the colour of the end.
+  // Values outside the range have the colour of its end.
   diverging: (legend) =>
     rampOf(legend, ([low, high]) => [`≤\u2009${formatSignificant(low, 2)}`, `≥\u2009${formatSignificant(high, 2)}`]),
 };
 
 /**
- * A ramp of colours, its ends in figures, and a tick at the value worth one.
+ * Creates a colour ramp with figures at its ends and a tick at the legend's mark.
  * @param {Legend} legend
  * @param {(range: [number, number]) => [string, string]} write
  */
@@ -98,7 +98,7 @@ function rampOf({ colours, range, mark, unit, kind }, write) {
     ramp.append(tick);
   }
   const [first, last] = write(range);
-  // The middle belongs to the zero of a diverging ramp; its unit goes with the name.
+  // The middle of a diverging ramp shows the zero, so its unit is part of the title.
   const middle = kind === 'diverging' ? h('span', null, '0') : unit ? h('span', { class: 'unit' }, unit) : null;
   const ends = h('div', { class: 'ends', data: { kind } }, h('span', null, first), middle, h('span', null, last));
   return kind === 'diverging' && unit ? [ramp, ends, h('span', { class: 'unit' }, unit)] : [ramp, ends];

@@ -1,4 +1,4 @@
-/** What stands on the picture itself: the caption, the hint, the empty state, the poster's end. */
+/** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
 import { samplingSeconds } from '../format.js';
@@ -7,13 +7,15 @@ import { captionOf, loadingOf, revealOf } from './caption.js';
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
 const HINT_MS = 9000;
-/** Assistive technology hears of a run no more often than this. */
+/** Shortest interval between announcements of a run to assistive technology. */
 const ANNOUNCE_MS = 3000;
 
 /**
  * @param {HTMLElement} view
  * @param {Engine} engine
- * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement, told: import('@preact/signals-core').ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` is the generation level chosen, in words
+ * @param {{ stage: HTMLElement, poster: HTMLElement, start: HTMLElement, told:
+ *   import('@preact/signals-core').ReadonlySignal<{ title: string, text: string } | null> }} parts  `told` describes
+ *   the chosen generation level
  */
 export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const caption = h('p', { class: 'caption', 'aria-hidden': 'true' });
@@ -34,7 +36,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
             seconds: engine.timing.value && samplingSeconds(engine.timing.value.seconds),
           }),
   );
-  // The field panel reads the loading out.
+  // The field panel announces the loading.
   const line = h('span');
   const detail = h('span', { class: 'detail' });
   caption.append(line, detail);
@@ -46,7 +48,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     computed(() => engine.busy.value || engine.reveal.value !== null),
   );
 
-  // The poster stands in until the first particles are on screen.
+  // The poster is shown until the first particles are drawn.
   const drawn = computed(() => engine.backend.value !== 'starting' && engine.progress.value.particles > 0);
   const settled = computed(() => drawn.value || engine.empty.value);
   effect(() => {
@@ -60,7 +62,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
 
   hintUntilUsed(hint, stage, settled);
 
-  // What is wrong with the formula as it stands is said beside it.
+  // An error in the formula is shown beside the formula instead.
   const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
   effect(() => {
     empty.hidden = !lost.value;
@@ -69,7 +71,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   });
 }
 
-/** What there is instead of a surface, and what to do. @type {Record<string, [string, string] | undefined>} */
+/** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */
 const EMPTY = {
   constant: ['The formula is constant', 'Let it change with x, y or z.'],
   undefined: ['Undefined in the whole box', 'Look for the root or logarithm of a negative number, or move the box.'],
@@ -96,7 +98,7 @@ function emptyState(engine) {
   ];
   return [
     h('h2', null, title),
-    // The title says the first half of it.
+    // The title already contains the first half of the message.
     message ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, '')) : null,
     h(
       'p',
@@ -138,7 +140,7 @@ function hintUntilUsed(hint, stage, settled) {
 }
 
 /**
- * Reads the caption out, at most once in a while, and always the last word of a run.
+ * Announces the caption at most once per interval, and always at the end of a run.
  * @param {HTMLElement} spoken
  * @param {import('@preact/signals-core').ReadonlySignal<string>} text
  * @param {import('@preact/signals-core').ReadonlySignal<boolean>} busy

@@ -1,4 +1,4 @@
-/** The tools beside the picture: zoom, fit, view options, link, picture, export. */
+/** The toolbar beside the picture: zoom, fit, view options, link, picture, export. */
 import { computed, effect } from '@preact/signals-core';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -66,7 +66,7 @@ function tool(name, label, help, act) {
   return button;
 }
 
-/** Shows or hides the points that a model was made of. @param {Engine} engine */
+/** Creates the switch that shows the points of a model. @param {Engine} engine */
 function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
   const button = tool('points', 'Show points', 'The points that the surface goes through, as dots.', () =>
@@ -89,7 +89,7 @@ function choice(label, act, note) {
   );
 }
 
-/** Buttons for those who cannot drag. @param {Engine} engine */
+/** Creates buttons that turn the picture, for users who cannot drag. @param {Engine} engine */
 function turning(engine) {
   /** @type {[import('../icons.js').IconName, string, number, number][]} */
   const turns = [
