@@ -49,7 +49,7 @@ pub struct Figures {
     pub agree: f64,
     /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
     pub euler: i64,
-    /// Connected pieces of the surface by the natural neighbours: those of the same triangles, and points far from all
+    /// Number of components of the surface by the natural neighbours: those of the same triangles, and points far from all
     /// of them.
     pub components: usize,
     /// Smallest angle of any triangle, in degrees.

@@ -109,9 +109,9 @@ pub struct Report {
     pub levels: u32,
     /// Fronts started, each from a seed of its own.
     pub components_seeded: u32,
-    /// Connected pieces of the surface, by the natural neighbours of the particles.
+    /// Number of components of the surface, by the natural neighbours of the particles.
     pub components: usize,
-    /// Whether every connected piece is proven to have been found.
+    /// Whether every component is proven to have been found.
     pub search: Search,
     /// Cells of the box in which the proof could not decide; none where no proof was attempted.
     pub undecided_cells: Option<u64>,

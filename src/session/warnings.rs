@@ -55,7 +55,7 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> 
     if counts.left_out > 0 {
         warnings.push(format!(
             "Within 2r of other particles lie features too small for a particle of their own, {} in all: a smaller radius shows \
-             whether they are pieces by themselves.",
+             whether they are components of their own.",
             counts.left_out
         ));
     }

@@ -133,7 +133,7 @@ impl Core {
         self.session.measured().residual.clone()
     }
 
-    /// Connected piece per particle, 0 the largest, as of the last report; 0xffffffff for none.
+    /// Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
     pub fn component(&self) -> Vec<u32> {
         self.session.measured().component.clone()
     }

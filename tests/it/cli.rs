@@ -208,8 +208,8 @@ fn text_report_names_the_figures_before_and_after() {
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split("  ").map(str::trim).collect()).collect();
     for (label, figure) in [
         ("Euler number", "0"),
-        ("Connected pieces", "1"),
-        ("All pieces found", "proven"),
+        ("Connected components", "1"),
+        ("All components found", "proven"),
         ("Undecided cells", "0"),
     ] {
         let row = rows.iter().find(|row| row[0] == label);
@@ -376,7 +376,7 @@ fn comparison_as_text_has_columns_and_the_stop_reasons() {
     assert!(output.status.success(), "{}", stderr(&output));
     let text = stdout(&output);
     for label in
-        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Connected pieces "]
+        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Connected components "]
     {
         assert!(text.lines().any(|line| line.starts_with(label)), "no `{label}` in:\n{text}");
     }

@@ -218,10 +218,10 @@
  * @property {number} radius
  * @property {number} radius_min  of the smallest particle
  * @property {number} radius_max
- * @property {number} components  connected pieces
+ * @property {number} components  number of components
  * @property {number | null} undecided_cells  cells of the box that may still hold surface; null where no proof was attempted
  * @property {number | null} singular_points  places where f has no gradient on the surface; null where none were looked for
- * @property {'proven' | 'searched'} search  whether every piece is proven found, or a dense search found these
+ * @property {'proven' | 'searched'} search  whether a witness on every component is proven, or a dense search found the components
  * @property {number} evaluations
  * @property {number} evaluations_per_particle
  * @property {{added: number, matched: number, not_converged: number, outside: number, undefined: number, capped: number}} fates

@@ -1,4 +1,4 @@
-/** Adaptive runs and the colours that belong to them: radius, curvature and connected piece. */
+/** Adaptive runs and the colours that belong to them: radius, curvature and component. */
 import { expect, test } from '@playwright/test';
 import { expectCanvasShown, open, picture, spots, status } from './browser.js';
 
@@ -68,7 +68,7 @@ test('the curvature of a sphere is that of a sphere, also when it is asked for a
   for (const k of curvature) expect(k).toBeCloseTo(2, 3);
 });
 
-test('pieces have colours of their own, with their counts', async ({ page }) => {
+test('components have colours of their own, with their counts', async ({ page }) => {
   await open(page);
   const three = 'min((x-1.2)^2 + y^2 + z^2 - 0.3, (x+1.2)^2 + y^2 + z^2 - 0.2, x^2 + (y-1.2)^2 + z^2 - 0.1)';
   const report = await set(page, {

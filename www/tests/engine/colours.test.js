@@ -9,7 +9,7 @@ import {
   packedFromOklab,
   rgbFromPacked,
 } from '../../src/engine/view/oklab.js';
-import { CYCLE, DIVERGING, PALETTES, PIECES } from '../../src/engine/view/palettes.js';
+import { COMPONENT_COLOURS, CYCLE, DIVERGING, PALETTES } from '../../src/engine/view/palettes.js';
 
 // Machado, Oliveira and Fernandes (2009), severity 1, on linear sRGB.
 const EYES = {
@@ -99,9 +99,9 @@ describe.each(themes)('the palettes, %s', (theme) => {
     }
   });
 
-  test.each(Object.entries(EYES))('connected pieces can be told apart with %s', (eye, matrix) => {
-    expect(palette.components).toHaveLength(PIECES);
-    for (let i = 0; i < PIECES; i += 1) {
+  test.each(Object.entries(EYES))('components can be told apart with %s', (eye, matrix) => {
+    expect(palette.components).toHaveLength(COMPONENT_COLOURS);
+    for (let i = 0; i < COMPONENT_COLOURS; i += 1) {
       for (let j = 0; j < i; j += 1)
         expect(apart(palette.components[i], palette.components[j], matrix), `${j}, ${i}, ${eye}`).toBeGreaterThan(
           i < 6 ? 0.095 : 0.07,
@@ -307,7 +307,7 @@ describe('colours of particles', () => {
     ]);
     const entries = legendOf('component', 'light', many).entries ?? [];
     expect(entries).toHaveLength(13);
-    expect(entries[0]).toMatchObject({ label: 'piece 1', count: 15 });
+    expect(entries[0]).toMatchObject({ label: 'component 1', count: 15 });
     expect(entries[12]).toMatchObject({ label: '3 more, in the same colours', count: 3 });
   });
 

@@ -1,11 +1,11 @@
 /**
- * A colour per particle and the legend that explains it.
+ * Computes a colour for each particle, and the legend of the colours.
  *
  * @module
  */
 import { FATE } from '../columns.js';
 import { hexFromPacked } from './oklab.js';
-import { CYCLE, PALETTES, PIECES } from './palettes.js';
+import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
 
 /**
  * @typedef {import('../columns.js').Columns} Columns
@@ -14,13 +14,13 @@ import { CYCLE, PALETTES, PIECES } from './palettes.js';
  * @typedef {import('./palettes.js').Theme} Theme
  */
 
-/** Slots of a particle: six around one of a uniform run, as many as there is room for around one of an adaptive run. */
+/** Number of slots of a particle in a uniform run. In an adaptive run it varies. */
 const SLOTS = 6;
 const MOST_SLOTS = 10;
 
 /**
- * What the slots of a particle say together, the worst first: a slot that failed, one that met the limit on particles,
- * one outside the clip box, one not decided yet, or all of them filled.
+ * Class of a particle by its slots, with the worst fate first: a slot that failed, one that met the limit on particles,
+ * one outside the clip box, one still open, or all filled.
  * @typedef {'trouble' | 'capped' | 'border' | 'front' | 'interior'} SlotsClass
  */
 
@@ -28,7 +28,8 @@ const MOST_SLOTS = 10;
 export function classOfSlots(slots, adaptive) {
   let seen = 0;
   for (let k = 0; k < (adaptive ? MOST_SLOTS : SLOTS); k += 1) seen |= 1 << ((slots >>> (3 * k)) & 7);
-  // How many children an adaptive particle has room for shows only when the front has come to it: what it leaves is unused.
+  // The number of slots of an adaptive particle is known once the front has processed it. Slots still open then are
+  // unused.
   if (adaptive && slots >>> 3 !== 0) seen &= ~(1 << FATE.open);
   if (seen & ((1 << FATE.notConverged) | (1 << FATE.undefined))) return 'trouble';
   if (seen & (1 << FATE.capped)) return 'capped';
@@ -44,20 +45,22 @@ export function classOfValence(valence) {
   return valence === 5 ? 'five' : valence === 6 ? 'six' : 'seven';
 }
 
-/** Range of the nearest distance that the ramp covers, as shares of the ideal distance 2r. */
+/** Range of nearest distances that the ramp covers, as shares of the ideal distance 2r. */
 const NEAREST_SHARE = /** @type {const} */ ([0.6, 1.2]);
 
-/** The piece of a particle that the report leaves out. */
-const NO_PIECE = 0xffffffff;
+/** Component index of a particle that the report excludes. */
+const NO_COMPONENT = 0xffffffff;
 
-/** The share of the curvatures that the diverging ramp covers: a few sharp places must not make all the others look flat. */
+/**
+ * Share of the curvatures within the diverging ramp. Without it, a few sharp features would make the rest look flat.
+ */
 const CURVATURE_QUANTILE = 0.95;
-/** Curvatures looked at for that share. */
+/** Number of curvatures sampled for that quantile. */
 const CURVATURE_SAMPLES = 4096;
 
 /**
- * The values at the two ends of a ramp that follows the particles: the smallest and the largest radius, or the curvature, the
- * same on both sides of 0, that 95 % of the particles do not exceed. Null for other modes and before there is a value.
+ * Returns the values at both ends of a ramp whose range depends on the particles: the smallest and largest radius, or ±
+ * the 95 % quantile of the absolute mean curvature. It is null for other modes and before there is a value.
  * @param {ColourMode} mode @param {Columns} columns
  * @returns {[number, number] | null}
  */
@@ -90,22 +93,28 @@ export function rangeOf(mode, columns) {
 /** @param {Columns} columns @param {number} i */
 const meanCurvature = ({ curvature }, i) => 0.5 * (curvature[2 * i] + curvature[2 * i + 1]);
 
-/** The colour of `v` on a ramp from `low` to `high`; the first one for NaN. @param {Uint32Array} ramp @param {number} v @param {number} low @param {number} high */
+/**
+ * Returns the colour of `v` on a ramp from `low` to `high`, and the first colour for NaN.
+ * @param {Uint32Array} ramp
+ * @param {number} v
+ * @param {number} low
+ * @param {number} high
+ */
 function onRamp(ramp, v, low, high) {
   const t = high > low ? Math.min(1, Math.max(0, (v - low) / (high - low))) : 0.5;
   return ramp[Math.round(t * (ramp.length - 1)) || 0];
 }
 
 /**
- * Colours of particles `first … last`, as `0xAABBGGRR`.
+ * Returns the colours of particles `first … last`, as `0xAABBGGRR`.
  *
- * A mode that needs figures that are not there yet (of the report, or the curvature) gives the plain colour.
+ * While the figures of a mode (of the report, or the curvature) are missing, the colour is the plain one.
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
  * @param {number} first
  * @param {number} last
- * @param {[number, number] | null} [range]  as of {@link rangeOf}
+ * @param {[number, number] | null} [range]  from {@link rangeOf}
  */
 export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
@@ -141,11 +150,12 @@ export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mod
     case 'component':
       if (!component) break;
       for (let i = first; i < last; i += 1)
-        out[i - first] = component[i] === NO_PIECE ? palette.plain : palette.components[component[i] % PIECES];
+        out[i - first] =
+          component[i] === NO_COMPONENT ? palette.plain : palette.components[component[i] % COMPONENT_COLOURS];
       return out;
     case 'normal':
       for (let i = first; i < last; i += 1) {
-        // 0.15 … 0.9 instead of 0 … 1, so that no direction is black or blinding.
+        // The range is 0.15 … 0.9 instead of 0 … 1, so that no direction is black or too bright.
         const channel = (/** @type {number} */ k) => Math.round(255 * (0.525 + 0.375 * normals[3 * i + k])) & 255;
         out[i - first] = ((255 << 24) | (channel(2) << 16) | (channel(1) << 8) | channel(0)) >>> 0;
       }
@@ -155,7 +165,7 @@ export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mod
   return out.fill(palette.plain);
 }
 
-/** What a level, a class of slots or of valence is called, in the legend's order. */
+/** Labels of the classes of slots and of valence, in the order of the legend. */
 const FATE_LABELS = /** @type {const} */ ([
   ['interior', 'all slots filled'],
   ['border', 'at the clip box'],
@@ -173,7 +183,7 @@ const VALENCE_LABELS = /** @type {const} */ ([
 ]);
 
 /**
- * How many particles fall in each class.
+ * Returns the legend entries of the classes, with the number of particles in each.
  * @template {string} K
  * @param {readonly (readonly [K, string])[]} labels
  * @param {Record<K, number>} colours
@@ -193,11 +203,11 @@ function categories(labels, colours, count, classOf) {
 }
 
 /**
- * The legend of what {@link coloursOf} paints.
+ * Returns the legend of the colours from {@link coloursOf}.
  * @param {ColourMode} mode
  * @param {Theme} theme
  * @param {Columns} columns
- * @param {[number, number] | null} [range]  as of {@link rangeOf}
+ * @param {[number, number] | null} [range]  from {@link rangeOf}
  * @returns {Legend}
  */
 export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
@@ -263,16 +273,16 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
     case 'component': {
       if (!columns.component)
         return {
-          title: 'Connected pieces',
+          title: 'Connected components',
           unit: '',
           kind: 'categories',
           entries: [],
           colours: [hexFromPacked(palette.plain)],
           pending: true,
         };
-      const entries = pieces(columns.component, palette);
+      const entries = componentEntries(columns.component, palette);
       return {
-        title: 'Connected pieces',
+        title: 'Connected components',
         unit: '',
         kind: 'categories',
         entries,
@@ -293,18 +303,20 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
 }
 
 /**
- * One entry for each of the first pieces, and one for all the others.
+ * Returns a legend entry for each of the largest components, and one for all others.
  * @param {Uint32Array} component @param {import('./palettes.js').Palette} palette
  * @returns {import('../types.js').LegendEntry[]}
  */
-function pieces(component, palette) {
+function componentEntries(component, palette) {
   /** @type {number[]} */
   const counts = [];
-  for (const k of component) if (k !== NO_PIECE) counts[k] = (counts[k] ?? 0) + 1;
-  const named = Math.min(PIECES, counts.length);
-  const entries = counts
-    .slice(0, named)
-    .map((count, k) => ({ label: `piece ${k + 1}`, colour: hexFromPacked(palette.components[k]), count: count ?? 0 }));
+  for (const k of component) if (k !== NO_COMPONENT) counts[k] = (counts[k] ?? 0) + 1;
+  const named = Math.min(COMPONENT_COLOURS, counts.length);
+  const entries = counts.slice(0, named).map((count, k) => ({
+    label: `component ${k + 1}`,
+    colour: hexFromPacked(palette.components[k]),
+    count: count ?? 0,
+  }));
   if (counts.length > named) {
     const rest = counts.slice(named);
     entries.push({
@@ -316,7 +328,7 @@ function pieces(component, palette) {
   return entries;
 }
 
-/** The colours of the three axes, up and down, as `coloursOf` paints them. */
+/** Returns the colours of the six axis directions, as in `coloursOf`. */
 function normalAxes() {
   const byte = (/** @type {number} */ v) => Math.round(255 * (0.525 + 0.375 * v));
   return /** @type {[string, number, number, number][]} */ ([

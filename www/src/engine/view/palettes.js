@@ -1,9 +1,9 @@
 /**
- * The palettes of the picture, light and dark.
+ * The colour palettes of the picture, for light and dark backgrounds.
  *
- * The level cycle is a rhombus in OKLab's a–b plane at constant lightness: along it both a and b are triangle waves, so that
- * neighbouring levels stay apart by the same step even for an eye that sees only one of the two axes. A hue circle has two
- * places where such an eye sees nothing change.
+ * The cycle of level colours is a rhombus in OKLab's a–b plane at constant lightness. Along it both a and b are
+ * triangle waves, so neighbouring levels differ by the same step even for a viewer who distinguishes only one of the
+ * two axes. On a hue circle such a viewer would see no change at two places.
  *
  * @module
  */
@@ -11,7 +11,7 @@ import { oklch, packedFromOklab } from './oklab.js';
 
 /** @typedef {'light' | 'dark'} Theme */
 
-/** Steps in the level cycle. */
+/** Number of colours in the level cycle. */
 export const CYCLE = 12;
 
 /** Triangle wave of period 1: 0 → 1 → 0 → −1. @param {number} t */
@@ -21,8 +21,8 @@ function triangle(t) {
 }
 
 /**
- * The widest rhombus that sRGB holds at these lightnesses: the a axis ends in green-cyan and pink, the b axis in blue and
- * yellow. The cycle starts at blue, the colour of a seed.
+ * Returns the widest rhombus in the sRGB gamut at these lightnesses. The a axis ends in green-cyan and pink, the b axis
+ * in blue and yellow. The cycle starts at blue, the colour of a seed.
  * @param {Theme} theme
  */
 function levelCycle(theme) {
@@ -35,7 +35,7 @@ function levelCycle(theme) {
   });
 }
 
-/** A ramp through OKLCH stops, `n` samples. @param {[number, number, number][]} stops @param {number} n */
+/** Samples a ramp through OKLCH stops at `n` points. @param {[number, number, number][]} stops @param {number} n */
 function ramp(stops, n) {
   return Uint32Array.from({ length: n }, (_, i) => {
     const t = (i / (n - 1)) * (stops.length - 1);
@@ -46,15 +46,15 @@ function ramp(stops, n) {
   });
 }
 
-/** Samples of the sequential ramp. */
+/** Number of samples of the sequential ramp. */
 export const RAMP = 64;
-/** Samples of the diverging ramp: odd, so that one of them is 0. */
+/** Number of samples of the diverging ramp. It is odd, so that one sample is at 0. */
 export const DIVERGING = 65;
 
 /**
- * Two straight lines in OKLab from the neutral middle to blue and to orange: equal steps of the value are equal steps for the eye,
- * and of the pairs of hues this is the one that every colour deficiency keeps apart. The middle is the lightest on either
- * ground, so that the two signs differ in hue alone and the amount shows in a grey print too.
+ * Returns a ramp of two straight lines in OKLab, from a neutral middle to blue and to orange. Equal steps of the value
+ * are equal perceptual steps, and blue and orange stay distinct in every colour vision deficiency. The middle is the
+ * lightest in both themes, so that the signs differ in hue alone and the magnitude is also visible in greyscale.
  * @param {Theme} theme
  */
 function diverging(theme) {
@@ -72,15 +72,16 @@ function diverging(theme) {
   });
 }
 
-/** Connected pieces with a colour of their own; then the colours begin again. */
-export const PIECES = 12;
+/** Number of component colours. Further components reuse them. */
+export const COMPONENT_COLOURS = 12;
 
 /**
- * Lightness, chroma and hue of the pieces, found by a search for the twelve colours that are farthest apart for the ordinary
- * eye and for all three colour deficiencies at once, then put in the order in which each is farthest from those before it.
+ * Lightness, chroma and hue of the component colours. A search maximised the smallest difference between the twelve
+ * colours for normal vision and all three colour vision deficiencies together. Each colour is the farthest from those
+ * before it.
  * @type {Record<Theme, [number, number, number][]>}
  */
-const PIECE_COLOURS = {
+const COMPONENT_LCH = {
   light: [
     [0.56, 0.15, 250],
     [0.74, 0.15, 60],
@@ -116,8 +117,8 @@ function palette(theme) {
   const light = theme === 'light';
   return {
     levels: levelCycle(theme),
-    // Too close is dark violet, the ideal distance green-blue, too far bright yellow: lightness rises all the way, so that
-    // the order survives any colour deficiency and a grey print.
+    // Small distances are dark violet, the ideal one is green-blue, large ones are bright yellow. The lightness
+    // increases throughout, so that the order is visible in every colour vision deficiency and in greyscale.
     sequential: ramp(
       [
         [0.36, 0.14, 300],
@@ -129,7 +130,7 @@ function palette(theme) {
       RAMP,
     ),
     diverging: diverging(theme),
-    components: Uint32Array.from(PIECE_COLOURS[theme], ([L, C, h]) => packedFromOklab(oklch(L, C, h))),
+    components: Uint32Array.from(COMPONENT_LCH[theme], ([L, C, h]) => packedFromOklab(oklch(L, C, h))),
     valence: {
       four: packedFromOklab(oklch(light ? 0.47 : 0.55, 0.17, 262)),
       five: packedFromOklab(oklch(light ? 0.66 : 0.72, 0.12, 245)),
@@ -146,9 +147,9 @@ function palette(theme) {
       front: packedFromOklab(oklch(light ? 0.52 : 0.58, 0.16, 310)),
     },
     plain: packedFromOklab(oklch(light ? 0.78 : 0.74, 0.025, 235)),
-    // Near-neutral ground, the same as the page's own.
+    // The background is nearly neutral and equals that of the page.
     ground: packedFromOklab(oklch(light ? 0.975 : 0.185, light ? 0.002 : 0.006, 260)),
-    // The points of a model: ink on a casing of the ground's kind, seen on any colour.
+    // A model's points are ink on a casing of the background's lightness, so that they are visible on any colour.
     ink: packedFromOklab(oklch(light ? 0.2 : 0.98, 0, 0)),
     casing: packedFromOklab(oklch(light ? 0.99 : 0.15, 0, 0)),
     box: packedFromOklab(oklch(light ? 0.62 : 0.55, 0.01, 260)),

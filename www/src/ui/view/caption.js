@@ -1,10 +1,10 @@
-/** One quiet line that says where the run stands. Pure. */
+/** Returns the caption that describes the state of the run. */
 import { formatCount, formatSeconds, formatShare, plural } from '../format.js';
 
-/** While the picture of a finished run grows, level by level. @param {{ level: number, particles: number }} reveal */
+/** Returns the caption during a reveal. @param {{ level: number, particles: number }} reveal */
 export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
 
-/** While a model or a file is on its way. @param {import('../../engine/types.js').Loading} loading */
+/** Returns the caption while a model or a file is loading. @param {import('../../engine/types.js').Loading} loading */
 export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · ${formatShare(fraction, 0)}`;
 
 /**
@@ -21,7 +21,7 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
     case 'generation':
       return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
     case 'search':
-      return busy ? `Looking for further pieces · ${particles}` : resting();
+      return busy ? `Looking for further components · ${particles}` : resting();
     case 'relaxation':
       return busy
         ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}`
