@@ -1,7 +1,8 @@
 /**
- * Types of the engine: what the core describes, what the engine's signals carry, what its commands take.
+ * Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands.
  *
- * Only JSDoc lives here; import a type with `@typedef {import('./types.js').State} State`. Lengths are in the field's own
+ * The file has JSDoc types and a few constants. Import a type with `@typedef {import('./types.js').State} State`.
+ * Lengths are in the field's own
  * coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says otherwise.
  *
  * @module
@@ -49,15 +50,16 @@
  * @property {string} unit
  * @property {{value: string, label: string}[]} [choices]
  * @property {string} help
- * @property {{name: string, value: string, equal?: boolean}[]} [when]  shown only while all of these other settings have these values, or with
- *   `equal` false other ones
+ * @property {{name: string, value: string, equal?: boolean}[]} [when]  conditions of visibility: each other setting
+ *   must have the value, or, with `equal` false, must not have it
  */
 /**
- * One row of the report. `key` is a path into {@link Report}, for example `quality.six`; what is null there has no place in the run.
+ * One row of the report. `key` is a path into {@link Report}, for example `quality.six`. A null value there means that
+ * the figure does not apply to the run.
  * @typedef {object} ReportRow
  * @property {string} key
- * @property {string | null} [unless]  path of the figure that stands in its place where that one is there
- * @property {string | null} [to]  path of the upper end of a range that begins at `key`
+ * @property {string | null} [unless]  path of a figure that replaces this one if it exists
+ * @property {string | null} [to]  path of the upper end of a range whose lower end is `key`
  * @property {string} label
  * @property {string} group
  * @property {string} unit
@@ -67,21 +69,21 @@
  * @property {string} help
  */
 /**
- * A built-in model from points. Its `id` goes where a gallery surface's does.
+ * A built-in model from points. Its `id` is used like that of a gallery surface.
  * @typedef {object} PointModel
  * @property {string} id
  * @property {string} name
  * @property {string} story
- * @property {string} credit  whom to thank for the points; may be empty
+ * @property {string} credit  source of the points; may be empty
  * @property {number} points
  */
 /**
- * What is known of a model from points once it is solved.
+ * The facts about a solved model from points.
  * @typedef {object} ModelInfo
- * @property {string} name  the built-in model's, or the file's
+ * @property {string} name  name of the built-in model or of the file
  * @property {string} credit
- * @property {number} points  points that were read
- * @property {number} centres  points that the function interpolates
+ * @property {number} points  number of points read
+ * @property {number} centres  number of points that the field interpolates
  * @property {number} condition  estimate of the condition number of the system
  * @property {number} residual_mean  mean distance of all points from the surface, as a share of the diagonal of their box
  * @property {number} residual_max
@@ -89,7 +91,7 @@
  * @property {string[]} warnings
  */
 /**
- * Everything the interface is generated from.
+ * The core's description, from which the interface is generated.
  * @typedef {object} Description
  * @property {string} version
  * @property {string} default_surface
@@ -103,7 +105,7 @@
  */
 
 /**
- * `points` names a solved model; with it only the clip box counts.
+ * A field to set in the core. `points` names a solved model; with it, only the clip box is used besides.
  * @typedef {object} FieldRequest
  * @property {string} [points]
  * @property {string} [surface]
@@ -113,7 +115,7 @@
  * @property {Bounds} [bounds]
  */
 /**
- * An element of MathML with its text or with what it holds.
+ * A MathML element with its text or its children.
  * @typedef {{tag: 'mi' | 'mn' | 'mo', text: string}
  *   | {tag: 'mrow' | 'mfrac' | 'msup' | 'msub' | 'msqrt' | 'mroot', children: MathNode[]}} MathNode
  */
@@ -122,10 +124,11 @@
  * @property {true} ok
  * @property {'formula' | 'points'} kind
  * @property {ModelInfo | null} model  for points
- * @property {string | null} surface  null once the formula is no longer the gallery's; of a model its id, of a file {@link FILE_SURFACE}
+ * @property {string | null} surface  id of the gallery surface or model, {@link FILE_SURFACE} for a file; null once the
+ *   formula differs from the gallery's
  * @property {string} formula  empty for points
  * @property {Parameter[]} parameters
- * @property {string[]} auto  parameters that became sliders by themselves
+ * @property {string[]} auto  parameters that were declared automatically
  * @property {Bounds} bounds
  * @property {MathNode | null} mathml  null for points
  */
@@ -137,12 +140,12 @@
  * @property {number} start
  * @property {number} end
  * @property {string | null} suggestion
- * @property {string[]} names  names that could become sliders
+ * @property {string[]} names  names that can be declared as parameters
  */
 /** @typedef {{ok: false, error: FieldFault}} FieldError */
 /** @typedef {FieldOk | FieldError} FieldAnswer */
 
-/** What goes with a solved system to the core. @typedef {{info: ModelInfo, bounds: Bounds}} SolvedModel */
+/** The data that accompany a solved system. @typedef {{info: ModelInfo, bounds: Bounds}} SolvedModel */
 /** @typedef {{radius: number, predicted_count: number, area: number, warnings: string[]}} Start */
 /** @typedef {({ok: true} & Start) | {ok: false, error: FieldFault}} StartAnswer */
 /** @typedef {{kind: string, message: string, line: number | null}} PointsFault */
@@ -150,12 +153,12 @@
 /** @typedef {({ok: true} & PointsProgress) | {ok: false, error: PointsFault}} PointsAnswer */
 /** @typedef {({ok: true} & SolvedModel) | {ok: false, error: PointsFault}} SolvedAnswer */
 
-/** @typedef {Record<string, number | string>} Settings  by the settings' names; a missing one has its default */
+/** @typedef {Record<string, number | string>} Settings  by name; a missing setting has its default */
 /** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'search' | 'relaxation' | 'done'} CorePhase */
 /** @typedef {null | 'complete' | 'cancelled' | 'cap' | 'no_surface' | 'constant' | 'undefined' | 'one_particle'} StopReason */
 
 /**
- * What one step of the core answers.
+ * The result of one step of the core.
  * @typedef {object} CoreProgress
  * @property {CorePhase} phase
  * @property {number} particles
@@ -167,11 +170,11 @@
  * @property {StopReason} stop_reason
  * @property {string | null} message
  * @property {number} radius
- * @property {boolean} moved  columns of existing particles changed since the last step
+ * @property {boolean} moved  whether columns of existing particles have changed since the last step
  */
 /**
- * Where the present run stands, as the page shows it. `phase` knows one more value than the core: the quality figures are
- * being worked out.
+ * The progress of the present run, as the page shows it. `phase` has one more value than in the core, `quality`: the
+ * quality figures are being computed.
  * @typedef {Omit<CoreProgress, 'phase'> & {phase: CorePhase | 'quality', run: number, live: boolean}} Progress
  */
 
@@ -234,14 +237,14 @@
  * @property {Quality | null} quality_before  after the front, before relaxation
  * @property {{min: number, max: number, bins: number[]}} nearest_histogram
  */
-/** With what the worker measured. @typedef {CoreReport & {seconds: Seconds}} Report */
+/** The report with the times that the worker has measured. @typedef {CoreReport & {seconds: Seconds}} Report */
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
 /** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
 /**
- * Where the eye is: on a sphere around `target`, z up. With `fit` the engine chooses target and distance itself and
- * follows the surface; any zoom or pan by hand ends that, the fit command starts it again.
+ * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
+ * the camera follows the surface. A zoom or pan by the user ends that, and the fit command starts it again.
  * @typedef {{target: Vec3, distance: number, yaw: number, pitch: number, fit: boolean}} CameraState
  */
 /**
@@ -249,16 +252,16 @@
  * @property {ColourMode} colour
  * @property {number} size  disc radius as a share of the repulsion radius, 0.2 … 1.5; 0.92 by default
  * @property {'auto' | 'light' | 'dark'} theme
- * @property {boolean} box  draw the clip box
- * @property {boolean} points  draw the points that a model interpolates
+ * @property {boolean} box  whether the clip box is drawn
+ * @property {boolean} points  whether the points that a model interpolates are drawn
  * @property {number | null} level  the newest generation level drawn, null for all of them; a level beyond the last counts as the last
  * @property {CameraState} camera
  */
 /**
- * The whole shareable state, plain JSON. `surface` is the gallery entry started from, `formula` the text in the editor
- * (the gallery's own until it is edited), `parameters` and `settings` hold only what differs from the defaults. Where `surface`
- * is a model's id, or {@link FILE_SURFACE} for the file that was opened last, `formula` is empty; a formula typed then starts
- * from the default surface. A file's points are not in the state, so a link to it falls back on the default surface.
+ * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
+ * is the text in the editor. `parameters` and `settings` hold only values that differ from the defaults. If `surface`
+ * is a model's id, or {@link FILE_SURFACE} for the file opened last, `formula` is empty; a formula typed then is based
+ * on the default surface. The points of a file are not in the state, so a link to a file shows the default surface.
  * @typedef {object} State
  * @property {1} v
  * @property {string} surface
@@ -270,15 +273,19 @@
  * @property {ViewState} view
  */
 
-/** The part of the state that says what is sampled and how; the rest is how it looks. @typedef {Omit<State, 'v' | 'view'>} Shape */
+/**
+ * The part of the state that determines what is sampled and how, without the view.
+ * @typedef {Omit<State, 'v' | 'view'>} Shape
+ */
 
 // ---- what the engine tells --------------------------------------------------------------------------------------------
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**
- * A message for the person. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`, `file`,
- * `share-file`, …); a later notice of the same cause replaces it, and one that no longer holds goes. `details` is a report worth
- * copying.
+ * A message for the user. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`,
+ * `file`,
+ * `share-file`, …); a later notice of the same cause replaces it, and it is removed when it no longer applies.
+ * `details` is a report for the user to copy.
  * @typedef {object} Notice
  * @property {string} id
  * @property {'info' | 'warn' | 'error'} kind
@@ -287,8 +294,8 @@
  * @property {{label: string, run: () => void}} [action]
  */
 /**
- * The particle under the pointer, or tapped. x and y are CSS pixels inside the canvas host; `residual` and `nearest` are
- * null until the report of the run is there, `valence` likewise.
+ * The particle under the pointer, or the tapped one. x and y are CSS pixels within the canvas host. `residual`,
+ * `nearest` and `valence` are null until the report of the run has arrived.
  * @typedef {object} Hover
  * @property {number} index
  * @property {number} level
@@ -304,111 +311,117 @@
  */
 /** @typedef {{label: string, colour: string, count?: number}} LegendEntry  colour is `#rrggbb` */
 /**
- * What the colours mean. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to `range[1]`. A
- * diverging ramp has 0 in its middle; values beyond its range take the colour of its end.
- * `entries` name categories. `pending` says that the figures behind the colours are still being worked out.
+ * The legend of the colours. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to
+ * `range[1]`. A diverging ramp has 0 in its middle; values outside its range have the colour of its end. `entries` name
+ * categories. `pending` is set while the figures behind the colours are being computed.
  * @typedef {object} Legend
  * @property {string} title
  * @property {string} unit
  * @property {'cyclic' | 'categories' | 'sequential' | 'diverging' | 'plain' | 'normal'} kind
  * @property {LegendEntry[]} [entries]
  * @property {[number, number]} [range]
- * @property {number} [mark]  a value on the ramp worth a tick (the ideal distance 2r)
+ * @property {number} [mark]  a value with a tick on the ramp, such as the ideal distance 2r
  * @property {string[]} colours
  * @property {boolean} [pending]
  */
 /** @typedef {{total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing */
 /**
- * How the last slider drag went: runs asked for and shown, the median time from the request to the picture.
+ * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
+ * picture.
  * @typedef {{requested: number, shown: number, latency_ms: number, particles: number, coarse: boolean}} LastDrag
  */
 
 /**
- * How far the picture of a new run has come: particles appear level by level, at a pace that the eye can follow, however fast
- * the sampler was.
+ * The progress of the reveal of a new run: its particles appear level by level, slowly enough to be followed.
  * @typedef {{level: number, levels: number, particles: number}} Reveal
  */
 
 /**
- * How far a model or a file has come, from its choice to the surface. `label` is the core's word for the stage.
+ * The progress of loading a model or a file. `label` is the core's name of the stage.
  * @typedef {object} Loading
  * @property {string} id  of the model, or {@link FILE_SURFACE}
  * @property {string} name
  * @property {'starting' | 'reading' | 'thinning' | 'normals' | 'solving'} stage
  * @property {string} label
- * @property {number} fraction  0 … 1 of the whole way
+ * @property {number} fraction  0 … 1 of the whole process
  */
 /**
- * Why a model or a file did not become a surface; the surface before it stays.
+ * An error in loading a model or a file. The previous surface stays.
  * @typedef {object} LoadingError
  * @property {string} id
  * @property {string} name
- * @property {string} kind  the core's word, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle`
- * @property {string} message  with the line where there is one
+ * @property {string} kind  the core's kind of error, or `too_large`, `unreadable`, `crashed`, `silent`, `bundle`
+ * @property {string} message  with the line number, if there is one
  * @property {number | null} line  from 1
  */
 
 /**
  * @typedef {object} EngineSignals
  * @property {ReadonlySignal<State>} state
- * @property {ReadonlySignal<Description | null>} description  null until the core has arrived
+ * @property {ReadonlySignal<Description | null>} description  null until the core has loaded
  * @property {ReadonlySignal<FieldOk | null>} field  the last good field
- * @property {ReadonlySignal<FieldFault | null>} fieldError  what is wrong with the formula as it stands
+ * @property {ReadonlySignal<FieldFault | null>} fieldError  the error in the present formula
  * @property {ReadonlySignal<Progress>} progress
  * @property {ReadonlySignal<Report | null>} report  null while stale
  * @property {ReadonlySignal<Timing | null>} timing
  * @property {ReadonlySignal<BackendName>} backend
- * @property {ReadonlySignal<string>} adapter  the graphics adapter in words, may be empty
+ * @property {ReadonlySignal<string>} adapter  name of the graphics adapter, may be empty
  * @property {ReadonlySignal<Notice | null>} notice
  * @property {ReadonlySignal<Hover | null>} hover
  * @property {ReadonlySignal<Legend | null>} legend
- * @property {ReadonlySignal<number>} revision  goes up whenever the particles, their fates or their figures change
- * @property {import('./columns.js').Columns} columns  the particles, to be read only
+ * @property {ReadonlySignal<number>} revision  increases whenever the particles, their fates or their figures change
+ * @property {import('./columns.js').Columns} columns  the particles, read-only
  * @property {ReadonlySignal<Reveal | null>} reveal  null while nothing is being revealed
- * @property {ReadonlySignal<boolean>} busy  a run is under way and can be stopped
- * @property {ReadonlySignal<boolean>} partial  the picture is a run that was stopped or capped
- * @property {ReadonlySignal<boolean>} empty  the last run found no surface
+ * @property {ReadonlySignal<boolean>} busy  whether a run is active and can be stopped
+ * @property {ReadonlySignal<boolean>} partial  whether the picture shows a run that was stopped or capped
+ * @property {ReadonlySignal<boolean>} empty  whether the last run found no surface
  * @property {ReadonlySignal<LastDrag | null>} lastDrag
- * @property {ReadonlySignal<'light' | 'dark'>} theme  the theme in force, after `auto` is resolved
- * @property {ReadonlySignal<Loading | null>} loading  a model or a file is on its way
- * @property {ReadonlySignal<LoadingError | null>} loadingError  until the next surface is chosen; a notice `file` says the same
+ * @property {ReadonlySignal<'light' | 'dark'>} theme  the effective theme, after `auto` is resolved
+ * @property {ReadonlySignal<Loading | null>} loading  the model or file that is loading
+ * @property {ReadonlySignal<LoadingError | null>} loadingError  null once another surface is chosen; a notice `file`
+ *   has the same message
  * @property {ReadonlySignal<ModelInfo | null>} model  of the surface shown; null for a formula
  */
 /**
  * @typedef {object} EngineCommands
  * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last
- * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled, refused or given up
- * @property {() => void} cancelLoading  gives up the model or file on its way
- * @property {(text: string, options?: {unfinished?: boolean}) => void} setFormula  `unfinished`: the text is sampled only after a pause, or with what comes next
- * @property {(name: string, value: number, options?: {live?: boolean}) => void} setParameter  `live` while it is dragged; call once more without it at rest
- * @property {(name: string) => void} resetParameter  back to the value of the gallery or of the declaration
- * @property {(name: string) => void} declareParameter  makes an unknown name of the formula a slider
+ * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled,
+ *   refused or cancelled
+ * @property {() => void} cancelLoading  cancels the model or file that is loading
+ * @property {(text: string, options?: {unfinished?: boolean}) => void} setFormula  `unfinished`: the text is sampled
+ *   only after a pause, or with the next change
+ * @property {(name: string, value: number, options?: {live?: boolean}) => void} setParameter  `live` during a drag;
+ *   call once more without it at the end
+ * @property {(name: string) => void} resetParameter  restores the value of the gallery or of the declaration
+ * @property {(name: string) => void} declareParameter  declares an unknown name of the formula as a parameter
  * @property {(bounds: Bounds | null, options?: {live?: boolean}) => void} setBounds
  * @property {(name: string, value: number | string, options?: {live?: boolean}) => void} setSetting
  * @property {(name: string) => void} resetSetting
- * @property {(shape: Shape) => void} restore  takes an earlier state back; the view stays
- * @property {() => void} run  samples from the start; while a run of the same input is under way it does nothing
- * @property {() => void} stop  keeps the partial result, labelled
- * @property {() => void} generateOnly  a run without relaxation
- * @property {(steps: number) => void} relax  relaxes the present particles that many steps more
+ * @property {(shape: Shape) => void} restore  restores an earlier state, without the view
+ * @property {() => void} run  samples from the start; does nothing during a run of the same input
+ * @property {() => void} stop  stops the run and keeps the partial result
+ * @property {() => void} generateOnly  starts a run without relaxation
+ * @property {(steps: number) => void} relax  relaxes the present particles by that many steps
  * @property {(patch: Partial<ViewState>) => void} setView
  * @property {() => void} fit
- * @property {(factor: number) => void} zoom  > 1 comes nearer
+ * @property {(factor: number) => void} zoom  > 1 zooms in
  * @property {(dxRad: number, dyRad: number) => void} orbit
- * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the canvas host covered by panels: the surface is centred in what is left
+ * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the
+ *   canvas host covered by panels; the surface is centred in the rest
  * @property {() => Promise<string>} shareUrl
  * @property {(hash: string) => Promise<void>} loadUrl
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
  * @property {(format: 'ply' | 'csv') => Promise<Blob>} exportFile
  * @property {() => void} dismissNotice
- * @property {(x: number, y: number) => number | null} pick  index of the particle under a point of the canvas host
+ * @property {(x: number, y: number) => number | null} pick  returns the index of the particle under a point of the
+ *   canvas host
  * @property {() => void} destroy
  */
 /** @typedef {EngineSignals & EngineCommands} Engine */
 
-/** `State.surface` of a surface from a file. */
+/** Value of `State.surface` for a surface from a file. */
 export const FILE_SURFACE = 'file';
-/** Larger files are not read. */
+/** Size of the largest file that is read. */
 export const LARGEST_FILE_BYTES = 50e6;
-/** What `openFile` reads, for a file chooser's `accept`. */
+/** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */
 export const FILE_TYPES = '.ply,.obj,.stl,.xyz,.txt';
