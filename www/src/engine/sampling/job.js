@@ -1,6 +1,7 @@
 /**
- * One job in the worker, from its start on the field that the core has to the report: the step loop, its pace and what it posts. The clock, the pause
- * between steps and the way out are handed in, so that the loop can be run in tests on a scripted core.
+ * Runs one job in the worker, on the field that is set in the core: the steps of the sampling, the measurement, and the
+ * messages about both. The clock, the pause between steps and the way to post are parameters, so that tests can run the
+ * loop on a scripted core.
  *
  * @module
  */
@@ -15,7 +16,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @typedef {import('../types.js').Seconds} Seconds
  */
 /**
- * The core's class as the loop uses it.
+ * The part of the core's class that the loop uses.
  * @typedef {object} CoreLike
  * @property {(request: import('../types.js').FieldRequest) => import('../types.js').FieldAnswer} set_field
  * @property {(system: Uint8Array, about: import('../types.js').SolvedModel) => import('../types.js').FieldAnswer} set_points
@@ -31,7 +32,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {(from: number) => Uint32Array} parents
  * @property {(from: number) => Uint32Array} slots
  * @property {(from: number) => Float32Array} curvature  two per particle
- * @property {(budget: number) => import('../types.js').CoreReport | undefined} measure  the report, once it is complete
+ * @property {(budget: number) => import('../types.js').CoreReport | undefined} measure  the report once it is complete, else undefined
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
@@ -40,29 +41,29 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 /**
  * @typedef {object} Surroundings
  * @property {() => number} nowMs
- * @property {() => Promise<void>} pause  lets messages in
+ * @property {() => Promise<void>} pause  lets the worker handle its messages
  * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
  * @property {() => 'stop' | 'replace' | null} interrupt
- * @property {() => boolean} curvature  whether the page shows it
- * @property {() => boolean} room  whether the page has drawn what it was sent
+ * @property {() => boolean} curvature  whether the page shows the curvature
+ * @property {() => boolean} room  whether the page has drawn the columns sent so far
  */
 
 /**
- * The first budget of a phase, in work units; the pace then follows the machine. A unit of the slowest sampling, the paper's own
- * placement on a model, takes a third of a millisecond: a Stop is heard within 100 ms also then.
+ * First budget of a phase, in work units; later budgets follow the speed of the machine. A unit of the slowest sampling, the
+ * paper's placement on a model, takes a third of a millisecond, so even then a Stop takes effect within 100 ms.
  */
 const FIRST_BUDGET = 256;
-/** The same of a measurement, whose pieces take up to a tenth of a millisecond. */
-const FIRST_PIECES = 32;
-/** One picture at 60 Hz. */
+/** First budget of a measurement, in slices, which take up to a tenth of a millisecond. */
+const FIRST_SLICES = 32;
+/** Shortest interval between column messages: about a frame at 60 Hz. */
 const PICTURE_MS = 15;
-/** Which of the four clocks a phase of the core runs on. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
+/** Returns the entry of the times to which a phase of the core counts. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
   if (phase === 'relaxation') return 'relaxation';
   return phase === 'generation' ? 'generation' : 'seeding';
 }
 
-/** Columns of no particle. */
+/** Returns empty columns. */
 const none = () => ({
   positions: new Float32Array(0),
   normals: new Float32Array(0),
@@ -72,7 +73,7 @@ const none = () => ({
 });
 
 /**
- * The curvature of particles that the page has.
+ * Returns a message with the curvature of all particles, which the page already has.
  * @param {CoreLike} core @param {number} id
  * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
  */
@@ -105,65 +106,138 @@ export function curvatureColumn(core, id) {
  * @returns {Promise<void>}
  */
 export async function runJob(core, job, env, memory) {
-  /** @type {Seconds} */
-  const seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
-  const { id } = job;
-  /** @type {CoreProgress | null} */
-  let progress = null;
-  let predicted = 0;
+  const run = new JobRun(core, job, env);
+  if (!run.start(memory)) return;
+  const last = await run.sample();
+  if (!last) {
+    memory.held = 0;
+    return;
+  }
+  run.complete(last);
+  const stopped = last.stop_reason === 'cancelled';
+  const reported = (!job.live || stopped) && core.count() > 0;
+  run.done(stopped ? 'stopped' : 'complete', '', reported);
+  if (reported) await run.measure();
+}
+
+/** A job in progress: its times, its latest progress, and what the page has received. */
+class JobRun {
+  /** @param {CoreLike} core @param {Job} job @param {Surroundings} env */
+  constructor(core, job, env) {
+    this.core = core;
+    this.job = job;
+    this.env = env;
+    /** @type {Seconds} */
+    this.seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+    /** @type {CoreProgress | null} */
+    this.progress = null;
+    this.predicted = 0;
+    /** Time of the last message that the supervisor counts as a sign of life. */
+    this.beatMs = 0;
+    /** The page has columns of `count` particles, and the final fates of all slots if `settled`. */
+    this.sent = { count: 0, stale: false, slotsFrom: 0, settled: false, curved: 0, pictureMs: -Infinity };
+  }
 
   /** @param {DoneMessage['outcome']} outcome @param {string} [message] @param {boolean} [reportFollows] */
-  const done = (outcome, message = '', reportFollows = false) =>
-    env.post({ type: 'done', id, outcome, progress, seconds: { ...seconds }, predicted, message, reportFollows });
-
-  if (job.kind === 'sample') {
-    memory.held = 0;
-    // The search for the surface begins with the start, and on a model most of it is there.
-    const before = env.nowMs();
-    const start = core.start(job.settings);
-    seconds.seeding += (env.nowMs() - before) / 1000;
-    if (!start.ok) return done('refused', start.error.message);
-    predicted = start.predicted_count;
-    env.post({ type: 'started', id, radius: start.radius, predicted, warnings: start.warnings });
-    if (predicted > job.askAbove) {
-      core.cancel();
-      return done('ask');
-    }
-  } else {
-    if (memory.held !== job.of) return done('lost');
-    core.relax(job.steps);
+  done(outcome, message = '', reportFollows = false) {
+    const { job, progress, predicted } = this;
+    const seconds = { ...this.seconds };
+    this.env.post({ type: 'done', id: job.id, outcome, progress, seconds, predicted, message, reportFollows });
   }
-  memory.held = id;
 
-  // What the page has: columns of `count` particles, and whether the fates of all their slots are the latest.
-  const sent = {
-    count: job.kind === 'sample' ? 0 : core.count(),
-    stale: false,
-    slotsFrom: 0,
-    settled: false,
-    curved: 0,
-    pictureMs: -Infinity,
-  };
-  let beatMs = env.nowMs();
-  /** @type {Record<string, number>} */
-  const budgets = {};
-  /** @type {CoreProgress['phase']} */
-  let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
+  /**
+   * Starts the sampling or the relaxation in the core.
+   * @param {{held: number}} memory
+   * @returns {boolean} false if the job has ended already
+   */
+  start(memory) {
+    const { core, job, env } = this;
+    if (job.kind === 'sample') {
+      memory.held = 0;
+      // The core looks for the surface when it starts; for a model, this is most of the seeding.
+      const before = env.nowMs();
+      const start = core.start(job.settings);
+      this.seconds.seeding += (env.nowMs() - before) / 1000;
+      if (!start.ok) return this.end('refused', start.error.message);
+      const { radius, predicted_count: predicted, warnings } = start;
+      this.predicted = predicted;
+      env.post({ type: 'started', id: job.id, radius, predicted, warnings });
+      if (predicted > job.askAbove) {
+        core.cancel();
+        return this.end('ask');
+      }
+    } else {
+      if (memory.held !== job.of) return this.end('lost');
+      core.relax(job.steps);
+      this.sent.count = core.count();
+    }
+    memory.held = job.id;
+    return true;
+  }
 
-  let last = /** @type {CoreProgress} */ (/** @type {unknown} */ (null));
+  /** @param {DoneMessage['outcome']} outcome @param {string} [message] @returns {false} */
+  end(outcome, message) {
+    this.done(outcome, message);
+    return false;
+  }
 
-  /** Whether the page should see columns now, between two steps. */
-  const due = () => {
+  /**
+   * Steps the core until it is done or the job is stopped.
+   * @returns {Promise<CoreProgress | null>} the last progress; null if another job replaces this one
+   */
+  async sample() {
+    const { core, job, env, sent } = this;
+    /** @type {Record<string, number>} */
+    const budgets = {};
+    /** @type {CoreProgress['phase']} */
+    let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
+    this.beatMs = env.nowMs();
+    for (;;) {
+      const why = env.interrupt();
+      if (why === 'replace') return null;
+      if (why === 'stop') {
+        this.progress = core.cancel();
+        return this.progress;
+      }
+      const budget = budgets[phase] ?? FIRST_BUDGET;
+      const before = env.nowMs();
+      const progress = core.step(budget);
+      this.progress = progress;
+      const took = env.nowMs() - before;
+      this.seconds[clockOf(phase)] += took / 1000;
+      budgets[phase] = nextBudget(budget, took);
+      sent.stale ||= progress.moved;
+      if (progress.phase === 'done') return progress;
+      phase = progress.phase;
+      this.tell(progress);
+      await env.pause();
+    }
+  }
+
+  /** Sends columns if they are due, or else the progress from time to time. @param {CoreProgress} progress */
+  tell(progress) {
+    const { env } = this;
+    if (this.isDue(progress)) this.sendColumns(progress);
+    else if (env.nowMs() - this.beatMs > PROGRESS_MS) env.post({ type: 'progress', id: this.job.id, progress });
+    else return;
+    this.beatMs = env.nowMs();
+  }
+
+  /** Returns whether the page should receive columns after this step. @param {CoreProgress} progress */
+  isDue({ phase }) {
+    const { core, job, env, sent } = this;
     if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
-    if (job.live) return false;
-    if (!job.grow && last.phase !== 'relaxation') return false;
+    if (job.live || (!job.grow && phase !== 'relaxation')) return false;
     return sent.stale || core.count() > sent.count;
-  };
-  const sendColumns = () => {
+  }
+
+  /** @param {CoreProgress} progress */
+  sendColumns(progress) {
+    const { core, env, sent } = this;
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
     const slotsFrom = sent.stale ? 0 : Math.min(sent.slotsFrom, first);
-    // A relaxed particle has not gone far: until the end its curvature stays what it was when it was placed.
+    // Relaxation moves a particle only a little, so its curvature is updated once, at the end.
     const curvatureFrom = sent.curved;
     const curvature = env.curvature() ? core.curvature(curvatureFrom) : new Float32Array(0);
     sent.curved += curvature.length / 2;
@@ -177,106 +251,81 @@ export async function runJob(core, job, env, memory) {
       curvature,
     };
     env.post(
-      { type: 'columns', id, first, total, slotsFrom, curvatureFrom, ...columns, progress: last },
+      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, progress },
       Object.values(columns).map((c) => c.buffer),
     );
-    // The fates of a particle's slots are decided after it was sent: they go along with the next piece.
+    // The fates of a particle's slots are decided after the particle is sent, so the next message repeats them.
     sent.slotsFrom = first;
     sent.settled = slotsFrom === 0;
     sent.count = total;
     sent.stale = false;
     sent.pictureMs = env.nowMs();
-  };
-
-  for (;;) {
-    const why = env.interrupt();
-    if (why === 'replace') {
-      memory.held = 0;
-      return;
-    }
-    if (why === 'stop') {
-      last = core.cancel();
-      progress = last;
-      break;
-    }
-    const budget = budgets[phase] ?? FIRST_BUDGET;
-    const before = env.nowMs();
-    last = core.step(budget);
-    progress = last;
-    const took = env.nowMs() - before;
-    seconds[clockOf(phase)] += took / 1000;
-    budgets[phase] = nextBudget(budget, took);
-    sent.stale ||= last.moved;
-    if (last.phase === 'done') break;
-    phase = last.phase;
-    if (due()) {
-      sendColumns();
-      beatMs = env.nowMs();
-    } else if (env.nowMs() - beatMs > PROGRESS_MS) {
-      env.post({ type: 'progress', id, progress });
-      beatMs = env.nowMs();
-    }
-    await env.pause();
   }
 
-  // At the end the page has every particle, and the final fate of every slot.
-  if (last.relax_step > 0) sent.curved = 0;
-  if (core.count() > sent.count || sent.stale) sendColumns();
-  if (!sent.settled) {
-    const slots = core.slots(0);
-    const total = core.count();
+  /** Sends what the page lacks after the last step: particles, final fates of slots, curvature. @param {CoreProgress} last */
+  complete(last) {
+    const { core, env, sent } = this;
+    if (last.relax_step > 0) sent.curved = 0;
+    if (core.count() > sent.count || sent.stale) this.sendColumns(last);
+    if (!sent.settled) {
+      const slots = core.slots(0);
+      const total = core.count();
+      env.post(
+        {
+          type: 'columns',
+          id: this.job.id,
+          first: total,
+          total,
+          ...none(),
+          slotsFrom: 0,
+          slots,
+          curvatureFrom: 0,
+          curvature: new Float32Array(0),
+          progress: last,
+        },
+        [slots.buffer],
+      );
+    }
+    this.sendCurvature();
+  }
+
+  /** Sends the curvature of all particles if the page shows it and lacks it. */
+  sendCurvature() {
+    const { core, env, sent } = this;
+    if (!env.curvature() || sent.curved === core.count()) return;
+    env.post(...curvatureColumn(core, this.job.id));
+    sent.curved = core.count();
+  }
+
+  /** Measures the particles slice by slice and posts the report, unless another job replaces this one. */
+  async measure() {
+    const { core, env, seconds } = this;
+    let slices = FIRST_SLICES;
+    /** @type {import('../types.js').CoreReport | undefined} */
+    let report;
+    do {
+      await env.pause();
+      if (env.interrupt() === 'replace') return;
+      this.sendCurvature();
+      const before = env.nowMs();
+      report = core.measure(slices);
+      const took = env.nowMs() - before;
+      seconds.quality += took / 1000;
+      slices = nextBudget(slices, took);
+      if (env.nowMs() - this.beatMs > BEAT_MS) {
+        env.post({ type: 'beat' });
+        this.beatMs = env.nowMs();
+      }
+    } while (report === undefined);
+    const figures = {
+      valence: core.valence(),
+      nearest: core.nearest(),
+      residual: core.residual(),
+      component: core.component(),
+    };
     env.post(
-      {
-        type: 'columns',
-        id,
-        first: total,
-        total,
-        ...none(),
-        slotsFrom: 0,
-        slots,
-        curvatureFrom: 0,
-        curvature: new Float32Array(0),
-        progress: last,
-      },
-      [slots.buffer],
+      { type: 'report', id: this.job.id, report: { ...report, seconds: { ...seconds } }, ...figures },
+      Object.values(figures).map((c) => c.buffer),
     );
   }
-  const tellCurvature = () => {
-    if (!env.curvature() || sent.curved === core.count()) return;
-    env.post(...curvatureColumn(core, id));
-    sent.curved = core.count();
-  };
-  tellCurvature();
-  const stopped = last.stop_reason === 'cancelled';
-  const reported = (!job.live || stopped) && core.count() > 0;
-  done(stopped ? 'stopped' : 'complete', '', reported);
-  if (!reported) return;
-
-  let pieces = FIRST_PIECES;
-  /** @type {import('../types.js').CoreReport | undefined} */
-  let report;
-  do {
-    await env.pause();
-    if (env.interrupt() === 'replace') return;
-    tellCurvature();
-    const before = env.nowMs();
-    report = core.measure(pieces);
-    const took = env.nowMs() - before;
-    seconds.quality += took / 1000;
-    pieces = nextBudget(pieces, took);
-    if (env.nowMs() - beatMs > BEAT_MS) {
-      env.post({ type: 'beat' });
-      beatMs = env.nowMs();
-    }
-  } while (report === undefined);
-  const figures = {
-    valence: core.valence(),
-    nearest: core.nearest(),
-    residual: core.residual(),
-    component: core.component(),
-  };
-  env.post(
-    { type: 'report', id, report: { ...report, seconds: { ...seconds } }, ...figures },
-    Object.values(figures).map((c) => c.buffer),
-  );
 }
