@@ -37,7 +37,7 @@ const MAY_USE = {
   'engine/commands': ['engine/types', 'engine/store', 'engine/share', 'engine/points', 'engine/index'],
   // The files beside these rooms put them together.
   engine: ['engine'],
-  // Shared pieces of the interface; the panels' folders do not know each other.
+  // Shared parts of the interface; the panels' folders do not know each other.
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],
   'ui/field': ['ui/*', ...ENGINE_FACE],

@@ -34,20 +34,20 @@ const isBreak = (node) => BREAKS.has(operatorOf(node) ?? '');
  * @param {MathNode} node
  * @returns {MathNode[][]}
  */
-export function piecesOfMath(node) {
+export function partsOfMath(node) {
   if (!isOpen(node)) return [[node]];
   /** @type {MathNode[][]} */
-  const pieces = [[]];
+  const parts = [[]];
   for (const child of node.children) {
     if (isBreak(child)) {
-      pieces.push(operatorOf(child) === INVISIBLE ? [] : [child]);
+      parts.push(operatorOf(child) === INVISIBLE ? [] : [child]);
       continue;
     }
-    const [first, ...rest] = piecesOfMath(child);
-    pieces.at(-1)?.push(...first);
-    pieces.push(...rest);
+    const [first, ...rest] = partsOfMath(child);
+    parts.at(-1)?.push(...first);
+    parts.push(...rest);
   }
-  return pieces.filter((piece) => piece.length > 0);
+  return parts.filter((part) => part.length > 0);
 }
 
 /**
@@ -58,10 +58,10 @@ export function piecesOfMath(node) {
 const isOpen = (node) => node.tag === 'mrow' && (operatorOf(node.children[0]) === null || isBreak(node.children[0]));
 
 /** Returns the formula as several elements, between which a line may break. @param {MathNode} node */
-export const mathPieces = (node) =>
-  piecesOfMath(node).map((piece) => {
-    const children = piece.map(build);
+export const mathParts = (node) =>
+  partsOfMath(node).map((part) => {
+    const children = part.map(build);
     // At the start of a part, an operator would be treated as a sign and lose its spaces.
-    if (isBreak(piece[0])) children[0].setAttribute('form', 'infix');
+    if (isBreak(part[0])) children[0].setAttribute('form', 'infix');
     return element('math', { displaystyle: 'true' }, [element('mrow', {}, children)]);
   });

@@ -1,6 +1,6 @@
 /**
- * A slider with a number box: native inputs, one value. Shift makes ten times finer steps, a double click resets, the
- * number can be typed and stepped.
+ * A slider with a number box, made of native inputs that share one value. Shift makes the steps ten times finer, and a double
+ * click resets the value. The number can be typed and stepped.
  */
 import { h, setAttribute, uniqueId } from './dom.js';
 import { decimalsOf } from './format.js';
@@ -9,20 +9,20 @@ import { clamp, nudge, snap, toPlace, toValue } from './scale.js';
 /** @typedef {import('./scale.js').Scale} Scale */
 /**
  * @typedef {object} SliderOptions
- * @property {string} name what assistive technology calls it
+ * @property {string} name accessible name
  * @property {Scale} scale
  * @property {number} value
- * @property {(value: number) => string} describe the value in words, with its unit
- * @property {(value: number, live: boolean) => void} change `live` while the hand is still on it
+ * @property {(value: number) => string} describe returns the value in words, with its unit
+ * @property {(value: number, live: boolean) => void} change `live` during a drag
  * @property {() => void} reset
- * @property {boolean} [number] false: no number box
- * @property {number} [factor] what the box shows, over the value: 100 for per cent
+ * @property {boolean} [number] false for a slider without a number box
+ * @property {number} [factor] factor from the value to the number in the box, 100 for per cent
  */
 /**
  * @typedef {object} Slider
  * @property {HTMLInputElement} range
  * @property {HTMLInputElement | null} box
- * @property {(value: number) => void} set shows a value without reporting it
+ * @property {(value: number) => void} set shows a value without calling `change`
  * @property {(scale: Scale) => void} setScale
  */
 
@@ -36,123 +36,160 @@ const KEYS = /** @type {Record<string, number>} */ ({
   Home: -Infinity,
   End: Infinity,
 });
-/** Places of the range input: fine enough for a 4K wide slider under shift. */
+/** Number of positions of the range input: enough for a 4K wide slider with Shift. */
 const PLACES = 10000;
+/** Width of the thumb in pixels, as in the style sheet. */
+const THUMB_PX = 14;
 
 /** @param {SliderOptions} options @returns {Slider} */
 export function createSlider(options) {
-  let { scale, value } = options;
-  const factor = options.factor ?? 1;
-  let dragging = false;
-  const range = h('input', {
-    type: 'range',
-    class: 'slider',
-    min: 0,
-    max: PLACES,
-    step: 1,
-    'aria-label': options.name,
-  });
-  const box = options.number === false ? null : createBox();
+  const model = new Model(options);
+  listenToPointer(model);
+  listenToKeys(model);
+  const { range, box } = model;
+  if (box) listenToBox(model, box);
+  model.writeScale();
+  model.write();
+  return {
+    range,
+    box,
+    set(next) {
+      if (model.dragging || next === model.value) return;
+      model.value = next;
+      model.write(document.activeElement === box ? (box ?? undefined) : undefined);
+    },
+    setScale(next) {
+      model.scale = next;
+      model.writeScale();
+      model.write();
+    },
+  };
+}
 
-  function createBox() {
-    const input = h('input', {
-      type: 'number',
-      class: 'box',
-      id: uniqueId('number'),
-      'aria-label': `${options.name}, number`,
-      inputmode: 'decimal',
-    });
-    // A typed number counts once it is finished: half a number is another number.
-    const read = () => {
-      const typed = input.valueAsNumber / factor;
-      // The box takes any number within the range, not only the slider's grid.
-      if (!Number.isNaN(typed)) take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), false);
-      write();
-    };
-    input.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter') {
-        // The number is finished. On the slider beside it the page's own keys work again, `,` and `.` among them.
-        read();
-        range.focus({ preventScroll: true });
-        return;
-      }
-      if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
-      event.preventDefault();
-      take(nudge(scale, value, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey), false);
-    });
-    input.addEventListener('change', read);
-    return input;
+/** The value, its scale, and the inputs that show them. */
+class Model {
+  /** @param {SliderOptions} options */
+  constructor(options) {
+    this.options = options;
+    this.scale = options.scale;
+    this.value = options.value;
+    this.factor = options.factor ?? 1;
+    this.dragging = false;
+    const name = options.name;
+    this.range = h('input', { type: 'range', class: 'slider', min: 0, max: PLACES, step: 1, 'aria-label': name });
+    this.box =
+      options.number === false
+        ? null
+        : h('input', {
+            type: 'number',
+            class: 'box',
+            id: uniqueId('number'),
+            'aria-label': `${name}, number`,
+            inputmode: 'decimal',
+          });
   }
 
-  /** @param {number} next @param {boolean} live */
-  function take(next, live) {
-    if (next === value && live) return;
-    value = next;
-    write();
-    options.change(value, live);
+  /** Adopts and reports a value. @param {number} next @param {boolean} live */
+  take(next, live) {
+    if (next === this.value && live) return;
+    this.value = next;
+    this.write();
+    this.options.change(next, live);
   }
 
-  /** @param {Element} [except] */
-  function write(except) {
+  /** Shows the value in the inputs. @param {Element} [except]  an input to leave as it is */
+  write(except) {
+    const { range, box, scale, value } = this;
     const place = toPlace(scale, value);
     range.valueAsNumber = Math.round(place * PLACES);
     range.style.setProperty('--place', place.toFixed(4));
-    range.setAttribute('aria-valuetext', options.describe(value));
-    if (box && except !== box) {
-      // Two digits beyond the grid, for values made under shift or typed.
-      const exact = scale.integer
-        ? value
-        : scale.scale === 'log'
-          ? Number(value.toPrecision(5))
-          : Number(value.toFixed(Math.min(decimalsOf(scale.step) + 2, 12)));
-      box.value = String(Number((exact * factor).toPrecision(12)));
-    }
+    range.setAttribute('aria-valuetext', this.options.describe(value));
+    if (box && except !== box) box.value = this.numberOf(exact(scale, value));
   }
 
-  function writeScale() {
-    setAttribute(range, 'aria-label', options.name);
+  writeScale() {
+    const { range, box, scale } = this;
+    setAttribute(range, 'aria-label', this.options.name);
     if (!box) return;
-    box.min = String(Number((scale.min * factor).toPrecision(12)));
-    box.max = String(Number((scale.max * factor).toPrecision(12)));
+    box.min = this.numberOf(scale.min);
+    box.max = this.numberOf(scale.max);
     box.step = 'any';
   }
 
-  // Dragging by hand: the native drag knows no finer steps.
+  /** Returns a value as the box shows it. @param {number} value */
+  numberOf(value) {
+    return String(Number((value * this.factor).toPrecision(12)));
+  }
+}
+
+/** Rounds to two digits beyond the grid, which keeps values that were typed or set with Shift. @param {Scale} scale @param {number} value */
+function exact(scale, value) {
+  if (scale.integer) return value;
+  if (scale.scale === 'log') return Number(value.toPrecision(5));
+  return Number(value.toFixed(Math.min(decimalsOf(scale.step) + 2, 12)));
+}
+
+/** @param {Model} model @param {HTMLInputElement} input */
+function listenToBox(model, input) {
+  // A typed number is read once it is complete, because its beginning is another number.
+  const read = () => {
+    const { scale } = model;
+    const typed = input.valueAsNumber / model.factor;
+    // The box accepts any number within the range, not only values on the slider's grid.
+    if (!Number.isNaN(typed)) model.take(clamp(scale.integer ? Math.round(typed) : typed, scale.min, scale.max), false);
+    model.write();
+  };
+  input.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') {
+      read();
+      // The focus moves to the slider, where the page's shortcuts, such as `,` and `.`, work again.
+      model.range.focus({ preventScroll: true });
+      return;
+    }
+    if (event.key !== 'ArrowUp' && event.key !== 'ArrowDown') return;
+    event.preventDefault();
+    model.take(nudge(model.scale, model.value, event.key === 'ArrowUp' ? 1 : -1, event.shiftKey), false);
+  });
+  input.addEventListener('change', read);
+}
+
+/** Handles dragging, since the native drag has no finer steps. @param {Model} model */
+function listenToPointer(model) {
+  const { range, options } = model;
   let place = 0;
   let lastX = 0;
   /** @param {PointerEvent} event */
   const placeAt = (event) => {
     const { left, width } = range.getBoundingClientRect();
-    const thumb = 14;
-    return clamp((event.clientX - left - thumb / 2) / Math.max(1, width - thumb), 0, 1);
+    return clamp((event.clientX - left - THUMB_PX / 2) / Math.max(1, width - THUMB_PX), 0, 1);
+  };
+  const end = () => {
+    if (!model.dragging) return;
+    model.dragging = false;
+    options.change(model.value, false);
   };
   range.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || range.disabled) return;
     range.setPointerCapture(event.pointerId);
-    dragging = true;
+    model.dragging = true;
     lastX = event.clientX;
-    const now = toPlace(scale, value);
+    const now = toPlace(model.scale, model.value);
     const { width } = range.getBoundingClientRect();
-    // A press on the thumb, or with shift, moves nothing; a press on the track jumps there.
+    // A press on the thumb, or with Shift, leaves the value. A press on the track moves the thumb there.
     const near = Math.abs(placeAt(event) - now) * width < 12;
     place = near || event.shiftKey ? now : placeAt(event);
-    if (!near && !event.shiftKey) take(toValue(scale, place), true);
+    if (!near && !event.shiftKey) model.take(toValue(model.scale, place), true);
   });
   range.addEventListener('pointermove', (event) => {
-    if (!dragging) return;
-    // A slider that was hidden under the hand has no places to go to.
+    if (!model.dragging) return;
+    // A slider that was hidden during the drag has no width.
     if (!range.checkVisibility()) return end();
-    const width = Math.max(1, range.getBoundingClientRect().width - 14);
+    const width = Math.max(1, range.getBoundingClientRect().width - THUMB_PX);
     const fineness = event.shiftKey ? 10 : 1;
     place += (event.clientX - lastX) / width / fineness;
     lastX = event.clientX;
-    take(toValue(scale, place, fineness), true);
+    model.take(toValue(model.scale, place, fineness), true);
   });
-  const end = () => {
-    if (!dragging) return;
-    dragging = false;
-    options.change(value, false);
-  };
   range.addEventListener('pointerup', end);
   range.addEventListener('pointercancel', end);
   range.addEventListener('lostpointercapture', end);
@@ -161,42 +198,30 @@ export function createSlider(options) {
     range.focus({ preventScroll: true });
   });
   range.addEventListener('touchstart', () => {}, { passive: true });
-  // Assistive technology sets the value directly.
+  range.addEventListener('dblclick', options.reset);
+}
+
+/** Handles keys and the values that assistive technology sets directly. @param {Model} model */
+function listenToKeys(model) {
+  const { range, options } = model;
   range.addEventListener('input', () => {
-    if (dragging) write();
-    else take(toValue(scale, range.valueAsNumber / PLACES), true);
+    if (model.dragging) model.write();
+    else model.take(toValue(model.scale, range.valueAsNumber / PLACES), true);
   });
   range.addEventListener('change', () => {
-    if (!dragging) options.change(value, false);
+    if (!model.dragging) options.change(model.value, false);
   });
   range.addEventListener('keydown', (event) => {
     const presses = KEYS[event.key];
     if (presses === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
+    const { scale, value } = model;
     const next = Number.isFinite(presses)
       ? nudge(scale, value, presses, event.shiftKey)
       : snap(scale, presses > 0 ? scale.max : scale.min);
-    take(next, true);
+    model.take(next, true);
   });
   range.addEventListener('keyup', (event) => {
-    if (KEYS[event.key] !== undefined) options.change(value, false);
+    if (KEYS[event.key] !== undefined) options.change(model.value, false);
   });
-  range.addEventListener('dblclick', options.reset);
-
-  writeScale();
-  write();
-  return {
-    range,
-    box,
-    set(next) {
-      if (dragging || next === value) return;
-      value = next;
-      write(document.activeElement === box ? (box ?? undefined) : undefined);
-    },
-    setScale(next) {
-      scale = next;
-      writeScale();
-      write();
-    },
-  };
 }

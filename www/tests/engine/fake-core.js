@@ -8,10 +8,10 @@
  * @param {number} [options.particles]
  * @param {number} [options.relax_steps]
  * @param {number} [options.usPerUnit]
- * @param {number} [options.pieces]  of a measurement
- * @param {number} [options.usPerPiece]
+ * @param {number} [options.slices]  of a measurement
+ * @param {number} [options.usPerSlice]
  */
-export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pieces = 1000, usPerPiece = 50 } = {}) {
+export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, slices = 1000, usPerSlice = 50 } = {}) {
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -131,10 +131,10 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, pi
     /** @param {number} budget */
     measure(budget) {
       calls.push('measure');
-      const n = Math.min(budget, pieces - measured);
+      const n = Math.min(budget, slices - measured);
       measured += n;
-      clock.ms += (n * usPerPiece) / 1000;
-      if (measured < pieces) return undefined;
+      clock.ms += (n * usPerSlice) / 1000;
+      if (measured < slices) return undefined;
       return /** @type {import('../../src/engine/types.js').CoreReport} */ ({ count, digest: 'd' });
     },
     valence: () => new Uint8Array(count).fill(6),

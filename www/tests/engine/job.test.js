@@ -55,17 +55,17 @@ async function run(
 const of = (posted, type) => /** @type {any} */ (posted.filter((m) => m.type === type));
 
 describe('a job', () => {
-  test('pieces join up to the core’s own columns, in order and without a gap', async () => {
+  test('ranges join up to the core’s own columns, in order and without a gap', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3, usPerUnit: 5 });
     const { posted } = await run(core, sampleJob());
-    const pieces = of(posted, 'columns');
-    expect(pieces.length).toBeGreaterThan(4);
+    const ranges = of(posted, 'columns');
+    expect(ranges.length).toBeGreaterThan(4);
     const positions = new Float32Array(60_000);
     let have = 0;
-    for (const piece of pieces) {
-      expect(piece.first).toBeLessThanOrEqual(have);
-      positions.set(piece.positions, 3 * piece.first);
-      have = piece.total;
+    for (const range of ranges) {
+      expect(range.first).toBeLessThanOrEqual(have);
+      positions.set(range.positions, 3 * range.first);
+      have = range.total;
     }
     expect(positions).toEqual(core.positions(0));
     const done = of(posted, 'done');
@@ -135,8 +135,8 @@ describe('a job', () => {
   });
 
   test('a measurement ends no call later than 50 ms after it began, on a fast machine and on a slow one', async () => {
-    for (const usPerPiece of [5, 50, 1000]) {
-      const core = fakeCore({ pieces: 5000, usPerPiece });
+    for (const usPerSlice of [5, 50, 1000]) {
+      const core = fakeCore({ slices: 5000, usPerSlice });
       let longest = 0;
       const measure = core.measure.bind(core);
       core.measure = (budget) => {
@@ -147,12 +147,12 @@ describe('a job', () => {
       };
       const { posted } = await run(core, sampleJob());
       expect(of(posted, 'report')).toHaveLength(1);
-      expect(longest, `at ${usPerPiece} µs per piece`).toBeLessThan(50);
+      expect(longest, `at ${usPerSlice} µs per slice`).toBeLessThan(50);
     }
   });
 
   test('a newer job ends a measurement, and a long one lets itself be heard', async () => {
-    const core = fakeCore({ pieces: 100_000, usPerPiece: 50 });
+    const core = fakeCore({ slices: 100_000, usPerSlice: 50 });
     const { posted, memory } = await run(core, sampleJob(), {
       interrupt: (p) => (of(p, 'beat').length >= 3 ? 'replace' : null),
     });
@@ -198,7 +198,7 @@ describe('a job', () => {
   test('without growth, the picture waits until the front is complete', async () => {
     const core = fakeCore({ particles: 20_000, relax_steps: 3 });
     const { posted } = await run(core, sampleJob({ grow: false }));
-    for (const piece of of(posted, 'columns')) expect(piece.total).toBe(20_000);
+    for (const range of of(posted, 'columns')) expect(range.total).toBe(20_000);
   });
 
   test('more particles than agreed are asked about first', async () => {
@@ -216,13 +216,13 @@ describe('a job', () => {
     core.calls.length = 0;
     const { posted } = await run(core, sampleJob(), { curvature: () => true });
     let have = 0;
-    for (const piece of of(posted, 'columns')) {
-      expect(piece.curvatureFrom).toBeLessThanOrEqual(have);
-      have = Math.max(have, piece.curvatureFrom + piece.curvature.length / 2);
+    for (const range of of(posted, 'columns')) {
+      expect(range.curvatureFrom).toBeLessThanOrEqual(have);
+      have = Math.max(have, range.curvatureFrom + range.curvature.length / 2);
     }
     expect(have).toBe(20_000);
     const last = of(posted, 'columns')
-      .filter((piece) => piece.curvature.length > 0)
+      .filter((range) => range.curvature.length > 0)
       .at(-1);
     expect(last?.curvatureFrom).toBe(0);
     expect(last?.curvature).toEqual(core.curvature(0));
@@ -230,7 +230,7 @@ describe('a job', () => {
   });
 
   test('brings the curvature at once when it is asked for during the measurement', async () => {
-    const core = fakeCore({ particles: 500, pieces: 6000 });
+    const core = fakeCore({ particles: 500, slices: 6000 });
     const { posted } = await run(core, sampleJob(), { curvature: (said) => said.some((m) => m.type === 'beat') });
     const types = posted.map((m) => m.type);
     expect(types.slice(types.indexOf('beat'))).toEqual(['beat', 'columns', 'report']);
@@ -243,7 +243,7 @@ describe('a job', () => {
     const again = await run(core, { kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true }, { memory });
     expect(of(again.posted, 'done')[0].outcome).toBe('complete');
     expect(of(again.posted, 'columns').at(-1)?.progress?.relax_step).toBe(5);
-    for (const piece of of(again.posted, 'columns')) expect(piece.first).toBe(0);
+    for (const range of of(again.posted, 'columns')) expect(range.first).toBe(0);
     const lost = await run(
       core,
       { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true },
@@ -257,7 +257,7 @@ describe('a job', () => {
  * Runs jobs as the worker does.
  * @param {ReturnType<typeof fakeCore>} core
  * @param {SampleJob} first
- * @param {(jobs: Jobs, posted: FromWorker[]) => void} meanwhile  between any two pieces of work
+ * @param {(jobs: Jobs, posted: FromWorker[]) => void} meanwhile  between any two slices of work
  */
 async function work(core, first, meanwhile = () => {}) {
   /** @type {FromWorker[]} */
@@ -311,7 +311,7 @@ describe('a job that comes while another is under way', () => {
   });
 
   test('with a fault in its formula lets the measurement come to its end', async () => {
-    const core = fakeCore({ particles: 500, pieces: 6000 });
+    const core = fakeCore({ particles: 500, slices: 6000 });
     const { posted, memory } = await work(core, sampleJob(), once(faulty, 'done', 1));
     expect(posted.slice(-2).map((m) => m.type)).toEqual(['beat', 'report']);
     expect(of(posted, 'field').at(-1)).toMatchObject({ id: 8, answer: { ok: false } });

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { beginsFunction, describeFault, excerptOf, piecesOf } from '../../src/ui/field/fault.js';
+import { beginsFunction, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
 
 const fault = {
   kind: 'unknown_name',
@@ -47,12 +47,12 @@ describe('a fault in a formula', () => {
   });
 
   it('shows what stands between backticks as code', () => {
-    expect(piecesOf('No `foo` here')).toEqual([
+    expect(segmentsOf('No `foo` here')).toEqual([
       { text: 'No ', code: false },
       { text: 'foo', code: true },
       { text: ' here', code: false },
     ]);
-    expect(piecesOf('A ` alone')).toEqual([{ text: 'A ` alone', code: false }]);
+    expect(segmentsOf('A ` alone')).toEqual([{ text: 'A ` alone', code: false }]);
   });
 
   it('survives offsets beyond the text, as they come from an answer to an older text', () => {

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { piecesOfMath } from '../../src/ui/mathml.js';
+import { partsOfMath } from '../../src/ui/mathml.js';
 
 /** @typedef {import('../../src/engine/types.js').MathNode} MathNode */
 
@@ -12,7 +12,7 @@ const row = (...children) => ({ tag: 'mrow', children });
 /** @param {MathNode} node @returns {string} */
 const write = (node) => ('text' in node ? node.text : `${node.tag}(${node.children.map(write).join(' ')})`);
 /** @param {MathNode} node */
-const pieces = (node) => piecesOfMath(node).map((piece) => piece.map(write).join(' '));
+const parts = (node) => partsOfMath(node).map((part) => part.map(write).join(' '));
 
 describe('MathML', () => {
   it('is taken apart at sums and products outside brackets, nowhere else', () => {
@@ -20,7 +20,7 @@ describe('MathML', () => {
     /** @type {MathNode} */
     const fraction = { tag: 'mfrac', children: [row(mi('x'), mo('+'), mi('y')), mn('2')] };
     const product = row(row(mi('a'), mo('+'), bracket), mo('\u2062'), fraction);
-    expect(pieces(row(product, mo('='), mn('1')))).toEqual([
+    expect(parts(row(product, mo('='), mn('1')))).toEqual([
       'a',
       '+ mrow(( mrow(b − c) ))',
       'mfrac(mrow(x + y) 2)',
@@ -29,6 +29,6 @@ describe('MathML', () => {
   });
 
   it('keeps a sign with what it stands before', () => {
-    expect(pieces(row(row(mo('−'), mi('x')), mo('='), mn('0')))).toEqual(['− x', '= 0']);
+    expect(parts(row(row(mo('−'), mi('x')), mo('='), mn('0')))).toEqual(['− x', '= 0']);
   });
 });

@@ -72,7 +72,7 @@ const shorten = (text) => (text.length > 24 ? `${text.slice(0, 23)}…` : text);
  * @param {string} message
  * @returns {{ text: string, code: boolean }[]}
  */
-export function piecesOf(message) {
+export function segmentsOf(message) {
   const parts = message.split('`');
   // An unpaired backtick is a character of the formula.
   if (parts.length % 2 === 0) return [{ text: message, code: false }];

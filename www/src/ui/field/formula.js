@@ -1,16 +1,17 @@
-/** The formula: an editor, what is wrong with it and how to mend that, and how it reads as mathematics. */
+/** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { mathElement, mathPieces } from '../mathml.js';
-import { beginsFunction, describeFault, piecesOf } from './fault.js';
+import { mathElement, mathParts } from '../mathml.js';
+import { beginsFunction, describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
 import { createTextarea } from './textarea.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
 /** @typedef {import('../../engine/types.js').FieldFault} FieldFault */
+/** @typedef {import('./fault.js').Repair} Repair */
 /**
- * What both editors can do. Offsets are UTF-16 code units.
+ * The interface of both editors. Offsets are UTF-16 code units.
  * @typedef {object} Editor
  * @property {HTMLElement} element
  * @property {() => string} text
@@ -19,130 +20,181 @@ import { createTextarea } from './textarea.js';
  * @property {(fault: FieldFault | null, message: string) => void} setFault
  * @property {() => { anchor: number, head: number }} selection
  * @property {() => void} focus
- * @property {boolean} marks whether it shows the place of the error itself
+ * @property {boolean} marks whether the editor itself marks the error
  */
 
 /**
+ * Creates the section of the formula.
  * @param {Engine} engine
  * @param {import('../../engine/types.js').Description} description
  */
 export function createFormula(engine, description) {
-  const error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
-  const preview = h('div', {
-    class: 'preview',
-    role: 'group',
-    'aria-label': 'The formula as mathematics',
-    tabindex: 0,
+  const input = new FormulaInput(engine, description);
+  const preview = createPreview(engine);
+  const help = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain small',
+      on: { click: () => openFunctions(description, (name) => input.insert(name)) },
+    },
+    'Functions',
+  );
+  const section = h(
+    'div',
+    { class: 'section formula' },
+    h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
+    input.holder,
+    input.error,
+    preview,
+  );
+  document.querySelector('.skip')?.addEventListener('click', (event) => {
+    event.preventDefault();
+    if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
+    else input.editor.focus();
   });
-  const holder = h('div', { class: 'editor', id: 'formula' });
-  const shown = computed(() => engine.state.value.formula);
-  const fault = computed(() => engine.fieldError.value);
-  const math = computed(() => engine.field.value?.mathml ?? null);
+  effect(() => {
+    section.hidden = engine.field.value?.kind === 'points';
+  });
+  return section;
+}
 
-  const names = () => engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
-  /** The caret is behind the beginning of a name: what was wrong before it may be mended with that. */
-  let unfinished = false;
-  const change = (/** @type {string} */ text) => {
-    const { anchor, head } = editor.selection();
-    unfinished = anchor === head && beginsFunction(text.slice(0, head), description.functions, names());
-    engine.setFormula(text, { unfinished });
-  };
-  /** @type {Editor} */
-  let editor = createTextarea({ text: shown.peek(), change, focused: upgrade });
-  holder.append(editor.element);
-  let upgrading = false;
+/** The present editor, and the error in its text. */
+class FormulaInput {
+  /**
+   * @param {Engine} engine
+   * @param {import('../../engine/types.js').Description} description
+   */
+  constructor(engine, description) {
+    this.engine = engine;
+    this.functions = description.functions;
+    this.error = h('div', { class: 'fault', id: 'formula-fault', role: 'status', 'aria-live': 'polite' });
+    this.holder = h('div', { class: 'editor', id: 'formula' });
+    /** Whether the text before the caret ends in the beginning of a name. The error may disappear with the next keys. */
+    this.unfinished = false;
+    this.upgrading = false;
+    const shown = computed(() => engine.state.value.formula);
+    this.fault = computed(() => engine.fieldError.value);
+    this.change = (/** @type {string} */ text) => {
+      const { anchor, head } = this.editor.selection();
+      this.unfinished = anchor === head && beginsFunction(text.slice(0, head), this.functions, this.names());
+      engine.setFormula(text, { unfinished: this.unfinished });
+    };
+    /** @type {Editor} */
+    this.editor = createTextarea({ text: shown.peek(), change: this.change, focused: () => this.upgrade() });
+    this.holder.append(this.editor.element);
+    effect(() => {
+      const text = shown.value;
+      if (this.editor.text() !== text) this.editor.setText(text);
+    });
+    effect(() => {
+      void this.fault.value;
+      this.unfinished = false;
+      this.render();
+    });
+    effect(() => {
+      void shown.value;
+      this.render();
+    });
+  }
 
-  /** The full editor arrives with the first focus; until then, and where it cannot load, the text area does the work. */
-  async function upgrade() {
-    if (upgrading) return;
-    upgrading = true;
+  names() {
+    return this.engine.field.peek()?.parameters.map(({ name }) => name) ?? [];
+  }
+
+  /** Replaces the text area by the full editor, on the first focus. If it cannot load, the text area stays. */
+  async upgrade() {
+    if (this.upgrading) return;
+    this.upgrading = true;
     try {
       const { createCodeEditor } = await import('./code-editor.js');
-      const plain = editor;
+      const plain = this.editor;
       if (plain.element.matches('[data-composing]'))
         await new Promise((done) => plain.element.addEventListener('compositionend', done, { once: true }));
       const focused = plain.element === document.activeElement;
       const next = createCodeEditor({
         text: plain.text(),
-        functions: description.functions,
-        change,
-        names,
+        functions: this.functions,
+        change: this.change,
+        names: () => this.names(),
         selection: plain.selection(),
       });
-      editor = next;
+      this.editor = next;
       plain.element.replaceWith(next.element);
-      render();
+      this.render();
       if (focused) next.focus();
     } catch {
       // The text area stays.
     }
   }
 
-  function render() {
-    const text = editor.text();
-    const view = describeFault(text, unfinished ? null : fault.peek());
+  /** Shows the error in the text, if any. */
+  render() {
+    const { editor, holder, error } = this;
+    const fault = this.fault.peek();
+    const view = describeFault(editor.text(), this.unfinished ? null : fault);
     holder.classList.toggle('has-fault', view?.tone === 'fault');
-    editor.setFault(view?.tone === 'fault' ? fault.peek() : null, view?.message ?? '');
+    editor.setFault(view?.tone === 'fault' ? fault : null, view?.message ?? '');
     if (!view) return fill(error);
-    const { excerpt } = view;
     error.dataset.tone = view.tone;
     fill(
       error,
-      excerpt && !editor.marks
-        ? h(
-            'code',
-            { class: 'excerpt' },
-            excerpt.before,
-            h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked),
-            excerpt.after,
-          )
-        : null,
+      editor.marks ? null : excerptElement(view),
       h(
         'p',
         null,
-        piecesOf(view.message).map(({ text: piece, code }) => (code ? h('code', null, piece) : piece)),
+        segmentsOf(view.message).map(({ text, code }) => (code ? h('code', null, text) : text)),
       ),
-      view.repairs.length
-        ? h(
-            'div',
-            { class: 'repairs' },
-            view.repairs.map((repair) =>
-              h('button', { type: 'button', class: 'button small', on: { click: () => mend(repair) } }, repair.label),
-            ),
-          )
-        : null,
+      view.repairs.length ? this.repairButtons(view.repairs) : null,
     );
-    // On a phone there is room for little below the editor.
+    // On a phone there is little room below the editor.
     if (holder.contains(document.activeElement)) error.scrollIntoView({ block: 'nearest' });
   }
 
-  /** @param {import('./fault.js').Repair} repair */
-  function mend(repair) {
-    if (repair.declare) engine.declareParameter(repair.declare);
-    if (repair.replace) editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
-    editor.focus();
+  /** @param {Repair[]} repairs */
+  repairButtons(repairs) {
+    const button = (/** @type {Repair} */ repair) =>
+      h('button', { type: 'button', class: 'button small', on: { click: () => this.mend(repair) } }, repair.label);
+    return h('div', { class: 'repairs' }, repairs.map(button));
   }
 
-  effect(() => {
-    const text = shown.value;
-    if (editor.text() !== text) editor.setText(text);
+  /** @param {Repair} repair */
+  mend(repair) {
+    if (repair.declare) this.engine.declareParameter(repair.declare);
+    if (repair.replace) this.editor.replace(repair.replace.start, repair.replace.end, repair.replace.text);
+    this.editor.focus();
+  }
+
+  /** Inserts a function at the caret. @param {string} name */
+  insert(name) {
+    const { anchor, head } = this.editor.selection();
+    this.editor.replace(Math.min(anchor, head), Math.max(anchor, head), `${name}(`);
+    this.editor.focus();
+  }
+}
+
+/** @param {import('./fault.js').FaultView} view */
+const excerptElement = ({ excerpt }) =>
+  excerpt &&
+  h(
+    'code',
+    { class: 'excerpt' },
+    excerpt.before,
+    h('mark', { class: excerpt.marked ? '' : 'caret' }, excerpt.marked),
+    excerpt.after,
+  );
+
+/** Shows the formula as mathematics. @param {Engine} engine */
+function createPreview(engine) {
+  const preview = h('div', {
+    class: 'preview',
+    role: 'group',
+    'aria-label': 'The formula as mathematics',
+    tabindex: 0,
   });
-  effect(() => {
-    void fault.value;
-    unfinished = false;
-    render();
-  });
-  effect(() => {
-    void shown.value;
-    render();
-  });
-  effect(() => {
-    void math.value;
-    fit();
-    preview.classList.toggle('stale', engine.fieldError.value !== null);
-  });
-  /** A formula too long for one line goes on in the next, and is taken apart only then. */
-  function fit() {
+  const math = computed(() => engine.field.value?.mathml ?? null);
+  // A formula is split into parts only if it is too long for one line.
+  const fit = () => {
     const tree = math.peek();
     preview.classList.remove('long');
     fill(preview, tree && mathElement(tree));
@@ -151,45 +203,18 @@ export function createFormula(engine, description) {
     preview.classList.add('long');
     fill(
       preview,
-      mathPieces(tree).flatMap((piece) => [piece, h('wbr')]),
+      mathParts(tree).flatMap((part) => [part, h('wbr')]),
     );
-  }
+  };
+  effect(() => {
+    void math.value;
+    fit();
+    preview.classList.toggle('stale', engine.fieldError.value !== null);
+  });
   let width = 0;
   new ResizeObserver(() => {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  document.querySelector('.skip')?.addEventListener('click', (event) => {
-    event.preventDefault();
-    if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
-    else editor.focus();
-  });
-
-  const help = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain small',
-      on: { click: () => openFunctions(description, (name) => insert(name)) },
-    },
-    'Functions',
-  );
-  /** @param {string} name */
-  function insert(name) {
-    const { anchor, head } = editor.selection();
-    editor.replace(Math.min(anchor, head), Math.max(anchor, head), `${name}(`);
-    editor.focus();
-  }
-  const section = h(
-    'div',
-    { class: 'section formula' },
-    h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
-    holder,
-    error,
-    preview,
-  );
-  effect(() => {
-    section.hidden = engine.field.value?.kind === 'points';
-  });
-  return section;
+  return preview;
 }
