@@ -278,7 +278,7 @@
  * @typedef {Omit<State, 'v' | 'view'>} Shape
  */
 
-// ---- what the engine tells --------------------------------------------------------------------------------------------
+// ---- what the engine reports ------------------------------------------------------------------------------------------
 
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**

@@ -179,7 +179,7 @@ describe('a run', () => {
     expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
   });
 
-  test('counts up with every piece that may change what is told of the particles', () => {
+  test('counts up with every range of columns that may change what is shown of the particles', () => {
     const { client, store, say, accept } = page();
     const seen = [store.revision.value];
     client.sample(request('x'));
