@@ -35,11 +35,16 @@ pub struct Surface {
     pub bounds: Bounds,
     /// Algebraic degree; `None` for a transcendental surface.
     pub degree: Option<u32>,
+    /// Whether the surface is closed, so that it lies in the box for all values of the parameters.
+    pub closed: bool,
     /// Genus with the default parameters; `None` unless the surface is closed, connected and free of
     /// self-intersections.
     pub genus: Option<u32>,
     /// Whether the surface with the default parameters has no singular point.
     pub smooth: bool,
+    /// Whether thin parts or long blends keep the search for components from a proof, and a coarse relaxation from its last
+    /// steps.
+    pub intricate: bool,
     /// Two sentences about the surface.
     pub story: &'static str,
 }
@@ -101,8 +106,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.25, 1.05, 0.85]),
         degree: Some(2),
+        closed: true,
         genus: Some(0),
         smooth: true,
+        intricate: false,
         story: "A sphere stretched by three different factors, the simplest closed surface whose \
                 curvature varies from point to point. At each of its four umbilics the two principal \
                 curvatures agree.",
@@ -114,8 +121,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("r", "Radius", 1.0, [0.3, 1.2, 0.01])],
         bounds: Bounds::cube(1.25),
         degree: Some(2),
+        closed: true,
         genus: Some(0),
         smooth: true,
+        intricate: false,
         story: "All points at one distance from a centre: the closed surface that holds the most volume \
                 for its area. No lattice of six neighbours covers it, because the defects of valence \
                 must add up to twelve.",
@@ -130,8 +139,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.65, 1.65, 0.55]),
         degree: Some(4),
+        closed: true,
         genus: Some(1),
         smooth: true,
+        intricate: false,
         story: "A circle of radius r carried around an axis at distance R; it is dome-shaped on the \
                 outside and saddle-shaped on the inside. Its Euler number is zero, so that a covering \
                 with six neighbours everywhere is possible.",
@@ -146,8 +157,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds { min: [-2.35, -1.82, -1.35], max: [1.6, 1.82, 1.35] },
         degree: Some(4),
+        closed: true,
         genus: Some(1),
         smooth: true,
+        intricate: false,
         story: "A torus seen in a spherical mirror: the tube swells on one side and narrows on the \
                 other. All its lines of curvature are circles, which Charles Dupin found around 1802, \
                 while still a student.",
@@ -159,8 +172,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("c", "Level", 11.8, [7.0, 13.5, 0.05])],
         bounds: Bounds::cube(2.5),
         degree: Some(4),
+        closed: true,
         genus: Some(5),
         smooth: true,
+        intricate: false,
         story: "Eight balls at the corners of a cube, joined along its twelve edges to a surface of \
                 genus five. Raise c past 12.5 and the bridges break.",
     },
@@ -171,8 +186,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("d", "Flatness", 2.25, [1.5, 4.0, 0.05])],
         bounds: Bounds { min: [-1.25, -0.95, -1.1], max: [1.25, 0.95, 1.35] },
         degree: Some(6),
+        closed: true,
         genus: Some(0),
         smooth: false,
+        intricate: false,
         story: "Gabriel Taubin's sextic of the early 1990s, made to try out the drawing of implicit \
                 surfaces. The gradient vanishes at the dimple and at the tip, which makes both of them \
                 hard for any method that follows it.",
@@ -187,8 +204,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.1, 1.1, 1.2]),
         degree: None,
+        closed: true,
         genus: Some(0),
         smooth: true,
+        intricate: false,
         story: "The sphere's formula with another exponent: 2 gives an ellipsoid, and growing exponents \
                 turn it into a box with rounded edges. The designer and poet Piet Hein made the form \
                 popular in the 1960s.",
@@ -203,8 +222,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(1.45),
         degree: Some(12),
+        closed: true,
         genus: Some(13),
         smooth: true,
+        intricate: true,
         story: "Six rings, one on each face of a cube, thick enough to melt together where they come \
                 close. With the first settings it has genus thirteen; thin the rings and it falls apart \
                 into six tori.",
@@ -216,8 +237,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("c", "Thickness", 0.12, [0.05, 0.22, 0.005])],
         bounds: Bounds::symmetric([1.2, 0.72, 0.28]),
         degree: Some(8),
+        closed: true,
         genus: Some(2),
         smooth: true,
+        intricate: false,
         story: "A plane figure of eight, Gerono's lemniscate, thickened until it is the skin of a body \
                 with two holes. Squaring a curve's equation and adding z² does the same for any plane \
                 curve.",
@@ -232,8 +255,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::symmetric([1.7, 1.2, 1.2]),
         degree: Some(4),
+        closed: true,
         genus: Some(0),
         smooth: true,
+        intricate: false,
         story: "The points whose distances from two foci have the constant product b². For b just above \
                 a it has a waist; at b = a that shrinks to a point, and below there are two eggs.",
     },
@@ -247,8 +272,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds { min: [-1.3, -1.6, -0.85], max: [1.7, 1.6, 0.85] },
         degree: None,
+        closed: true,
         genus: Some(0),
         smooth: true,
+        intricate: false,
         story: "Three bells of density and the surface where they add up to t: pull the centres apart \
                 and the drops part. James Blinn introduced such blobs in 1982 to draw molecules.",
     },
@@ -262,8 +289,10 @@ pub static SURFACES: &[Surface] = &[
         ],
         bounds: Bounds::cube(0.95),
         degree: None,
+        closed: true,
         genus: Some(5),
         smooth: true,
+        intricate: true,
         story: "A cube cut to a ball and drilled along three axes: constructive solid geometry with \
                 every sharp edge replaced by a smooth blend of width k. The crossing drill holes make \
                 its genus five.",
@@ -276,8 +305,10 @@ pub static SURFACES: &[Surface] = &[
         // A little less than two periods, 4π, so that no slivers appear at the corners.
         bounds: Bounds::cube(6.2),
         degree: None,
+        closed: false,
         genus: None,
         smooth: true,
+        intricate: false,
         story: "It divides space into two labyrinths, each the mirror image of the other, and holds \
                 neither a straight line nor a plane of symmetry. Alan Schoen found the minimal surface \
                 that this formula closely follows in 1970; butterfly wings and block copolymers grow \
@@ -290,8 +321,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.95, 0.95, 0.01])],
         bounds: Bounds::cube(6.3),
         degree: None,
+        closed: false,
         genus: None,
         smooth: true,
+        intricate: false,
         story: "The primitive surface of Hermann Amandus Schwarz: chambers joined by necks along the \
                 edges of a cubic lattice. The formula is the first term of the true minimal surface's \
                 Fourier series, and already hard to tell from it.",
@@ -304,8 +337,10 @@ pub static SURFACES: &[Surface] = &[
         // A little less than one period, 2π, so that no slivers appear at the corners.
         bounds: Bounds::cube(3.1),
         degree: None,
+        closed: false,
         genus: None,
         smooth: true,
+        intricate: false,
         story: "Two interlocking labyrinths whose tunnels run along the bonds of a diamond crystal. With \
                 the P surface and the gyroid it belongs to one family: bending without stretching turns \
                 each one into the others.",
@@ -317,8 +352,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[],
         bounds: Bounds::cube(1.2),
         degree: Some(3),
+        closed: false,
         genus: None,
         smooth: true,
+        intricate: false,
         story: "Every smooth cubic surface carries 27 straight lines, and on this one, found by Alfred \
                 Clebsch in 1871, all of them are real. In ten points three of the lines meet.",
     },
@@ -329,8 +366,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 1.0, [0.6, 1.4, 0.01])],
         bounds: Bounds::cube(1.6),
         degree: Some(3),
+        closed: false,
         genus: None,
         smooth: false,
+        intricate: false,
         story: "The cubic surface with four cone points, the most that a cubic can have; nine straight \
                 lines lie on it. Move t off 1 and the points open or pinch off.",
     },
@@ -341,8 +380,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("mu", "Radius of the base sphere", 1.3, [1.05, 1.6, 0.01])],
         bounds: Bounds::cube(2.6),
         degree: Some(4),
+        closed: false,
         genus: None,
         smooth: false,
+        intricate: false,
         story: "A quartic surface with sixteen cone points, the most possible, built from a sphere of \
                 radius mu and the four planes of a tetrahedron. Ernst Kummer met the family in 1864 \
                 while studying bundles of light rays.",
@@ -354,8 +395,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("t", "Level", 0.0, [-0.3, 0.3, 0.01])],
         bounds: Bounds::cube(1.9),
         degree: Some(6),
+        closed: false,
         genus: None,
         smooth: false,
+        intricate: false,
         story: "65 cone points, arranged with the symmetry of an icosahedron, fifteen of them at \
                 infinity: no surface of degree six has more. Wolf Barth found it in 1996, half a \
                 century after a supposed proof that 52 was the limit.",
@@ -367,8 +410,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[],
         bounds: Bounds { min: [-3.6, -3.2, -4.6], max: [3.6, 5.2, 4.6] },
         degree: Some(6),
+        closed: true,
         genus: None,
         smooth: false,
+        intricate: false,
         story: "A closed surface with one side, which in space has to pass through itself. On the curve \
                 of self-crossing the gradient vanishes: no method can place particles there by following \
                 it, and this one says so.",
@@ -380,8 +425,10 @@ pub static SURFACES: &[Surface] = &[
         parameters: &[parameter("k", "Twist", 1.0, [0.3, 2.5, 0.01])],
         bounds: Bounds::symmetric([2.0, 2.0, 3.2]),
         degree: None,
+        closed: false,
         genus: None,
         smooth: true,
+        intricate: false,
         story: "The surface of a spiral staircase, swept by a line that turns as it climbs. Among the \
                 surfaces made of straight lines only it and the plane are minimal, as Eugène Catalan \
                 proved in 1842.",

@@ -1,6 +1,7 @@
 //! Tests of the adaptive front (paper §5): children touch their parents, both placements cover the surface, and a run
 //! does not depend on how it is cut into steps.
 
+use crate::smooth::smooth;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::{Particles, SlotFate};
@@ -10,9 +11,6 @@ use marching_particles::sampler::{
 };
 use marching_particles::spatial::CellGrid;
 use marching_particles::trace::{Event, Step};
-
-/// Smooth surfaces of positive, negative and mixed curvature, with their Euler numbers.
-const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
 const PLACEMENTS: [Placement; 2] = [Placement::Direct, Placement::Faithful];
 
@@ -98,7 +96,7 @@ fn untouched(particles: &Particles) -> f32 {
 
 #[test]
 fn children_touch_their_parents() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         // The particles are so small that grading lowers no radius behind the front.
         let fine =
             |placement| Settings { size_mode: SizeMode::Radius, chord_error: 1e-4, ..settings(placement) };
@@ -112,7 +110,7 @@ fn children_touch_their_parents() {
 
 #[test]
 fn both_placements_cover_and_crowd_nothing() {
-    for (surface, euler) in SMOOTH {
+    for (surface, euler) in smooth() {
         for placement in PLACEMENTS {
             let sampler = sampled(surface, &settings(placement));
             let particles = sampler.particles();
@@ -131,7 +129,7 @@ fn both_placements_cover_and_crowd_nothing() {
 
 #[test]
 fn ten_steps_even_the_sizes_out() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         for placement in PLACEMENTS {
             let sampler = sampled(surface, &Settings { relax_steps: 10, ..settings(placement) });
             let particles = sampler.particles();
@@ -173,7 +171,7 @@ fn the_bunny_is_even_after_ten_steps() {
 
 #[test]
 fn direct_placement_is_better_for_a_third_of_the_evaluations() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         let [direct, faithful] = PLACEMENTS.map(|placement| {
             // A given radius takes one front; a given count would take the search for the radius too.
             let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings(placement) };
@@ -207,7 +205,7 @@ fn how_a_run_is_cut_into_steps_does_not_change_it() {
 
 #[test]
 fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         let equal = Settings {
             size_mode: SizeMode::Radius,
             radius_min_share: 0.006,

@@ -174,9 +174,6 @@ fn a_clipped_gyroid_is_proven_to_be_found_whole() {
 
 #[test]
 fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() {
-    /// Surfaces that take more cells than the search may examine: thin parts of high degree, and long formulas with
-    /// blends.
-    const LONG: [&str; 2] = ["decocube", "drilled-block"];
     for surface in gallery::SURFACES {
         for share in [0.02, 0.006] {
             let mut session = Session::new();
@@ -186,7 +183,7 @@ fn gallery_surfaces_are_proven_to_be_found_and_their_boxes_cut_off_no_slivers() 
             while session.step(50_000).stop_reason.is_none() {}
             let report = session.report();
             let context = format!("{} at {share}", surface.id);
-            if surface.id == "cayley" || surface.smooth && !LONG.contains(&surface.id) {
+            if surface.id == "cayley" || surface.smooth && !surface.intricate {
                 is_proven(&report, &context);
             }
             let mut counts = vec![0; report.components];

@@ -6,15 +6,13 @@
     reason = "the naive sampler follows the paper slot by slot, and on a smooth surface the vectors it normalises are not zero"
 )]
 
+use crate::smooth::smooth;
 use glam::Vec3;
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures};
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
-
-/// Surfaces of the tests, with their Euler numbers.
-const SMOOTH: [(&str, i64); 4] = [("sphere", 2), ("ellipsoid", 2), ("torus", 0), ("tanglecube", -8)];
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
 /// particles. The aim is 0.93 and 55.5° everywhere. The torus misses the angle, and the tanglecube misses both. Where
@@ -249,7 +247,7 @@ fn the_front_places_the_particles_of_the_sequential_algorithm() {
 
 #[test]
 fn a_front_covers_smooth_surfaces_regularly() {
-    for (surface, euler) in SMOOTH {
+    for (surface, euler) in smooth() {
         let sampler = sampled(
             surface,
             &Settings { size_mode: SizeMode::Count, count: 14_000, relax_steps: 0, ..Settings::default() },
@@ -284,7 +282,7 @@ fn most_particles_of_a_front_have_six_neighbours() {
 
 #[test]
 fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         let settings = Settings { radius_share: 0.006, relax_steps: 0, ..Settings::default() };
         let left = sampled(surface, &Settings { gaps: GapPolicy::Leave, ..settings });
         let filled = sampled(surface, &settings);
@@ -312,7 +310,7 @@ fn filling_gaps_shrinks_the_largest_hole_and_crowds_nothing() {
 
 #[test]
 fn a_particle_costs_about_two_evaluations() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         let sampler =
             sampled(surface, &Settings { radius_share: 0.006, relax_steps: 0, ..Settings::default() });
         let per_particle = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
@@ -322,7 +320,7 @@ fn a_particle_costs_about_two_evaluations() {
 
 #[test]
 fn every_child_is_two_radii_from_its_parent() {
-    for (surface, _) in SMOOTH {
+    for (surface, _) in smooth() {
         let sampler = front(surface, 0.01);
         let particles = sampler.particles();
         let distance = 2.0 * sampler.radius() as f32;

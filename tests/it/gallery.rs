@@ -2,9 +2,12 @@
 
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, SURFACES, Surface};
+use marching_particles::field::model::MODELS;
 use marching_particles::field::{Field, Jet};
 use marching_particles::math::Sym3;
 use rand_core::Rng;
+use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Pseudo-random points in the surface's box, the same in every run.
 fn points(surface: &Surface, count: usize) -> Vec<DVec3> {
@@ -179,7 +182,7 @@ fn faces(surface: &Surface, steps: u32) -> Vec<DVec3> {
 
 #[test]
 fn closed_surfaces_lie_inside_their_boxes_over_the_whole_range_of_every_parameter() {
-    for surface in SURFACES.iter().filter(|surface| surface.genus.is_some() || surface.id == "klein-bottle") {
+    for surface in SURFACES.iter().filter(|surface| surface.closed) {
         let mut field = surface.field();
         let corners = 1_u32 << surface.parameters.len();
         for corner in 0..corners {
@@ -211,7 +214,7 @@ fn euler_number(surface: &Surface, n: u32) -> i64 {
     field.values(&points, &mut values);
     let mut mesh = fast_surface_nets::SurfaceNetsBuffer::default();
     fast_surface_nets::surface_nets(&values, &shape, [0; 3], [n; 3], &mut mesh);
-    let mut edges = std::collections::BTreeSet::new();
+    let mut edges = BTreeSet::new();
     for triangle in mesh.indices.chunks(3) {
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
             let (a, b) = (triangle[a], triangle[b]);
@@ -226,6 +229,7 @@ fn euler_number(surface: &Surface, n: u32) -> i64 {
 fn closed_surfaces_have_the_genus_they_claim() {
     for surface in SURFACES {
         let Some(genus) = surface.genus else { continue };
+        assert!(surface.closed, "{}", surface.id);
         let euler = euler_number(surface, 96);
         assert_eq!(euler, 2 - 2 * i64::from(genus), "{}", surface.id);
     }
@@ -283,6 +287,21 @@ fn smooth_surfaces_have_a_gradient_everywhere_and_the_others_do_not() {
             assert!(least < 0.25 * mean, "{}: slope {least} of mean {mean}", surface.id);
         }
     }
+}
+
+#[test]
+fn every_surface_and_model_has_its_picture_and_every_picture_its_surface() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/public/gallery");
+    let files =
+        std::fs::read_dir(&folder).expect("the folder of the pictures").map(|entry| entry.expect("an entry"));
+    let pictures: BTreeSet<String> =
+        files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
+    let ids = SURFACES.iter().map(|surface| surface.id).chain(MODELS.iter().map(|model| model.id));
+    let wanted: BTreeSet<String> = ids.map(|id| format!("{id}.webp")).collect();
+    let missing: Vec<_> = wanted.difference(&pictures).collect();
+    assert!(missing.is_empty(), "{missing:?} are missing: `npm run pictures -- ID …` in www draws them");
+    let left_over: Vec<_> = pictures.difference(&wanted).collect();
+    assert!(left_over.is_empty(), "{left_over:?} show no surface and no model");
 }
 
 #[test]

@@ -34,3 +34,4 @@ mod relax;
 mod session;
 mod shaders;
 mod sizing;
+mod smooth;
