@@ -128,6 +128,8 @@ pub mod export;
 pub mod field;
 pub mod math;
 pub mod mesh;
+#[cfg(all(test, feature = "points"))]
+mod page_types;
 pub mod particles;
 mod pieces;
 #[cfg(feature = "points")]

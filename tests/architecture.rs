@@ -48,6 +48,8 @@ const ROOMS: [Room; 4] = [
                     "export",
                 ],
             ),
+            // Compiled for tests alone: the types of the page.
+            ("page_types", &["field", "pointcloud", "sampler", "session"]),
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
@@ -60,7 +62,8 @@ const ROOMS: [Room; 4] = [
     (
         "sampler",
         &[
-            ("settings", &[]),
+            ("setting", &[]),
+            ("settings", &["setting"]),
             ("fates", &[]),
             ("phase", &[]),
             ("projection", &[]),

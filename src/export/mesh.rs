@@ -2,6 +2,7 @@
 
 use super::glb;
 use crate::particles::Particles;
+use crate::quality;
 use std::io::{self, Write};
 
 /// A file format for triangles over particles.
@@ -31,7 +32,7 @@ impl MeshFormat {
 
 /// Writes the `triangles` over `particles` to `out`, which should be buffered: triples of indices, counter-clockwise seen
 /// from outside, as [`triangulate`](crate::mesh::build::triangulate) makes them. Every particle is a vertex, whether it is in a
-/// triangle or not, so that indices stay. `valence` is as for [`write`](super::write).
+/// triangle or not, so that indices stay. `measured` is as for [`write`](super::write).
 ///
 /// # Errors
 ///
@@ -43,7 +44,7 @@ impl MeshFormat {
 pub fn write_mesh(
     format: MeshFormat,
     particles: &Particles,
-    valence: &[u8],
+    measured: &quality::Report,
     triangles: &[[u32; 3]],
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -51,7 +52,7 @@ pub fn write_mesh(
         MeshFormat::Glb => glb::write(particles, triangles, out),
         MeshFormat::Obj => obj(particles, triangles, out),
         MeshFormat::Stl => stl(particles, triangles, out),
-        MeshFormat::Ply => super::ply(particles, valence, Some(triangles), out),
+        MeshFormat::Ply => super::ply(particles, measured, Some(triangles), out),
     }
 }
 

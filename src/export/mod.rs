@@ -6,15 +6,16 @@ mod mesh;
 pub use mesh::{MeshFormat, write_mesh};
 
 use crate::particles::Particles;
+use crate::quality;
+use serde::Serialize;
 use std::io::{self, Write};
 
 /// A file format for particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Binary little-endian PLY: position, normal, radius, level, parent (−1 for a seed), valence, and 1 for a particle
-    /// next to a singular point.
+    /// Binary little-endian PLY with the [`COLUMNS`].
     Ply,
-    /// Comma-separated values with a header line and the columns of [`Format::Ply`].
+    /// Comma-separated values of the [`COLUMNS`], with a header line.
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
@@ -34,64 +35,152 @@ impl Format {
     }
 }
 
-/// Writes `particles` to `out`, which should be buffered.
-///
-/// `valence` is the number of natural neighbours of each particle (see [`crate::quality::Report::valence`]); particles
-/// beyond its end get 0. Decimal numbers are the shortest that read back to the same bits.
+/// What the values of a column are, by the name of the type in PLY.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum ColumnKind {
+    /// Single precision.
+    Float,
+    /// 32 bits with a sign.
+    Int,
+    /// 32 bits without a sign.
+    Uint,
+    /// 8 bits without a sign.
+    Uchar,
+}
+
+/// A column of PLY and CSV files, here and on the page.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Column {
+    /// Name in the file.
+    pub name: &'static str,
+    /// What its values are.
+    pub kind: ColumnKind,
+    /// Whether it is known only once the particles are measured.
+    pub measured: bool,
+    /// The value for one particle.
+    #[serde(skip)]
+    read: fn(&Particles, &quality::Report, usize) -> Cell,
+}
+
+/// A value of a column.
+#[derive(Clone, Copy)]
+enum Cell {
+    Float(f32),
+    Int(i32),
+    Uint(u32),
+    Uchar(u8),
+}
+
+impl Cell {
+    fn write_binary(self, out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Float(value) => out.write_all(&value.to_le_bytes()),
+            Self::Int(value) => out.write_all(&value.to_le_bytes()),
+            Self::Uint(value) => out.write_all(&value.to_le_bytes()),
+            Self::Uchar(value) => out.write_all(&[value]),
+        }
+    }
+
+    fn write_text(self, out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Float(value) => write!(out, "{value}"),
+            Self::Int(value) => write!(out, "{value}"),
+            Self::Uint(value) => write!(out, "{value}"),
+            Self::Uchar(value) => write!(out, "{value}"),
+        }
+    }
+}
+
+type Read = fn(&Particles, &quality::Report, usize) -> Cell;
+
+const fn float(name: &'static str, read: Read) -> Column {
+    Column { name, kind: ColumnKind::Float, measured: false, read }
+}
+
+/// The columns of PLY and CSV files, in their order.
+pub const COLUMNS: &[Column] = &[
+    float("x", |particles, _, i| Cell::Float(particles.position[i].x)),
+    float("y", |particles, _, i| Cell::Float(particles.position[i].y)),
+    float("z", |particles, _, i| Cell::Float(particles.position[i].z)),
+    float("nx", |particles, _, i| Cell::Float(particles.normal[i].x)),
+    float("ny", |particles, _, i| Cell::Float(particles.normal[i].y)),
+    float("nz", |particles, _, i| Cell::Float(particles.normal[i].z)),
+    float("radius", |particles, _, i| Cell::Float(particles.radius[i])),
+    Column { kind: ColumnKind::Uint, ..float("level", |particles, _, i| Cell::Uint(particles.level[i])) },
+    // All ones, the mark of a seed, is −1.
+    Column {
+        kind: ColumnKind::Int,
+        ..float("parent", |particles, _, i| Cell::Int(particles.parent[i].cast_signed()))
+    },
+    Column {
+        kind: ColumnKind::Uchar,
+        measured: true,
+        ..float("valence", |_, measured, i| Cell::Uchar(measured.valence.get(i).copied().unwrap_or(0)))
+    },
+    Column {
+        measured: true,
+        ..float("nearest", |_, measured, i| Cell::Float(measured.nearest.get(i).copied().unwrap_or(f32::NAN)))
+    },
+    Column {
+        measured: true,
+        ..float("residual", |_, measured, i| {
+            Cell::Float(measured.residual.get(i).copied().unwrap_or(f32::NAN))
+        })
+    },
+    Column {
+        kind: ColumnKind::Uchar,
+        ..float("singular", |particles, _, i| Cell::Uchar(particles.slots[i].is_singular().into()))
+    },
+];
+
+/// Writes `particles` to `out`, which should be buffered. `measured` is the report on them; particles beyond its end get a
+/// valence of 0 and NaN for the rest. Floats in text are the shortest that read back to the same bits.
 ///
 /// # Errors
 ///
 /// Those of `out`.
-pub fn write(format: Format, particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result<()> {
+pub fn write(
+    format: Format,
+    particles: &Particles,
+    measured: &quality::Report,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     match format {
-        Format::Ply => ply(particles, valence, None, out),
-        Format::Csv => csv(particles, valence, out),
+        Format::Ply => ply(particles, measured, None, out),
+        Format::Csv => csv(particles, measured, out),
         Format::Xyz => xyz(particles, out),
         Format::Npy => npy(particles, out),
     }
 }
 
-/// Index of the parent, or −1 for a seed.
-fn parent(particles: &Particles, i: usize) -> i32 {
-    // The parent of a seed is `u32::MAX`, whose bits are those of −1.
-    particles.parent[i].cast_signed()
-}
-
 fn ply(
     particles: &Particles,
-    valence: &[u8],
+    measured: &quality::Report,
     triangles: Option<&[[u32; 3]]>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
     writeln!(out, "element vertex {}", particles.len())?;
-    for name in ["x", "y", "z", "nx", "ny", "nz", "radius"] {
-        writeln!(out, "property float {name}")?;
+    for column in COLUMNS {
+        let kind = match column.kind {
+            ColumnKind::Float => "float",
+            ColumnKind::Int => "int",
+            ColumnKind::Uint => "uint",
+            ColumnKind::Uchar => "uchar",
+        };
+        writeln!(out, "property {kind} {}", column.name)?;
     }
-    write!(
-        out,
-        "property uint level\nproperty int parent\nproperty uchar valence\nproperty uchar singular\n"
-    )?;
     if let Some(triangles) = triangles {
         write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", triangles.len())?;
     }
     writeln!(out, "end_header")?;
     for i in 0..particles.len() {
-        // One write per particle.
-        let mut record = [0_u8; 38];
-        let floats = particles.position[i]
-            .to_array()
-            .into_iter()
-            .chain(particles.normal[i].to_array())
-            .chain([particles.radius[i]]);
-        for (bytes, value) in record.chunks_exact_mut(4).zip(floats) {
-            bytes.copy_from_slice(&value.to_le_bytes());
+        for column in COLUMNS {
+            (column.read)(particles, measured, i).write_binary(out)?;
         }
-        record[28..32].copy_from_slice(&particles.level[i].to_le_bytes());
-        record[32..36].copy_from_slice(&parent(particles, i).to_le_bytes());
-        record[36] = valence.get(i).copied().unwrap_or(0);
-        record[37] = u8::from(particles.slots[i].is_singular());
-        out.write_all(&record)?;
     }
     for triangle in triangles.unwrap_or_default() {
         let mut record = [3; 13];
@@ -103,15 +192,15 @@ fn ply(
     Ok(())
 }
 
-fn csv(particles: &Particles, valence: &[u8], out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "x,y,z,nx,ny,nz,radius,level,parent,valence,singular")?;
+fn csv(particles: &Particles, measured: &quality::Report, out: &mut dyn Write) -> io::Result<()> {
+    let names: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    writeln!(out, "{}", names.join(","))?;
     for i in 0..particles.len() {
-        let (p, n) = (particles.position[i], particles.normal[i]);
-        let valence = valence.get(i).copied().unwrap_or(0);
-        let (radius, level, parent) = (particles.radius[i], particles.level[i], parent(particles, i));
-        let singular = u8::from(particles.slots[i].is_singular());
-        write!(out, "{},{},{},{},{},{},", p.x, p.y, p.z, n.x, n.y, n.z)?;
-        writeln!(out, "{radius},{level},{parent},{valence},{singular}")?;
+        for (k, column) in COLUMNS.iter().enumerate() {
+            out.write_all(if k == 0 { b"" } else { b"," })?;
+            (column.read)(particles, measured, i).write_text(out)?;
+        }
+        out.write_all(b"\n")?;
     }
     Ok(())
 }
@@ -163,7 +252,13 @@ mod tests {
 
     fn written(format: Format) -> Vec<u8> {
         let mut out = Vec::new();
-        write(format, &two(), &[6], &mut out).expect("writing to memory does not fail");
+        let measured = quality::Report {
+            valence: vec![6],
+            nearest: vec![0.5],
+            residual: vec![1e-7],
+            ..quality::Report::default()
+        };
+        write(format, &two(), &measured, &mut out).expect("writing to memory does not fail");
         out
     }
 
@@ -190,23 +285,29 @@ mod tests {
         let data = &bytes[end..];
         assert_eq!(data.len(), 2 * size);
         assert_eq!(floats(&data[..28]), [0.1, -2.0, 1e-9, 0.0, 0.0, 1.0, 0.25]);
-        assert_eq!(data[28..38], [0, 0, 0, 0, 255, 255, 255, 255, 6, 0]);
-        assert_eq!(data[size + 28..], [1, 0, 0, 0, 0, 0, 0, 0, 0, 1]);
+        assert_eq!(data[28..37], [0, 0, 0, 0, 255, 255, 255, 255, 6]);
+        assert_eq!((floats(&data[37..45]), data[45]), (vec![0.5, 1e-7], 0));
+        assert_eq!(data[size + 28..size + 37], [1, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert!(floats(&data[size + 37..size + 45]).iter().all(|x| x.is_nan()) && data[size + 45] == 1);
     }
 
     #[test]
     fn csv_reads_back_to_the_same_bits() {
         let text = String::from_utf8(written(Format::Csv)).expect("text");
         let mut lines = text.lines();
-        assert_eq!(lines.next(), Some("x,y,z,nx,ny,nz,radius,level,parent,valence,singular"));
-        assert_eq!(lines.next(), Some("0.1,-2,0.000000001,0,0,1,0.25,0,-1,6,0"));
+        assert_eq!(
+            lines.next(),
+            Some("x,y,z,nx,ny,nz,radius,level,parent,valence,nearest,residual,singular")
+        );
+        assert_eq!(lines.next(), Some("0.1,-2,0.000000001,0,0,1,0.25,0,-1,6,0.5,0.0000001,0"));
         let second: Vec<f32> = lines
             .next()
             .expect("a second row")
             .split(',')
             .map(|cell| cell.parse().expect("a number"))
             .collect();
-        assert_eq!(second, [1.0 / 3.0, 4.0, 5.0, 0.6, 0.8, 0.0, 0.5, 1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(second[..10], [1.0 / 3.0, 4.0, 5.0, 0.6, 0.8, 0.0, 0.5, 1.0, 0.0, 0.0]);
+        assert!(second[10].is_nan() && second[11].is_nan() && second[12] == 1.0);
         assert_eq!(lines.next(), None);
     }
 

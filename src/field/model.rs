@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Origin of the normals of a model's points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum NormalSource {
     /// The normals were given with the points.
@@ -20,6 +21,7 @@ pub enum NormalSource {
 
 /// Report of a model from points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ModelInfo {
     /// Name of the built-in model or of the file.
     pub name: String,
@@ -43,6 +45,7 @@ pub struct ModelInfo {
 
 /// Report and box that accompany a solved system to the session that samples it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct SolvedModel {
     /// Report of the model.
     pub info: ModelInfo,
@@ -52,6 +55,7 @@ pub struct SolvedModel {
 
 /// A built-in model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Model {
     /// Identifier: lower case, words joined by hyphens. No gallery surface has the same one.
     pub id: &'static str,

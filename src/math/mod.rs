@@ -8,6 +8,7 @@ mod real;
 pub use lanes::{LANES, Lanes};
 pub use real::Real;
 
+use core::ops::RangeInclusive;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,7 @@ pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
 /// An axis-aligned box, in the field's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Bounds {
     /// Smallest corner.
     pub min: [f64; 3],
@@ -69,18 +71,22 @@ impl Bounds {
         p.cmpge(self.lo()).all() && p.cmple(self.hi()).all()
     }
 
+    /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
+    pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
+
+    /// Largest coordinate of a corner relative to the diagonal. There, rounding to single precision moves a particle of the
+    /// default radius by a hundredth of it.
+    pub const FARTHEST_CORNER: f64 = 1e3;
+
     /// Whether particles, whose places are in single precision, can be put in the box: every side has positive length,
-    /// the diagonal lies between 10⁻¹² and 10¹², so that squares of radii are normal numbers, and no corner is farther
-    /// from the origin than 1,000 diagonals, where rounding already moves a particle of the default radius by a
-    /// hundredth of it.
+    /// the diagonal is one of [`Bounds::DIAGONALS`], and no coordinate is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        const FARTHEST: f64 = 1e3;
         let diagonal = self.diagonal();
         let farthest = self.lo().abs().max(self.hi().abs()).max_element();
         // No corner with a NaN gets through: it makes the diagonal one.
-        (1e-12..=1e12).contains(&diagonal)
-            && farthest <= FARTHEST * diagonal
+        Self::DIAGONALS.contains(&diagonal)
+            && farthest <= Self::FARTHEST_CORNER * diagonal
             && (0..3).all(|k| self.min[k] < self.max[k])
     }
 

@@ -32,6 +32,7 @@ const FAR: f64 = 10.0;
 
 /// JobStage of a job, as the page shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum JobStage {
     /// The file is read.
@@ -48,6 +49,7 @@ pub enum JobStage {
 
 /// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PointsProgress"))]
 pub struct Progress {
     /// Current stage.
     pub stage: JobStage,
@@ -109,6 +111,7 @@ impl JobError {
 
 /// Error of a job, as the page shows it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PointsFault"))]
 pub struct Fault {
     /// Kind of error as a word in snake case.
     pub kind: &'static str,

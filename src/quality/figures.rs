@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figures {
     /// Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units.
     pub d_hex: f64,

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 /// Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Histogram {
     /// Lower end of the first bin.
     pub min: f64,

@@ -4,6 +4,7 @@ use crate::particles::SlotFate;
 
 /// Fates of children, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FateCounts {
     /// New particles, seeds not counted.
     pub added: u64,

@@ -16,6 +16,7 @@ pub(crate) mod projection;
 mod refine;
 pub(crate) mod relaxation;
 mod run;
+mod setting;
 mod settings;
 pub(crate) mod sizing;
 
@@ -24,7 +25,10 @@ pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
 pub use refine::Refusal;
-pub use settings::{GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode};
+pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
+pub use settings::{
+    COUNT_ROOM, GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode,
+};
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 
 pub(crate) use attempt::COUNT_TOLERANCE;
@@ -46,12 +50,9 @@ use relaxation::Relaxation;
 use run::Input;
 use sizing::Sizing;
 
-/// Attempts at a wanted count may overshoot it by this factor before they run into the limit on particles.
-const COUNT_ROOM: f64 = 1.1;
-
 /// Bytes per particle that have to be free before a run: its columns, neighbour lists and grid, and most of what the relaxation
 /// adds, but no more than the peak that tests/memory.rs allows.
-const BYTES_PER_PARTICLE: usize = 95;
+pub(crate) const BYTES_PER_PARTICLE: usize = 95;
 
 /// Samples one surface at a time.
 #[derive(Clone)]

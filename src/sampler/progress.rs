@@ -11,6 +11,7 @@ const RELAXATION_STEP_COST: f64 = 0.25;
 
 /// What [`Sampler::start`] found out.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Start {
     /// Repulsion radius of the run.
     pub radius: f64,
@@ -24,6 +25,7 @@ pub struct Start {
 
 /// State after a step.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Progress {
     /// Current phase.
     pub phase: Phase,

@@ -1,122 +1,284 @@
 //! What a caller may choose, with the paper's values as defaults.
+//!
+//! A setting is one entry of the table below. From it follow its field in [`Settings`], the default, the check, the reader of
+//! requests and links, the control of the page, the option of the command line and the row in the README.
 
-use crate::math::Bounds;
-use crate::math::shortest_text;
+use super::setting::{Choice, Condition, Group, Scale, Setting, Value, choices};
+use crate::math::{Bounds, shortest_text};
 use core::fmt;
+use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
-/// How the particles' size is given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SizeMode {
-    /// By [`Settings::radius_share`].
-    #[default]
-    Radius,
-    /// By [`Settings::count`].
-    Count,
-}
-
-/// What becomes of gaps between fronts that are wide enough for a particle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GapPolicy {
-    /// A particle is placed in the middle.
-    #[default]
-    Fill,
-    /// They stay, as in the paper.
-    Leave,
-}
-
-/// How the particles are brought onto the surface and into order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// A front of the wanted radius, and relaxation (paper §4 and §5).
-    #[default]
-    Front,
-    /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
-    Refined,
-}
-
-/// Whether all particles have one size.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sampling {
-    /// One radius everywhere (paper §4).
-    #[default]
-    Uniform,
-    /// The radius follows the curvature (paper §5).
-    Adaptive,
-}
-
-/// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LawKind {
-    /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
-    #[default]
-    ChordError,
-    /// [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
-    MaxCurvature,
-    /// [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
-    SumOfCurvatures,
-}
-
-/// How a child of an adaptive particle is placed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Placement {
-    /// The equations of tangency are solved.
-    #[default]
-    Direct,
-    /// The child is pushed step by step until it touches, as in the paper (§5).
-    Faithful,
-}
-
-/// Settings of a run. `Default` gives the paper's values where it names them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Settings {
-    /// How the particles are brought onto the surface and into order.
-    pub method: Method,
+choices! {
     /// Whether all particles have one size.
-    pub sampling: Sampling,
-    /// Whether the radius or the wanted count decides the size. With adaptive sampling the count scales all radii by one
-    /// factor.
-    pub size_mode: SizeMode,
-    /// Repulsion radius of uniform sampling as a share of the box diagonal (paper §6: 2 % and 0.6 %).
-    pub radius_share: f64,
-    /// How the radius of adaptive sampling follows from the curvature.
-    pub radius_law: LawKind,
-    /// Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal, for
-    /// [`LawKind::ChordError`].
-    pub chord_error: f64,
-    /// Repulsion radius times curvature, for the other two laws: half the angle between the normals of neighbours.
-    pub curvature_scale: f64,
-    /// Smallest radius of adaptive sampling, as a share of the box diagonal.
-    pub radius_min_share: f64,
-    /// Largest radius of adaptive sampling, as a share of the box diagonal.
-    pub radius_max_share: f64,
-    /// Lipschitz slope L of the radius: |r(x) − r(y)| ≤ L |x − y|, so that the radii of neighbours that touch differ by
-    /// the factor (1 + L)/(1 − L) at most.
-    pub grading: f64,
-    /// How children are placed by adaptive sampling.
-    pub placement: Placement,
-    /// Wanted number of particles, met within 3 %.
-    pub count: u32,
-    /// Relaxation steps after the generation (paper §4.5: ten).
-    pub relax_steps: u32,
-    /// Distance within which a child corresponds to an existing particle, as a share of 2r. The paper names none; 0.7
-    /// gives the most particles with six neighbours on smooth surfaces.
-    pub match_tolerance: f64,
-    /// Whether gaps between fronts are filled after the generation.
-    pub gaps: GapPolicy,
-    /// Chooses the first point among those found on the surface.
-    pub seed: u64,
-    /// Most particles generated; a run that reaches it stops with what it has. A wanted count up to it may be missed
-    /// upwards like any other.
-    pub max_particles: u32,
+    Sampling {
+        /// One radius everywhere (paper §4).
+        Uniform "uniform" "Uniform",
+        /// The radius follows the curvature (paper §5).
+        Adaptive "adaptive" "Adaptive",
+    }
 }
+
+choices! {
+    /// How the particles' size is given.
+    SizeMode {
+        /// By [`Settings::radius_share`].
+        Radius "radius" "Radius",
+        /// By [`Settings::count`].
+        Count "count" "Count",
+    }
+}
+
+choices! {
+    /// How the radius of an adaptive particle follows from the principal curvatures κ₁ and κ₂.
+    LawKind {
+        /// Every triangle of neighbours stays within [`Settings::chord_error`] of the surface.
+        ChordError "chord_error" "Chord error",
+        /// [`Settings::curvature_scale`] / max(|κ₁|, |κ₂|).
+        MaxCurvature "max_curvature" "Largest curvature",
+        /// [`Settings::curvature_scale`] / |κ₁ + κ₂|, the paper's choice (§5).
+        SumOfCurvatures "sum_of_curvatures" "Sum of curvatures",
+    }
+}
+
+choices! {
+    /// How a child of an adaptive particle is placed.
+    Placement {
+        /// The equations of tangency are solved.
+        Direct "direct" "Direct",
+        /// The child is pushed step by step until it touches, as in the paper (§5).
+        Faithful "faithful" "As in the paper",
+    }
+}
+
+choices! {
+    /// How the particles are brought onto the surface and into order.
+    Method {
+        /// A front of the wanted radius, and relaxation (paper §4 and §5).
+        Front "front" "Front",
+        /// A coarse front, brought into order and refined. Where that cannot be done, the front stands.
+        Refined "refined" "Refined",
+    }
+}
+
+choices! {
+    /// What becomes of gaps between fronts that are wide enough for a particle.
+    GapPolicy {
+        /// A particle is placed in the middle.
+        Fill "fill" "Fill",
+        /// They stay, as in the paper.
+        Leave "leave" "Leave",
+    }
+}
+
+/// Makes [`Settings`], its defaults and its table from the entries.
+macro_rules! settings {
+    ($($name:ident: $type:ty = $default:expr => {
+        label: $label:literal, help: $help:literal, $($field:ident: $value:expr,)*
+    })*) => {
+        /// Settings of a run. `Default` gives the paper's values where it names them.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+        #[serde(default)]
+        pub struct Settings {
+            $(#[doc = $help] pub $name: $type,)*
+        }
+
+        impl Settings {
+            /// The values that `Default` gives.
+            pub const DEFAULT: Self = Self { $($name: $default,)* };
+
+            /// Every setting, in the order in which they are shown.
+            #[must_use]
+            pub fn table() -> Vec<Setting> {
+                const ENTRIES: &[Setting] = &[$(Setting {
+                    name: stringify!($name),
+                    label: $label,
+                    help: $help,
+                    $($field: $value,)*
+                    ..Setting::COMMON
+                }),*];
+                let with_default = |(entry, default): (&Setting, Value)| Setting { default, kind: default.kind(), ..*entry };
+                ENTRIES.iter().zip(Self::DEFAULT.values()).map(with_default).collect()
+            }
+
+            /// The values, in the order of [`Settings::table`].
+            #[must_use]
+            pub fn values(&self) -> Vec<Value> {
+                vec![$(self.$name.into()),*]
+            }
+        }
+    };
+}
+
+const fn when(name: &'static str, value: &'static str) -> Condition {
+    Condition { name, value, equal: true }
+}
+
+const UNIFORM: Condition = when("sampling", "uniform");
+const ADAPTIVE: Condition = when("sampling", "adaptive");
+
+settings! {
+    sampling: Sampling = Sampling::Uniform => {
+        label: "Sampling",
+        help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
+        choices: Sampling::CHOICES,
+        option: Some("adaptive"),
+    }
+    size_mode: SizeMode = SizeMode::Radius => {
+        label: "Size by",
+        help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
+        choices: SizeMode::CHOICES,
+        option: Some("count"),
+    }
+    radius_share: f64 = 0.006 => {
+        label: "Radius",
+        help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
+        min: 1e-4,
+        max: 0.2,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "%",
+        when: &[UNIFORM, when("size_mode", "radius")],
+        option: Some("radius"),
+    }
+    count: u32 = 20_000 => {
+        label: "Count",
+        help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
+        min: 1.0,
+        max: MOST_PARTICLES,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "particles",
+        when: &[when("size_mode", "count")],
+    }
+    radius_law: LawKind = LawKind::ChordError => {
+        label: "Radius law",
+        help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
+        choices: LawKind::CHOICES,
+        when: &[ADAPTIVE],
+        option: Some("law"),
+    }
+    // With this the ellipsoid of the gallery takes about 16,000 particles, the sphere 13,000.
+    chord_error: f64 = 4.5e-5 => {
+        label: "Chord error",
+        help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
+        min: 1e-7,
+        max: 0.01,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "%",
+        when: &[ADAPTIVE, when("radius_law", "chord_error")],
+    }
+    curvature_scale: f64 = 0.015 => {
+        label: "Curvature scale",
+        help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
+        min: 1e-3,
+        max: 0.5,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "× 1/κ",
+        when: &[ADAPTIVE, Condition { equal: false, ..when("radius_law", "chord_error") }],
+    }
+    radius_min_share: f64 = 0.001 => {
+        label: "Smallest radius",
+        help: "No particle is smaller than this share of the box diagonal.",
+        group: Group::Advanced,
+        min: 1e-4,
+        max: 0.2,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "%",
+        when: &[ADAPTIVE],
+        option: Some("radius-min"),
+    }
+    radius_max_share: f64 = 0.03 => {
+        label: "Largest radius",
+        help: "No particle is larger than this share of the box diagonal.",
+        group: Group::Advanced,
+        min: 1e-4,
+        max: 0.2,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "%",
+        when: &[ADAPTIVE],
+        option: Some("radius-max"),
+    }
+    // The Lipschitz constant of the radius: |r(x) − r(y)| ≤ L |x − y|.
+    grading: f64 = 0.2 => {
+        label: "Grading",
+        help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
+        group: Group::Advanced,
+        min: 0.01,
+        max: 0.5,
+        step: 0.01,
+        when: &[ADAPTIVE],
+    }
+    placement: Placement = Placement::Direct => {
+        label: "Placement",
+        help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
+        group: Group::Advanced,
+        choices: Placement::CHOICES,
+        when: &[ADAPTIVE],
+    }
+    relax_steps: u32 = 10 => {
+        label: "Relaxation",
+        help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
+        max: 100.0,
+        accepted_max: Some(1000.0),
+        step: 1.0,
+        unit: "steps",
+        option: Some("relax"),
+    }
+    method: Method = Method::Front => {
+        label: "Method",
+        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on closed smooth surfaces.",
+        group: Group::Advanced,
+        choices: Method::CHOICES,
+        when: &[UNIFORM],
+    }
+    // The paper names no tolerance; 0.7 gives the most particles with six neighbours on smooth surfaces.
+    match_tolerance: f64 = 0.7 => {
+        label: "Match tolerance",
+        help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
+        group: Group::Advanced,
+        min: 0.5,
+        max: 0.9,
+        step: 0.01,
+        unit: "× 2r",
+    }
+    gaps: GapPolicy = GapPolicy::Fill => {
+        label: "Gaps",
+        help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
+        group: Group::Advanced,
+        choices: GapPolicy::CHOICES,
+    }
+    seed: u64 = 0 => {
+        label: "Seed",
+        help: "Chooses the point on the surface where the front begins.",
+        group: Group::Advanced,
+        max: 999_999.0,
+        accepted_max: Some(u64::MAX as f64),
+        step: 1.0,
+    }
+    // A wanted count up to it may be missed upwards like any other.
+    max_particles: u32 = 200_000 => {
+        label: "Limit",
+        help: "The run stops when it has placed this many.",
+        group: Group::Advanced,
+        min: 1.0,
+        max: MOST_PARTICLES,
+        step: 0.01,
+        scale: Scale::Log,
+        unit: "particles",
+    }
+}
+
+/// More particles than this are not placed.
+const MOST_PARTICLES: f64 = 4e6;
+
+/// Room for the particles that are expected, as a multiple of them: a wanted count is met within 3 %, but an attempt at it may
+/// overshoot.
+pub const COUNT_ROOM: f64 = 1.1;
 
 impl Default for Settings {
     fn default() -> Self {
@@ -156,41 +318,16 @@ fn out_of_range(name: &str, value: &f64, min: &f64, max: &f64, f: &mut fmt::Form
 }
 
 impl Settings {
-    /// The values that `Default` gives.
-    pub const DEFAULT: Self = Self {
-        method: Method::Front,
-        sampling: Sampling::Uniform,
-        size_mode: SizeMode::Radius,
-        radius_share: 0.006,
-        radius_law: LawKind::ChordError,
-        // With this the ellipsoid of the gallery takes about 16,000 particles, the sphere 13,000.
-        chord_error: 4.5e-5,
-        curvature_scale: 0.015,
-        radius_min_share: 0.001,
-        radius_max_share: 0.03,
-        grading: 0.2,
-        placement: Placement::Direct,
-        count: 20_000,
-        relax_steps: 10,
-        match_tolerance: 0.7,
-        gaps: GapPolicy::Fill,
-        seed: 0,
-        max_particles: 200_000,
-    };
-
-    /// Ranges of the numeric settings: name, smallest and largest value.
-    pub const RANGES: [(&'static str, f64, f64); 10] = [
-        ("radius_share", 1e-4, 0.2),
-        ("chord_error", 1e-7, 0.01),
-        ("curvature_scale", 1e-3, 0.5),
-        ("radius_min_share", 1e-4, 0.2),
-        ("radius_max_share", 1e-4, 0.2),
-        ("grading", 0.01, 0.5),
-        ("count", 1.0, 4e6),
-        ("relax_steps", 0.0, 1000.0),
-        ("match_tolerance", 0.5, 0.9),
-        ("max_particles", 1.0, 4e6),
-    ];
+    /// The entry of the table with this name.
+    ///
+    /// # Panics
+    ///
+    /// If there is none.
+    #[must_use]
+    pub fn setting(name: &str) -> Setting {
+        let found = Self::table().into_iter().find(|setting| setting.name == name);
+        found.unwrap_or_else(|| panic!("there is no setting `{name}`"))
+    }
 
     /// Checks every value against its range, and that the smallest radius is not above the largest.
     ///
@@ -198,27 +335,20 @@ impl Settings {
     ///
     /// The first setting found out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        let values = [
-            self.radius_share,
-            self.chord_error,
-            self.curvature_scale,
-            self.radius_min_share,
-            self.radius_max_share,
-            self.grading,
-            f64::from(self.count),
-            f64::from(self.relax_steps),
-            self.match_tolerance,
-            f64::from(self.max_particles),
-        ];
-        for ((name, min, max), value) in Self::RANGES.into_iter().zip(values) {
-            if !(value >= min && value <= max) {
-                return Err(SettingsError::OutOfRange { name, value, min, max });
+        let refused = |name, value, range: RangeInclusive<f64>| {
+            let (min, max) = range.into_inner();
+            Err(SettingsError::OutOfRange { name, value, min, max })
+        };
+        for (setting, value) in Self::table().into_iter().zip(self.values()) {
+            if let Some(value) = value.as_number()
+                && !setting.accepted().contains(&value)
+            {
+                return refused(setting.name, value, setting.accepted());
             }
         }
         if self.radius_min_share > self.radius_max_share {
-            let (min, max) = (Self::RANGES[3].1, self.radius_max_share);
-            let (name, value) = ("radius_min_share", self.radius_min_share);
-            return Err(SettingsError::OutOfRange { name, value, min, max });
+            let least = *Self::setting("radius_min_share").accepted().start();
+            return refused("radius_min_share", self.radius_min_share, least..=self.radius_max_share);
         }
         Ok(())
     }

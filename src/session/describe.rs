@@ -1,15 +1,17 @@
 //! What there is to choose and to read, described so that an interface can be generated from it: a new surface, setting
 //! or figure needs no new code anywhere else.
 
-use crate::field::formula::{FUNCTIONS, FunctionInfo, Parameter};
+use crate::export::{COLUMNS, Column};
+use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::{MODELS, Model};
 use crate::math::Bounds;
-use crate::sampler::{GapPolicy, LawKind, Method, Placement, Sampling, Settings, SizeMode};
+use crate::sampler::{COUNT_ROOM, Setting, Settings};
 use serde::Serialize;
 
 /// The whole description.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Description {
     /// Version of this crate.
     pub version: &'static str,
@@ -29,10 +31,35 @@ pub struct Description {
     pub functions: &'static [FunctionInfo],
     /// Ways to colour the particles.
     pub colours: &'static [Colour],
+    /// Columns of PLY and CSV files.
+    pub columns: &'static [Column],
+    /// What a new parameter is, but for its name.
+    pub new_parameter: Parameter,
+    /// What is accepted.
+    pub limits: Limits,
+}
+
+/// What the core accepts.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Limits {
+    /// Longest formula, in bytes of UTF-8.
+    pub formula_bytes: usize,
+    /// The names that parameters may have, as a regular expression of JavaScript.
+    pub name_pattern: String,
+    /// Smallest diagonal of a clip box.
+    pub diagonal_min: f64,
+    /// Largest diagonal of a clip box.
+    pub diagonal_max: f64,
+    /// Largest coordinate of a clip box, in its diagonals.
+    pub farthest_corner: f64,
+    /// Room for the particles that are expected, as a multiple of them.
+    pub count_room: f64,
 }
 
 /// A gallery surface.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct SurfaceEntry {
     /// Identifier.
     pub id: &'static str,
@@ -52,81 +79,9 @@ pub struct SurfaceEntry {
     pub story: &'static str,
 }
 
-/// A setting of a run.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Setting {
-    /// Name in [`Settings`].
-    pub name: &'static str,
-    /// Name for a person.
-    pub label: &'static str,
-    /// Group it is shown in.
-    pub group: &'static str,
-    /// `number`, `integer` or `choice`.
-    pub kind: &'static str,
-    /// Default value.
-    pub default: Value,
-    /// Smallest value.
-    pub min: Option<f64>,
-    /// Largest value.
-    pub max: Option<f64>,
-    /// Step of a slider; on a logarithmic scale a factor minus one.
-    pub step: Option<f64>,
-    /// `linear` or `log`.
-    pub scale: &'static str,
-    /// Unit; `%` shows the value times 100.
-    pub unit: &'static str,
-    /// Values of a choice.
-    pub choices: &'static [Choice],
-    /// One line of explanation.
-    pub help: &'static str,
-    /// Shown only while all of these hold; always if there is none.
-    pub when: &'static [Condition],
-}
-
-/// The value of a setting.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum Value {
-    /// Of a number.
-    Number(f64),
-    /// Of a whole number.
-    Integer(u64),
-    /// Of the choice of the size.
-    Size(SizeMode),
-    /// Of the choice of the method.
-    Method(Method),
-    /// Of the choice about gaps.
-    Gaps(GapPolicy),
-    /// Of the choice between one size and many.
-    Sampling(Sampling),
-    /// Of the choice of the radius law.
-    Law(LawKind),
-    /// Of the choice of the placement.
-    Placement(Placement),
-}
-
-/// Another setting's value, on which it depends whether a setting is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Condition {
-    /// Name of another setting.
-    pub name: &'static str,
-    /// One of its choices.
-    pub value: &'static str,
-    /// Whether it has that value then, or another one.
-    pub equal: bool,
-}
-
-/// One value of a choice.
-#[derive(Clone, Debug, Serialize)]
-pub struct Choice {
-    /// Value.
-    pub value: &'static str,
-    /// Name for a person.
-    pub label: &'static str,
-}
-
 /// A row of the report.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct ReportRow {
     /// Path into the report. What is null there has no place in the run.
     pub key: &'static str,
@@ -153,6 +108,7 @@ pub struct ReportRow {
 
 /// What can become of a child.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fate {
     /// Name, as in the report's counts.
     pub name: &'static str,
@@ -164,6 +120,7 @@ pub struct Fate {
 
 /// A way to colour the particles.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Colour {
     /// Identifier.
     pub id: &'static str,
@@ -183,11 +140,21 @@ pub fn describe() -> Description {
         default_surface: gallery::SURFACES[0].id,
         surfaces: gallery::SURFACES.iter().map(surface).collect(),
         models: MODELS,
-        settings: settings(),
+        settings: Settings::table(),
         report: REPORT,
         fates: FATES,
         functions: FUNCTIONS,
         colours: COLOURS,
+        columns: COLUMNS,
+        new_parameter: Parameter::automatic(""),
+        limits: Limits {
+            formula_bytes: MAX_FORMULA_BYTES,
+            name_pattern: name_pattern(),
+            diagonal_min: *Bounds::DIAGONALS.start(),
+            diagonal_max: *Bounds::DIAGONALS.end(),
+            farthest_corner: Bounds::FARTHEST_CORNER,
+            count_room: COUNT_ROOM,
+        },
     }
 }
 
@@ -203,180 +170,6 @@ fn surface(surface: &Surface) -> SurfaceEntry {
         story: surface.story,
     }
 }
-
-/// The settings, each with its range where that is not its own.
-fn settings() -> Vec<Setting> {
-    let range = |name: &str| Settings::RANGES.into_iter().find(|r| r.0 == name).map(|r| (r.1, r.2));
-    let ranged = |setting: &Setting| {
-        let (min, max) = range(setting.name).unzip();
-        Setting { min: setting.min.or(min), max: setting.max.or(max), ..*setting }
-    };
-    SETTINGS.iter().map(ranged).collect()
-}
-
-const fn number(name: &'static str, label: &'static str, default: Value, step: f64) -> Setting {
-    Setting {
-        name,
-        label,
-        group: "Sampling",
-        kind: if matches!(default, Value::Number(_)) { "number" } else { "integer" },
-        default,
-        min: None,
-        max: None,
-        step: Some(step),
-        scale: "linear",
-        unit: "",
-        choices: &[],
-        help: "",
-        when: &[],
-    }
-}
-
-const fn when(name: &'static str, value: &'static str) -> Condition {
-    Condition { name, value, equal: true }
-}
-
-const DEFAULT: Settings = Settings::DEFAULT;
-const UNIFORM: Condition = when("sampling", "uniform");
-const ADAPTIVE: Condition = when("sampling", "adaptive");
-
-const SETTINGS: &[Setting] = &[
-    Setting {
-        kind: "choice",
-        step: None,
-        choices: &[
-            Choice { value: "uniform", label: "Uniform" },
-            Choice { value: "adaptive", label: "Adaptive" },
-        ],
-        help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",
-        ..number("sampling", "Sampling", Value::Sampling(DEFAULT.sampling), 0.0)
-    },
-    Setting {
-        kind: "choice",
-        step: None,
-        choices: &[Choice { value: "radius", label: "Radius" }, Choice { value: "count", label: "Count" }],
-        help: "Give the size of the particles (or, for adaptive sampling, its law), or how many there should be.",
-        ..number("size_mode", "Size by", Value::Size(DEFAULT.size_mode), 0.0)
-    },
-    Setting {
-        scale: "log",
-        unit: "%",
-        help: "Repulsion radius r as a share of the box diagonal; neighbours sit 2r apart. The paper shows 2 % and 0.6 %.",
-        when: &[UNIFORM, when("size_mode", "radius")],
-        ..number("radius_share", "Radius", Value::Number(DEFAULT.radius_share), 0.01)
-    },
-    Setting {
-        scale: "log",
-        unit: "particles",
-        help: "Wanted number of particles, met within 3 %. Adaptive sampling scales all radii by one factor.",
-        when: &[when("size_mode", "count")],
-        ..number("count", "Count", Value::Integer(DEFAULT.count as u64), 0.01)
-    },
-    Setting {
-        kind: "choice",
-        step: None,
-        choices: &[
-            Choice { value: "chord_error", label: "Chord error" },
-            Choice { value: "max_curvature", label: "Largest curvature" },
-            Choice { value: "sum_of_curvatures", label: "Sum of curvatures" },
-        ],
-        help: "How the radius follows from the principal curvatures. The paper takes their sum, which vanishes on saddles.",
-        when: &[ADAPTIVE],
-        ..number("radius_law", "Radius law", Value::Law(DEFAULT.radius_law), 0.0)
-    },
-    Setting {
-        scale: "log",
-        unit: "%",
-        help: "Largest gap between the surface and a triangle of neighbours, as a share of the box diagonal.",
-        when: &[ADAPTIVE, when("radius_law", "chord_error")],
-        ..number("chord_error", "Chord error", Value::Number(DEFAULT.chord_error), 0.01)
-    },
-    Setting {
-        scale: "log",
-        unit: "× 1/κ",
-        help: "Radius of a particle over the radius of curvature under it: half the angle between the normals of neighbours.",
-        when: &[ADAPTIVE, Condition { equal: false, ..when("radius_law", "chord_error") }],
-        ..number("curvature_scale", "Curvature scale", Value::Number(DEFAULT.curvature_scale), 0.01)
-    },
-    Setting {
-        scale: "log",
-        unit: "%",
-        group: "Advanced",
-        help: "No particle is smaller than this share of the box diagonal.",
-        when: &[ADAPTIVE],
-        ..number("radius_min_share", "Smallest radius", Value::Number(DEFAULT.radius_min_share), 0.01)
-    },
-    Setting {
-        scale: "log",
-        unit: "%",
-        group: "Advanced",
-        help: "No particle is larger than this share of the box diagonal.",
-        when: &[ADAPTIVE],
-        ..number("radius_max_share", "Largest radius", Value::Number(DEFAULT.radius_max_share), 0.01)
-    },
-    Setting {
-        group: "Advanced",
-        help: "Slope L of the radius along the surface. The radii of neighbours differ by the factor (1 + L)/(1 − L) at most: 1.5 for 0.2.",
-        when: &[ADAPTIVE],
-        ..number("grading", "Grading", Value::Number(DEFAULT.grading), 0.01)
-    },
-    Setting {
-        kind: "choice",
-        step: None,
-        group: "Advanced",
-        choices: &[
-            Choice { value: "direct", label: "Direct" },
-            Choice { value: "faithful", label: "As in the paper" },
-        ],
-        help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
-        when: &[ADAPTIVE],
-        ..number("placement", "Placement", Value::Placement(DEFAULT.placement), 0.0)
-    },
-    Setting {
-        max: Some(100.0),
-        unit: "steps",
-        help: "Steps of repulsion after the generation: Gaussian for one size, by overlap for many. The paper takes ten.",
-        ..number("relax_steps", "Relaxation", Value::Integer(DEFAULT.relax_steps as u64), 1.0)
-    },
-    Setting {
-        kind: "choice",
-        step: None,
-        group: "Advanced",
-        choices: &[Choice { value: "front", label: "Front" }, Choice { value: "refined", label: "Refined" }],
-        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on closed smooth surfaces.",
-        when: &[UNIFORM],
-        ..number("method", "Method", Value::Method(DEFAULT.method), 0.0)
-    },
-    Setting {
-        unit: "× 2r",
-        group: "Advanced",
-        help: "A child joins an existing particle within this distance. Smaller places more and closer particles where fronts meet, larger leaves wider gaps.",
-        when: &[UNIFORM],
-        ..number("match_tolerance", "Match tolerance", Value::Number(DEFAULT.match_tolerance), 0.01)
-    },
-    Setting {
-        kind: "choice",
-        step: None,
-        group: "Advanced",
-        choices: &[Choice { value: "fill", label: "Fill" }, Choice { value: "leave", label: "Leave" }],
-        help: "Where fronts meet, gaps can be wide enough for a particle. The paper leaves them to the relaxation.",
-        ..number("gaps", "Gaps", Value::Gaps(DEFAULT.gaps), 0.0)
-    },
-    Setting {
-        min: Some(0.0),
-        max: Some(999_999.0),
-        group: "Advanced",
-        help: "Chooses the point on the surface where the front begins.",
-        ..number("seed", "Seed", Value::Integer(DEFAULT.seed), 1.0)
-    },
-    Setting {
-        scale: "log",
-        unit: "particles",
-        group: "Advanced",
-        help: "The run stops when it has placed this many.",
-        ..number("max_particles", "Limit", Value::Integer(DEFAULT.max_particles as u64), 0.01)
-    },
-];
 
 const fn row(
     key: &'static str,

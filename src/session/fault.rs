@@ -7,6 +7,7 @@ use serde::Serialize;
 
 /// What a refused command was about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum FaultKind {
     /// The request is not JSON, or not of the right form.
@@ -26,6 +27,7 @@ pub enum FaultKind {
 
 /// What is wrong with a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fault {
     /// What it is about.
     pub kind: FaultKind,

@@ -5,9 +5,7 @@ mod describe;
 mod fault;
 mod warnings;
 
-pub use describe::{
-    Choice, Colour, Condition, Description, Fate, ReportRow, Setting, SurfaceEntry, Value, describe,
-};
+pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Fault, FaultKind};
 
 use crate::differential::{self, Curvature};
@@ -21,8 +19,8 @@ use crate::particles::Particles;
 use crate::pieces::{self, Work};
 use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
-    FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError, SizeMode, Start,
-    StopReason,
+    BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError,
+    SizeMode, Start, StopReason,
 };
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -32,12 +30,13 @@ use std::sync::Arc;
 /// Up to this many particles, the positions after the front are kept for the comparison before and after relaxation.
 const MAX_KEPT: usize = 400_000;
 
-/// Memory of a run as a share of what it takes with the positions kept and the report: 95 of 95 + 28 + 225 bytes per
-/// particle, the last as measured.
-const SHARE_OF_RUN: f64 = 0.27;
+/// Bytes per particle that a session takes beside the run: the particles kept after the front, and the report as measured.
+const KEPT_BYTES: usize = 28;
+const REPORT_BYTES: usize = 225;
 
 /// What a caller asks of the field; everything is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(default)]
 pub struct FieldRequest {
     /// Identifier of a gallery surface to start from; without one, the present field is changed.
@@ -54,6 +53,7 @@ pub struct FieldRequest {
 
 /// What a field is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum FieldKind {
     /// A formula.
@@ -64,6 +64,7 @@ pub enum FieldKind {
 
 /// The field as it now is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FieldAnswer {
     /// What it is made of.
     pub kind: FieldKind,
@@ -102,6 +103,7 @@ pub enum FieldError {
 
 /// Everything worth knowing about a run.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Report {
     /// Number of particles.
     pub count: usize,
@@ -412,7 +414,8 @@ impl Session {
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
     pub fn limit_memory(&mut self, bytes: usize) {
-        self.sampler.limit_memory((bytes as f64 * SHARE_OF_RUN) as usize);
+        self.sampler
+            .limit_memory(bytes / (BYTES_PER_PARTICLE + KEPT_BYTES + REPORT_BYTES) * BYTES_PER_PARTICLE);
     }
 
     /// Starts a run on the present field.

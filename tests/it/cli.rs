@@ -112,7 +112,7 @@ fn files_hold_every_particle() {
     let [ply, csv, xyz, npy] = files.map(|path| std::fs::read(path).expect("the file was written"));
 
     let header = ply.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
-    let records: Vec<&[u8]> = ply[header..].chunks(38).collect();
+    let records: Vec<&[u8]> = ply[header..].chunks(46).collect();
     assert_eq!(records.len(), count);
     let float = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     let mut six = 0;

@@ -29,6 +29,7 @@ mod pointcloud_read;
 mod quality;
 #[cfg(feature = "points")]
 mod rbf;
+mod readme;
 mod refine;
 mod relax;
 mod session;

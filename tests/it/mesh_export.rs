@@ -5,6 +5,7 @@ use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::field::gallery;
 use marching_particles::mesh::build::{Options, triangulate};
 use marching_particles::particles::Particles;
+use marching_particles::quality;
 use marching_particles::sampler::{Sampler, Settings};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -26,8 +27,8 @@ fn sampled(id: &str, radius_share: f64) -> (Particles, Vec<[u32; 3]>) {
 
 fn written(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut out = Vec::new();
-    let valence = vec![6; particles.len()];
-    write_mesh(format, particles, &valence, triangles, &mut out).expect("writing to memory does not fail");
+    let measured = quality::Report::default();
+    write_mesh(format, particles, &measured, triangles, &mut out).expect("writing to memory does not fail");
     out
 }
 

@@ -5,6 +5,7 @@ use marching_particles::export;
 use marching_particles::particles::{Particles, Slots};
 use marching_particles::pointcloud::read::{Format, MAX_BYTES, Mesh, ReadError, Reader, check_size};
 use marching_particles::pointcloud::{Cloud, NormalSource};
+use marching_particles::quality;
 use proptest::prelude::*;
 use std::fmt::Write as _;
 
@@ -293,7 +294,8 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
             continue;
         }
         let mut bytes = Vec::new();
-        export::write(format, &particles, &[], &mut bytes).expect("writing to memory does not fail");
+        export::write(format, &particles, &quality::Report::default(), &mut bytes)
+            .expect("writing to memory does not fail");
         let (_, mesh) = read(&format!("a.{ending}"), bytes);
         assert!(
             mesh.position.iter().zip(&particles.position).all(|(read, p)| read.as_vec3() == *p),

@@ -17,7 +17,8 @@ const ENGINE_FACE = ['engine/types', 'engine/columns'];
 const MAY_USE = {
   main: ['engine', 'ui'],
   // The words that everything shares.
-  'engine/types': ['engine/columns'],
+  'engine/core-types': [],
+  'engine/types': ['engine/columns', 'engine/core-types'],
   'engine/columns': ['engine/types'],
   'engine/store': ['engine/types', 'engine/share'],
   'engine/view': ['engine/types', 'engine/columns'],
@@ -115,9 +116,11 @@ const graph = (sources) => new Map(Object.entries(sources).map(([path, source]) 
 const files = graph(
   Object.fromEntries(
     readdirSync(SRC, { recursive: true, encoding: 'utf8' })
-      .filter((file) => file.endsWith('.js') && !file.startsWith('wasm'))
+      .filter((file) => /\.(js|d\.ts)$/.test(file) && !file.startsWith('wasm'))
       .map((file) => [
-        relative('.', file).replaceAll('\\', '/').replace(/\.js$/, ''),
+        relative('.', file)
+          .replaceAll('\\', '/')
+          .replace(/\.(js|d\.ts)$/, ''),
         readFileSync(join(SRC, file), 'utf8'),
       ]),
   ),

@@ -1,6 +1,7 @@
 //! What can be asked for.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use crate::options::Sampling;
+use clap::{Args, Parser, Subcommand};
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::job::{CENTRES, DEFAULT_CENTRES};
 use std::path::PathBuf;
@@ -28,33 +29,6 @@ Examples:
   marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
   marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%
   marching-particles compare --surface ellipsoid --count 13923";
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Method {
-    /// A front of the wanted radius, and relaxation
-    Front,
-    /// A coarse front, brought into order and refined
-    Refined,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Gaps {
-    Fill,
-    Leave,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Law {
-    ChordError,
-    MaxCurvature,
-    SumOfCurvatures,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Placement {
-    Direct,
-    Faithful,
-}
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -126,8 +100,8 @@ pub(crate) struct Sample {
     #[command(flatten)]
     pub(crate) sampling: Sampling,
 
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, and
-    /// whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence,
+    /// distance to the nearest particle, residual, and whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 
@@ -205,75 +179,6 @@ pub(crate) struct Surface {
     pub(crate) bounds: Option<Bounds>,
 }
 
-/// How it is sampled.
-#[derive(Debug, Args)]
-pub(crate) struct Sampling {
-    /// Radius of the particles: a share of the box diagonal (0.6%, the default) or a length (0.01)
-    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, conflicts_with = "count", help_heading = "Sampling")]
-    pub(crate) radius: Option<Length>,
-
-    /// Number of particles, met within 3 %
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
-    pub(crate) count: Option<u32>,
-
-    /// Let the size of the particles follow the curvature
-    #[arg(long, conflicts_with = "radius", help_heading = "Adaptive sampling")]
-    pub(crate) adaptive: bool,
-
-    /// How the radius follows from the principal curvatures; the paper takes their sum
-    #[arg(long, value_enum, default_value_t = Law::ChordError, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) law: Law,
-
-    /// Largest gap between the surface and a triangle of neighbours, for the law `chord-error`: a share of the box
-    /// diagonal (0.0045%, the default) or a length
-    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) chord_error: Option<Length>,
-
-    /// Radius times curvature, for the other laws
-    #[arg(long, value_name = "NUMBER", default_value_t = defaults().curvature_scale, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) curvature_scale: f64,
-
-    /// Smallest radius [default: 0.1%]
-    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) radius_min: Option<Length>,
-
-    /// Largest radius [default: 3%]
-    #[arg(long, value_name = "SHARE%|LENGTH", value_parser = length, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) radius_max: Option<Length>,
-
-    /// Slope of the radius along the surface: L lets neighbours differ by the factor (1 + L)/(1 - L)
-    #[arg(long, value_name = "SLOPE", default_value_t = defaults().grading, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) grading: f64,
-
-    /// How children are placed: by solving for the tangent place, or pushed step by step as in the paper
-    #[arg(long, value_enum, default_value_t = Placement::Direct, requires = "adaptive", help_heading = "Adaptive sampling")]
-    pub(crate) placement: Placement,
-
-    /// Relaxation steps
-    #[arg(long, value_name = "STEPS", default_value_t = defaults().relax_steps, help_heading = "Sampling")]
-    pub(crate) relax: u32,
-
-    /// Chooses where the first front begins
-    #[arg(long, value_name = "N", default_value_t = defaults().seed, help_heading = "Sampling")]
-    pub(crate) seed: u64,
-
-    /// How near, in units of two radii, a new particle must come to an old one to be the same
-    #[arg(long, value_name = "SHARE", default_value_t = defaults().match_tolerance, help_heading = "Sampling")]
-    pub(crate) match_tolerance: f64,
-
-    /// How the particles are placed: by a front and relaxation, as in the paper, or by a coarse front that is refined
-    #[arg(long, value_enum, default_value_t = Method::Front, help_heading = "Sampling")]
-    pub(crate) method: Method,
-
-    /// What becomes of gaps between fronts that are wide enough for a particle; the paper leaves them
-    #[arg(long, value_enum, default_value_t = Gaps::Fill, help_heading = "Sampling")]
-    pub(crate) gaps: Gaps,
-
-    /// Most particles; default: 200,000, or a tenth more than --count
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Sampling")]
-    pub(crate) max_particles: Option<u32>,
-}
-
 /// Arguments of `surfaces`.
 #[derive(Debug, Args)]
 pub(crate) struct Surfaces {
@@ -305,11 +210,8 @@ fn baseline() -> marching_particles::baseline::Settings {
     marching_particles::baseline::Settings::default()
 }
 
-fn defaults() -> marching_particles::sampler::Settings {
-    marching_particles::sampler::Settings::default()
-}
-
-fn number(text: &str) -> Result<f64, String> {
+/// A finite number from an argument.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("`{text}` is not a number")),
@@ -321,7 +223,8 @@ fn parameter(text: &str) -> Result<(String, f64), String> {
     Ok((name.trim().to_owned(), number(value)?))
 }
 
-fn length(text: &str) -> Result<Length, String> {
+/// A length from an argument.
+pub(crate) fn length(text: &str) -> Result<Length, String> {
     let length = match text.strip_suffix('%') {
         Some(share) => Length::Share(number(share)? / 100.0),
         None => Length::Units(number(text)?),

@@ -2,8 +2,9 @@
 
 use crate::arguments::Compare;
 use crate::failure::{Failure, LIMIT};
+use crate::options::refusal;
 use crate::outcome::Seconds;
-use crate::sample::{self, Begun, Clock, bar, begin, refusal};
+use crate::sample::{self, Begun, Clock, bar, begin};
 use crate::summary::{COLUMN, LABEL, figure, grouped, time};
 use indicatif::ProgressBar;
 use marching_particles::baseline::{self, Baseline};
@@ -148,15 +149,14 @@ fn method(settings: &Settings) -> (&'static str, &'static str) {
 
 /// Settings of the other method with the same particle size: the radius of this run, or the same radius law.
 fn same_size(session: &Session, settings: &Settings) -> Result<Settings, Failure> {
-    let range =
-        |name| Settings::RANGES.iter().find(|row| row.0 == name).map_or((0.0, 0.0), |row| (row.1, row.2));
-    let room = (LIMIT_RATIO * session.count()).min(range("max_particles").1 as usize) as u32;
+    let accepted = |name| Settings::setting(name).accepted();
+    let room = (LIMIT_RATIO * session.count()).min(*accepted("max_particles").end() as usize) as u32;
     let sizes = Settings { max_particles: settings.max_particles.max(room), ..*settings };
     if settings.sampling == Sampling::Adaptive {
         return Ok(sizes);
     }
     let radius_share = session.sampler().radius() / session.bounds().diagonal();
-    let (least, largest) = range("radius_share");
+    let (least, largest) = accepted("radius_share").into_inner();
     if !(least..=largest).contains(&radius_share) {
         return Err(Failure::Usage(format!(
             "{} particles have a radius of {:.2e} of the box's diagonal, and the other method takes {least} to {largest}; \

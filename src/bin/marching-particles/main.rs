@@ -4,6 +4,7 @@ mod arguments;
 mod compare;
 mod failure;
 mod mesh;
+mod options;
 mod outcome;
 mod points;
 mod sample;

@@ -1,8 +1,9 @@
 //! Subcommand `sample`: a run with its files and its report.
 
-use crate::arguments::{self, Gaps, Law, Length, Placement as Placed, Sample, Surface};
+use crate::arguments::{Sample, Surface};
 use crate::failure::{Failure, LIMIT};
 use crate::mesh::{self, Mesh};
+use crate::options::{Sampling, refusal};
 use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -10,12 +11,9 @@ use marching_particles::export::{self, Format, MeshFormat};
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
-use marching_particles::math::{Bounds, shortest_text};
+use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit::Fit;
-use marching_particles::sampler::{
-    GapPolicy, LawKind, Method, Phase, Placement, Progress, Sampling, Settings, SettingsError, SizeMode,
-    StopReason,
-};
+use marching_particles::sampler::{COUNT_ROOM, Phase, Progress, Settings, StopReason};
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write};
@@ -27,8 +25,6 @@ use std::time::{Duration, Instant};
 const BUDGET: u32 = 256;
 /// Default box of a formula.
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
-/// Limit of particles relative to a wanted count, which is met within 3 %.
-const ROOM: f64 = 1.1;
 
 /// A session with the requested surface, whose run has begun.
 pub(crate) struct Begun {
@@ -40,11 +36,7 @@ pub(crate) struct Begun {
 }
 
 /// Sets the field and begins the run.
-pub(crate) fn begin(
-    surface: &Surface,
-    sampling: &arguments::Sampling,
-    quiet: bool,
-) -> Result<Begun, Failure> {
+pub(crate) fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Result<Begun, Failure> {
     let mut session = Session::new();
     let mut seconds = Seconds::default();
     let clock = Clock::start();
@@ -58,7 +50,7 @@ pub(crate) fn begin(
         }
         None => set_field(&mut session, surface)?,
     };
-    let settings = settings(sampling, &answer.bounds);
+    let settings = sampling.settings(&answer.bounds);
 
     let clock = Clock::start();
     let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
@@ -69,7 +61,7 @@ pub(crate) fn begin(
              choose a larger --radius, or allow them with --max-particles {}",
             start.predicted_count,
             settings.max_particles,
-            (start.predicted_count as f64 * ROOM).ceil()
+            (start.predicted_count as f64 * COUNT_ROOM).ceil()
         )));
     }
     Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
@@ -104,11 +96,11 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let clock = Clock::start();
     let (particles, measured) = (session.particles(), session.measured());
     for (path, format) in arguments.out.iter().zip(formats) {
-        write_file(path, |out| export::write(format, particles, &measured.valence, out))?;
+        write_file(path, |out| export::write(format, particles, measured, out))?;
     }
     for (path, format) in arguments.mesh.iter().zip(mesh_formats) {
         let triangles = triangulation.as_ref().map_or(&[][..], |mesh| &mesh.triangles);
-        write_file(path, |out| export::write_mesh(format, particles, &measured.valence, triangles, out))?;
+        write_file(path, |out| export::write_mesh(format, particles, measured, triangles, out))?;
     }
     seconds.writing = clock.seconds();
 
@@ -224,67 +216,6 @@ fn unknown_surface(id: &str) -> String {
     let surfaces = gallery::SURFACES.iter().map(|surface| surface.id);
     let known: Vec<&str> = surfaces.chain(model::MODELS.iter().map(|model| model.id)).collect();
     format!("there is no surface `{id}`; known are {}", known.join(", "))
-}
-
-fn settings(arguments: &arguments::Sampling, bounds: &Bounds) -> Settings {
-    let default = Settings::default();
-    let share = |length: Option<Length>, default| length.map_or(default, |l| l.share(bounds.diagonal()));
-    Settings {
-        sampling: if arguments.adaptive { Sampling::Adaptive } else { Sampling::Uniform },
-        size_mode: if arguments.count.is_some() { SizeMode::Count } else { SizeMode::Radius },
-        radius_share: share(arguments.radius, default.radius_share),
-        radius_law: match arguments.law {
-            Law::ChordError => LawKind::ChordError,
-            Law::MaxCurvature => LawKind::MaxCurvature,
-            Law::SumOfCurvatures => LawKind::SumOfCurvatures,
-        },
-        chord_error: share(arguments.chord_error, default.chord_error),
-        curvature_scale: arguments.curvature_scale,
-        radius_min_share: share(arguments.radius_min, default.radius_min_share),
-        radius_max_share: share(arguments.radius_max, default.radius_max_share),
-        grading: arguments.grading,
-        placement: match arguments.placement {
-            Placed::Direct => Placement::Direct,
-            Placed::Faithful => Placement::Faithful,
-        },
-        count: arguments.count.unwrap_or(default.count),
-        relax_steps: arguments.relax,
-        match_tolerance: arguments.match_tolerance,
-        method: match arguments.method {
-            arguments::Method::Front => Method::Front,
-            arguments::Method::Refined => Method::Refined,
-        },
-        gaps: match arguments.gaps {
-            Gaps::Fill => GapPolicy::Fill,
-            Gaps::Leave => GapPolicy::Leave,
-        },
-        seed: arguments.seed,
-        // A wanted count raises the limit if necessary.
-        max_particles: arguments.max_particles.unwrap_or_else(|| {
-            let wanted = (f64::from(arguments.count.unwrap_or(0)) * ROOM).ceil() as u32;
-            wanted.max(default.max_particles)
-        }),
-    }
-}
-
-/// Message for refused settings, with the name of the option, and shares in percent as they are typed.
-pub(crate) fn refusal(error: &SettingsError) -> String {
-    let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
-    let option = match *name {
-        "relax_steps" => "relax".to_owned(),
-        "max_iterations" => "iterations".to_owned(),
-        name => name.trim_end_matches("_share").replace('_', "-"),
-    };
-    if name.ends_with("_share") || *name == "chord_error" {
-        let percent = |share: f64| {
-            let short: Option<f64> = format!("{:.3e}", 100.0 * share).parse().ok();
-            shortest_text(short.unwrap_or(share))
-        };
-        let [value, min, max] = [*value, *min, *max].map(percent);
-        return format!("--{option} is {value}% of the box diagonal, but must lie between {min}% and {max}%");
-    }
-    let [value, min, max] = [*value, *min, *max].map(shortest_text);
-    format!("--{option} is {value}, but must lie between {min} and {max}")
 }
 
 /// Runs the session to its end and adds the times of the phases to `seconds`.

@@ -122,6 +122,7 @@ macro_rules! functions {
 
 /// Entry of the function reference.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct FunctionInfo {
     /// Name as typed in a formula.
     pub name: &'static str,

@@ -4,6 +4,7 @@ use core::ops::Range;
 
 /// The class of a [`FormulaError`]; its name in JSON is the snake-case form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum FormulaErrorKind {

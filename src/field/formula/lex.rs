@@ -74,12 +74,22 @@ fn greek_constant(c: char) -> Option<&'static str> {
     }
 }
 
+/// The letters of names: Latin ones, and Greek ones but π, τ and φ, which are constants.
+const LETTERS: [(char, char); 7] =
+    [('A', 'Z'), ('a', 'z'), ('Α', 'Ω'), ('α', 'ο'), ('ρ', 'σ'), ('υ', 'υ'), ('χ', 'ω')];
+
 fn starts_name(c: char) -> bool {
-    c.is_ascii_alphabetic() || (matches!(c, 'α'..='ω' | 'Α'..='Ω') && greek_constant(c).is_none())
+    LETTERS.iter().any(|&(first, last)| (first..=last).contains(&c))
 }
 
 fn continues_name(c: char) -> bool {
     starts_name(c) || c.is_ascii_digit() || c == '_'
+}
+
+/// What names look like, as a regular expression of JavaScript: a letter, then letters, digits and `_`.
+pub(super) fn name_pattern() -> String {
+    let letters: String = LETTERS.iter().map(|(first, last)| format!("{first}-{last}")).collect();
+    format!("^[{letters}][{letters}0-9_]*$")
 }
 
 /// Whether `name` has the characters of a name. It may still be a reserved one.

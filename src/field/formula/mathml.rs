@@ -7,6 +7,7 @@ use serde::Serialize;
 
 /// Element of MathML Core with child elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "lowercase")]
 pub enum MathGroup {
     /// Two or more elements side by side.
@@ -25,6 +26,7 @@ pub enum MathGroup {
 
 /// Element of MathML Core with text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "lowercase")]
 pub enum MathToken {
     /// An identifier.
@@ -37,6 +39,7 @@ pub enum MathToken {
 
 /// MathML element with its content.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(untagged)]
 pub enum MathNode {
     /// An element with text.

@@ -63,6 +63,7 @@ pub const MAX_AUTOMATIC_PARAMETERS: usize = 4;
 
 /// A named number of a formula, which can be changed without parsing the formula again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Parameter {
     /// Name in the formula.
     pub name: String,
@@ -76,6 +77,13 @@ pub struct Parameter {
     pub max: f64,
     /// Step of the slider.
     pub step: f64,
+}
+
+/// The names that parameters may have, as a regular expression of JavaScript. Those of coordinates, constants and functions are
+/// refused all the same.
+#[must_use]
+pub fn name_pattern() -> String {
+    lex::name_pattern()
 }
 
 impl Parameter {

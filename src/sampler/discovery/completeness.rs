@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// How the first points of the connected components were found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Search {
     /// Interval arithmetic proves that there is a first point on every component.

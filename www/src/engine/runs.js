@@ -17,8 +17,6 @@ import { change, description } from './store.js';
 
 /** Pause in a drag after which the full run starts, even if the control does not report its release. */
 const REST_MS = 250;
-/** Largest number of particles that the user can confirm. */
-const MOST_PARTICLES = 4_000_000;
 
 /** @returns {any} */
 const spawnSolver = () =>
@@ -143,7 +141,7 @@ export class Runs {
   askSize(predicted, asked) {
     const { store } = this;
     const limit = Number(asked.settings.max_particles);
-    const raised = Math.min(MOST_PARTICLES, Math.ceil(predicted * 1.1));
+    const raised = Math.ceil(predicted * description(store).limits.count_room);
     store.notice.value = {
       id: 'size',
       kind: 'warn',

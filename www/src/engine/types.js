@@ -18,226 +18,52 @@
  */
 
 /** @typedef {[number, number, number]} Vec3 */
-/** @typedef {{min: Vec3, max: Vec3}} Bounds */
-/** @typedef {{name: string, label: string, value: number, min: number, max: number, step: number}} Parameter */
 
-// ---- what the core describes ------------------------------------------------------------------------------------------
+// ---- what the core says and is told: written from its own types (core-types.d.ts) ---------------------------------------
 
-/**
- * One entry of the gallery.
- * @typedef {object} SurfaceInfo
- * @property {string} id
- * @property {string} name
- * @property {string} formula
- * @property {Parameter[]} parameters
- * @property {Bounds} bounds
- * @property {number | null} degree
- * @property {number | null} genus
- * @property {string} story
- */
-/**
- * One setting of the sampler; the interface builds its control from this.
- * @typedef {object} SettingInfo
- * @property {string} name
- * @property {string} label
- * @property {string} group
- * @property {'number' | 'integer' | 'choice'} kind
- * @property {number | string} default
- * @property {number} min
- * @property {number} max
- * @property {number} step
- * @property {'linear' | 'log'} scale
- * @property {string} unit
- * @property {{value: string, label: string}[]} [choices]
- * @property {string} help
- * @property {{name: string, value: string, equal?: boolean}[]} [when]  conditions of visibility: each other setting
- *   must have the value, or, with `equal` false, must not have it
- */
-/**
- * One row of the report. `key` is a path into {@link Report}, for example `quality.six`. A null value there means that
- * the figure does not apply to the run.
- * @typedef {object} ReportRow
- * @property {string} key
- * @property {string | null} [unless]  path of a figure that replaces this one if it exists
- * @property {string | null} [to]  path of the upper end of a range whose lower end is `key`
- * @property {string} label
- * @property {string} group
- * @property {string} unit
- * @property {number} digits
- * @property {string} ideal
- * @property {'higher' | 'lower' | null} better
- * @property {string} help
- */
-/**
- * A built-in model from points. Its `id` is used like that of a gallery surface.
- * @typedef {object} PointModel
- * @property {string} id
- * @property {string} name
- * @property {string} story
- * @property {string} credit  source of the points; may be empty
- * @property {number} points
- */
-/**
- * The facts about a solved model from points.
- * @typedef {object} ModelInfo
- * @property {string} name  name of the built-in model or of the file
- * @property {string} credit
- * @property {number} points  number of points read
- * @property {number} centres  number of points that the field interpolates
- * @property {number} condition  estimate of the condition number of the system
- * @property {number} residual_mean  mean distance of all points from the surface, as a share of the diagonal of their box
- * @property {number} residual_max
- * @property {'given' | 'from_mesh' | 'estimated'} normals
- * @property {string[]} warnings
- */
-/**
- * The core's description, from which the interface is generated.
- * @typedef {object} Description
- * @property {string} version
- * @property {string} default_surface
- * @property {SurfaceInfo[]} surfaces
- * @property {PointModel[]} models
- * @property {SettingInfo[]} settings
- * @property {ReportRow[]} report
- * @property {{name: string, label: string, help: string}[]} fates
- * @property {{name: string, signature: string, help: string}[]} functions
- * @property {{id: string, label: string, help: string, unit: string}[]} colours
- */
+/** @typedef {import('./core-types.js').Bounds} Bounds */
+/** @typedef {import('./core-types.js').Parameter} Parameter */
+/** @typedef {import('./core-types.js').Description} Description */
+/** @typedef {import('./core-types.js').Limits} Limits */
+/** One entry of the gallery. @typedef {import('./core-types.js').SurfaceEntry} SurfaceInfo */
+/** One setting of the sampler; the interface builds its control from this. @typedef {import('./core-types.js').Setting} SettingInfo */
+/** One row of the report; its keys are paths into {@link Report}, such as `quality.six`. @typedef {import('./core-types.js').ReportRow} ReportRow */
+/** A built-in model from points. Its `id` goes where a gallery surface's does. @typedef {import('./core-types.js').Model} PointModel */
+/** What is known of a model from points once it is solved. @typedef {import('./core-types.js').ModelInfo} ModelInfo */
+/** What goes with a solved system to the core. @typedef {import('./core-types.js').SolvedModel} SolvedModel */
+/** @typedef {import('./core-types.js').MathNode} MathNode */
+/** @typedef {import('./core-types.js').Fault} FieldFault */
+/** @typedef {import('./core-types.js').Phase} CorePhase */
+/** What one step of the core answers. @typedef {import('./core-types.js').Progress} CoreProgress */
+/** @typedef {CoreProgress['stop_reason']} StopReason  null while the run goes on */
+/** The figures of a finished run. @typedef {import('./core-types.js').Report} CoreReport */
+/** @typedef {import('./core-types.js').Figures} Quality */
 
 /**
- * A field to set in the core. `points` names a solved model; with it, only the clip box is used besides.
- * @typedef {object} FieldRequest
- * @property {string} [points]
- * @property {string} [surface]
- * @property {string} [formula]
- * @property {Record<string, number>} [parameters]
- * @property {Parameter[]} [declare]
- * @property {Bounds} [bounds]
+ * @template T
+ * @typedef {import('./core-types.js').Answer<T, FieldFault>} CoreAnswer
  */
+/** @typedef {CoreAnswer<import('./core-types.js').FieldAnswer>} FieldAnswer */
+/** @typedef {Extract<FieldAnswer, {ok: true}>} FieldOk  `surface` is of a model its id, of a file {@link FILE_SURFACE} */
+/** @typedef {CoreAnswer<import('./core-types.js').Start>} StartAnswer */
 /**
- * A MathML element with its text or its children.
- * @typedef {{tag: 'mi' | 'mn' | 'mo', text: string}
- *   | {tag: 'mrow' | 'mfrac' | 'msup' | 'msub' | 'msqrt' | 'mroot', children: MathNode[]}} MathNode
+ * @template T
+ * @typedef {import('./core-types.js').Answer<T, import('./core-types.js').PointsFault>} SolverAnswer
  */
-/**
- * @typedef {object} FieldOk
- * @property {true} ok
- * @property {'formula' | 'points'} kind
- * @property {ModelInfo | null} model  for points
- * @property {string | null} surface  id of the gallery surface or model, {@link FILE_SURFACE} for a file; null once the
- *   formula differs from the gallery's
- * @property {string} formula  empty for points
- * @property {Parameter[]} parameters
- * @property {string[]} auto  parameters that were declared automatically
- * @property {Bounds} bounds
- * @property {MathNode | null} mathml  null for points
- */
-/**
- * Offsets are UTF-16 code units into the formula, as a textarea's selection uses them.
- * @typedef {object} FieldFault
- * @property {string} kind
- * @property {string} message
- * @property {number} start
- * @property {number} end
- * @property {string | null} suggestion
- * @property {string[]} names  names that can be declared as parameters
- */
-/** @typedef {{ok: false, error: FieldFault}} FieldError */
-/** @typedef {FieldOk | FieldError} FieldAnswer */
+/** @typedef {SolverAnswer<import('./core-types.js').PointsProgress>} PointsAnswer */
+/** @typedef {SolverAnswer<SolvedModel>} SolvedAnswer */
 
-/** The data that accompany a solved system. @typedef {{info: ModelInfo, bounds: Bounds}} SolvedModel */
-/** @typedef {{radius: number, predicted_count: number, area: number, warnings: string[]}} Start */
-/** @typedef {({ok: true} & Start) | {ok: false, error: FieldFault}} StartAnswer */
-/** @typedef {{kind: string, message: string, line: number | null}} PointsFault */
-/** @typedef {{stage: 'reading' | 'thinning' | 'normals' | 'solving' | 'done', label: string, fraction: number, done: boolean}} PointsProgress */
-/** @typedef {({ok: true} & PointsProgress) | {ok: false, error: PointsFault}} PointsAnswer */
-/** @typedef {({ok: true} & SolvedModel) | {ok: false, error: PointsFault}} SolvedAnswer */
+// ---- what the page adds to it ------------------------------------------------------------------------------------------
 
-/** @typedef {Record<string, number | string>} Settings  by name; a missing setting has its default */
-/** @typedef {'idle' | 'seeding' | 'pilot' | 'generation' | 'search' | 'relaxation' | 'done'} CorePhase */
-/** @typedef {null | 'complete' | 'cancelled' | 'cap' | 'no_surface' | 'constant' | 'undefined' | 'one_particle'} StopReason */
-
-/**
- * The result of one step of the core.
- * @typedef {object} CoreProgress
- * @property {CorePhase} phase
- * @property {number} particles
- * @property {number} level
- * @property {number} relax_step
- * @property {number} relax_steps
- * @property {number} evaluations
- * @property {number} fraction  0 … 1
- * @property {StopReason} stop_reason
- * @property {string | null} message
- * @property {number} radius
- * @property {boolean} moved  whether columns of existing particles have changed since the last step
- */
+/** `points` names a solved model; with it only the clip box counts. @typedef {Partial<import('./core-types.js').FieldRequest> & {points?: string}} FieldRequest */
+/** By the settings' names; a missing one has its default. @typedef {Record<string, number | string>} Settings */
 /**
  * The progress of the present run, as the page shows it. `phase` has one more value than in the core, `quality`: the
  * quality figures are being computed.
  * @typedef {Omit<CoreProgress, 'phase'> & {phase: CorePhase | 'quality', run: number, live: boolean}} Progress
  */
-
-/**
- * @typedef {object} Quality
- * @property {number} d_hex
- * @property {number} area
- * @property {number} err_max
- * @property {number} err_mean
- * @property {number} nn_min
- * @property {number} nn_mean
- * @property {number} nn_cv
- * @property {number} nn_ratio
- * @property {number} rho
- * @property {number} rho_1
- * @property {number} cover
- * @property {number} quant
- * @property {number} six
- * @property {number} five_seven
- * @property {number} val_sd
- * @property {number} open
- * @property {number} psi6
- * @property {number} tri_ok
- * @property {number} agree
- * @property {number} euler
- * @property {number} components
- * @property {number} ang_min
- * @property {number} ang_min_mean
- * @property {number} lt30
- * @property {number} gt90
- * @property {number} edge_cv
- * @property {number} boundary_excluded
- * @property {number} size_cv
- * @property {number} cover_local
- * @property {number} overlap_min
- */
 /** @typedef {{seeding: number, generation: number, relaxation: number, quality: number}} Seconds */
-/**
- * The figures of a finished run.
- * @typedef {object} CoreReport
- * @property {number} count
- * @property {number} levels
- * @property {number} components_seeded
- * @property {number} radius
- * @property {number} radius_min  of the smallest particle
- * @property {number} radius_max
- * @property {number} components  number of components
- * @property {number | null} undecided_cells  cells of the box that may still hold surface; null where no proof was attempted
- * @property {number | null} singular_points  places where f has no gradient on the surface; null where none were looked for
- * @property {'proven' | 'searched'} search  whether a witness on every component is proven, or a dense search found the components
- * @property {number} evaluations
- * @property {number} evaluations_per_particle
- * @property {{added: number, matched: number, not_converged: number, outside: number, undefined: number, capped: number}} fates
- * @property {Exclude<StopReason, null>} stop_reason
- * @property {string[]} warnings
- * @property {number[]} level_counts
- * @property {number[]} energy
- * @property {string} digest
- * @property {Quality | null} quality
- * @property {Quality | null} quality_before  after the front, before relaxation
- * @property {{min: number, max: number, bins: number[]}} nearest_histogram
- */
-/** The report with the times that the worker has measured. @typedef {CoreReport & {seconds: Seconds}} Report */
+/** A report with what the worker measured. @typedef {CoreReport & {seconds: Seconds}} Report */
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 

@@ -6,7 +6,10 @@ beforeEach(begin);
 afterEach(() => vi.useRealTimers());
 
 describe('a formula with a fault', () => {
-  const fault = { ok: false, error: { kind: 'syntax', message: 'no', start: 0, end: 1, suggestion: null, names: [] } };
+  const fault = {
+    ok: false,
+    error: { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, names: [] },
+  };
 
   test('leaves the last surface, dimmed', () => {
     const { client, store, columns, say, accept } = page();
@@ -20,7 +23,7 @@ describe('a formula with a fault', () => {
     say({ type: 'field', id: 2, answer: fault });
     expect(columns.count).toBe(7);
     expect(store.field.value?.formula).toBe('x');
-    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
+    expect(store.fieldError.value).toMatchObject({ kind: 'unexpected_end' });
     expect(told).toEqual(['dim']);
     expect(store.busy.value).toBe(false);
   });
@@ -58,7 +61,7 @@ describe('a formula with a fault', () => {
     expect(told.at(-1)).toBe('fit');
     say(reportMessage(1, 7));
     expect(store.report.value?.count).toBe(7);
-    expect(store.fieldError.value).toMatchObject({ kind: 'syntax' });
+    expect(store.fieldError.value).toMatchObject({ kind: 'unexpected_end' });
     expect(jobs()).toHaveLength(2);
   });
 
@@ -227,7 +230,10 @@ describe('the surface that stays', () => {
         say({
           type: 'field',
           id: 2,
-          answer: { ok: false, error: { kind: 'syntax', message: '', start: 0, end: 0, suggestion: null, names: [] } },
+          answer: {
+            ok: false,
+            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, names: [] },
+          },
         });
       }
       if (end === 'mistake meanwhile') ended();

@@ -153,7 +153,7 @@ describe('a state from anywhere', () => {
       {
         surface: 'no such surface',
         formula: 'x'.repeat(5000),
-        parameters: { a: Infinity, 'bad name': 1, b: 1e9, c: 2 },
+        parameters: { a: Infinity, 'bad name': 1, c: 2, d: 1e9, ...Object.fromEntries([['_b', 1]]) },
         declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
         bounds: { min: [0, 0, 0], max: [1, 0, 1] },
         settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
@@ -163,8 +163,8 @@ describe('a state from anywhere', () => {
     );
     expect(state.surface).toBe('ellipsoid');
     expect(state.formula).toBe(description.surfaces[0].formula);
-    expect(state.parameters).toEqual({ b: 1e6, c: 2 });
-    expect(state.declared).toEqual([{ name: 'm', label: 'm', value: 1, min: -2, max: 2, step: 0.02 }]);
+    expect(state.parameters).toEqual({ c: 2, d: 1e9 });
+    expect(state.declared).toEqual([{ name: 'm', label: 'm', value: 1, min: 0, max: 3, step: 0.01 }]);
     expect(state.bounds).toBe(null);
     expect(state.settings).toEqual({ radius_share: 0.1, relax_steps: 2 });
     expect(state.view).toEqual({ ...defaultState(description).view, size: 1.5 });
@@ -173,7 +173,7 @@ describe('a state from anywhere', () => {
       'formula',
       'parameter a',
       'parameter bad name',
-      'parameter b',
+      'parameter _b',
       'a declared parameter',
       'clip box',
       'setting radius_share',

@@ -4,6 +4,7 @@ import { csv, ply } from '../../src/engine/share/exports.js';
 import { Glide } from '../../src/engine/view/glide.js';
 import { pick } from '../../src/engine/view/picking.js';
 import { Reveal } from '../../src/engine/view/reveal.js';
+import { description } from './description.js';
 
 /** `n` particles on a sphere of radius 1, discs facing outward. @param {number} n */
 function sphere(n) {
@@ -216,8 +217,10 @@ describe('exports', () => {
   test('PLY: header and body agree, to the byte', async () => {
     const columns = sphere(50);
     columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));
+    columns.nearest = new Float32Array(50).fill(0.25);
+    columns.residual = new Float32Array(50).fill(1e-6);
     columns.slots[17] |= SINGULAR;
-    const bytes = await ply(columns, { comment: 'x^2\nend_header\nevil' }).arrayBuffer();
+    const bytes = await ply(columns, description.columns, { comment: 'x^2\nend_header\nevil' }).arrayBuffer();
     const text = Buffer.from(bytes).toString('latin1');
     const end = text.indexOf('end_header\n', text.indexOf('element vertex')) + 'end_header\n'.length;
     const header = text.slice(0, end).trimEnd().split('\n');
@@ -251,20 +254,22 @@ describe('exports', () => {
         level: columns.levels[i],
         parent: i === 0 ? -1 : i >> 1,
         valence: 4 + (i % 4),
+        nearest: 0.25,
+        residual: Math.fround(1e-6),
         singular: i === 17 ? 1 : 0,
       });
     }
   });
 
-  test('PLY without a report has no valence column', async () => {
-    const text = await ply(sphere(3), { comment: '' }).text();
-    expect(text).not.toContain('valence');
+  test('PLY without a report has no column of it', async () => {
+    const text = await ply(sphere(3), description.columns, { comment: '' }).text();
+    expect(text).not.toMatch(/valence|nearest|residual/);
   });
 
   test('CSV: reading it gives the same single-precision values, on both sides of a block', async () => {
     const columns = sphere(9000);
     columns.slots[8191] |= SINGULAR;
-    const lines = (await csv(columns).text()).trimEnd().split('\n');
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n');
     expect(lines).toHaveLength(9001);
     expect(lines[0]).toBe('x,y,z,nx,ny,nz,radius,level,parent,singular');
     for (const i of [0, 8191, 8192, 8999]) {

@@ -1,5 +1,31 @@
 /** A description as the core gives it, cut down to what the engine's tests need. */
 
+/**
+ * @typedef {import('../../src/engine/types.js').SettingInfo} SettingInfo
+ * @typedef {import('../../src/engine/types.js').Description['columns'][number]} Column
+ */
+
+/** @param {string} name @param {Partial<SettingInfo>} change @returns {SettingInfo} */
+const setting = (name, change) => ({
+  name,
+  label: name,
+  help: '',
+  group: 'Sampling',
+  kind: 'integer',
+  default: 0,
+  min: 0,
+  max: 0,
+  step: 0,
+  scale: 'linear',
+  unit: '',
+  choices: [],
+  when: [],
+  ...change,
+});
+
+/** @param {string} name @param {Column['kind']} kind @returns {Column} */
+const column = (name, kind, measured = false) => ({ name, kind, measured });
+
 /** @type {import('../../src/engine/types.js').Description} */
 export const description = {
   version: '0.1.0',
@@ -28,78 +54,39 @@ export const description = {
   ],
   models: [{ id: 'bunny', name: 'Bunny', story: '', credit: 'Stanford', points: 200 }],
   settings: [
-    {
-      name: 'size_mode',
-      label: 'Size',
-      group: 'size',
+    setting('size_mode', {
       kind: 'choice',
       default: 'radius',
-      min: 0,
-      max: 0,
-      step: 0,
-      scale: 'linear',
-      unit: '',
       choices: [
         { value: 'radius', label: 'Radius' },
         { value: 'count', label: 'Count' },
       ],
-      help: '',
-    },
-    {
-      name: 'radius_share',
-      label: 'Radius',
-      group: 'size',
-      kind: 'number',
-      default: 0.006,
-      min: 0.0005,
-      max: 0.1,
-      step: 0.0001,
-      scale: 'log',
-      unit: '',
-      help: '',
-    },
-    {
-      name: 'count',
-      label: 'Count',
-      group: 'size',
-      kind: 'integer',
-      default: 10_000,
-      min: 10,
-      max: 1_000_000,
-      step: 1,
-      scale: 'log',
-      unit: '',
-      help: '',
-    },
-    {
-      name: 'relax_steps',
-      label: 'Steps',
-      group: 'relaxation',
-      kind: 'integer',
-      default: 10,
-      min: 0,
-      max: 1000,
-      step: 1,
-      scale: 'linear',
-      unit: '',
-      help: '',
-    },
-    {
-      name: 'max_particles',
-      label: 'Limit',
-      group: 'size',
-      kind: 'integer',
-      default: 200_000,
-      min: 1,
-      max: 4_000_000,
-      step: 1,
-      scale: 'log',
-      unit: '',
-      help: '',
-    },
+    }),
+    setting('radius_share', { kind: 'number', default: 0.006, min: 0.0005, max: 0.1, step: 0.0001, scale: 'log' }),
+    setting('count', { default: 10_000, min: 10, max: 1_000_000, step: 1, scale: 'log' }),
+    setting('relax_steps', { default: 10, max: 1000, step: 1 }),
+    setting('max_particles', { default: 200_000, min: 1, max: 4_000_000, step: 1, scale: 'log' }),
   ],
   report: [],
   fates: [],
   functions: [],
   colours: [],
+  columns: [
+    ...['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius'].map((name) => column(name, 'float')),
+    column('level', 'uint'),
+    column('parent', 'int'),
+    column('valence', 'uchar', true),
+    column('nearest', 'float', true),
+    column('residual', 'float', true),
+    column('singular', 'uchar'),
+  ],
+  new_parameter: { name: '', label: '', value: 1, min: 0, max: 3, step: 0.01 },
+  limits: {
+    formula_bytes: 4096,
+    name_pattern: '^[A-Za-z][A-Za-z0-9_]*$',
+    diagonal_min: 1e-12,
+    diagonal_max: 1e12,
+    farthest_corner: 1e3,
+    count_room: 1.1,
+  },
 };

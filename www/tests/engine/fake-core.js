@@ -50,7 +50,14 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, sl
       if (formula === 'x^2+')
         return {
           ok: false,
-          error: { kind: 'syntax', message: 'something is missing', start: 4, end: 4, suggestion: null, names: [] },
+          error: {
+            kind: 'unexpected_end',
+            message: 'something is missing',
+            start: 4,
+            end: 4,
+            suggestion: null,
+            names: [],
+          },
         };
       return {
         ok: true,

@@ -458,11 +458,19 @@ test.describe('files', () => {
           count: p.particles().count,
           header: text.slice(0, text.indexOf('end_header')),
           csv: csv.trimEnd().split('\n').length,
+          names: csv.slice(0, csv.indexOf('\n')).split(','),
+          columns: p.engine.description.value.columns.map((/** @type {{name: string}} */ { name }) => name),
+          values: csv
+            .split('\n')[1]
+            .split(',')
+            .filter((/** @type {string} */ cell) => cell !== '' && Number.isFinite(Number(cell))).length,
         };
       })
     );
     expect(files.header).toContain(`element vertex ${files.count}\n`);
     expect(files.header).toContain('property uchar valence');
+    expect(files.names).toEqual(files.columns);
+    expect(files.values).toBe(files.columns.length);
     expect(files.csv).toBe(files.count + 1);
   });
 

@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { beginsFunction, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
 
+/** @type {import('../../src/engine/types.js').FieldFault} */
 const fault = {
   kind: 'unknown_name',
   message: 'Unknown name foo.',

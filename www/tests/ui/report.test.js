@@ -6,15 +6,20 @@ import { wantsSlider } from '../../src/ui/scale.js';
 import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 
 beforeAll(() => setLocale('en'));
-/** @param {Partial<import('../../src/engine/types.js').ReportRow>} [change] */
+/**
+ * @param {Partial<import('../../src/engine/types.js').ReportRow>} [change]
+ * @returns {import('../../src/engine/types.js').ReportRow}
+ */
 const row = (change) => ({
   key: 'quality.six',
+  to: null,
+  unless: null,
   label: 'Valence six',
   group: 'Order',
   unit: '%',
   digits: 1,
   ideal: '100',
-  better: /** @type {const} */ ('higher'),
+  better: 'higher',
   help: '',
   ...change,
 });

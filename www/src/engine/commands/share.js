@@ -39,7 +39,8 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, addre
       if (!shown) throw new Error('There is no surface.');
       const what = titleOf(shown.request.field);
       const { csv, ply } = await fetchExports();
-      return format === 'csv' ? csv(columns) : ply(columns, { comment: `Marching Particles, ${what}` });
+      const { columns: all } = description(store);
+      return format === 'csv' ? csv(columns, all) : ply(columns, all, { comment: `Marching Particles, ${what}` });
     },
   };
 

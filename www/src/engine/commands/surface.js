@@ -4,7 +4,7 @@
  * @module
  */
 import { shapeOf } from '../points/loader.js';
-import { fromPoints, modelOf, surfaceOf, validBounds, validSetting } from '../share/state.js';
+import { fromPoints, modelOf, newParameter, surfaceOf, validBounds, validSetting } from '../share/state.js';
 import { change, description } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
@@ -72,11 +72,11 @@ export function inputCommands({ store, runs, look }) {
     declareParameter(name) {
       const { declared } = state.value;
       if (declared.some((p) => p.name === name)) return;
-      change(store, { declared: [...declared, { name, label: name, value: 1, min: -2, max: 2, step: 0.01 }] });
+      change(store, { declared: [...declared, newParameter(description(store), name)] });
       runs.resample();
     },
     setBounds(bounds, { live = false } = {}) {
-      const valid = bounds === null ? null : validBounds(bounds);
+      const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
       change(store, { bounds: valid });
       look.show();

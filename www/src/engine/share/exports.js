@@ -11,67 +11,90 @@ import { NO_PARENT, SINGULAR } from '../columns.js';
 /** Number of CSV rows that are joined at a time. */
 const ROWS = 8192;
 
+/** @typedef {import('../types.js').Description['columns'][number]} Column */
+
 /**
- * Returns a PLY file with one vertex per particle: position, normal, radius, generation level, parent (−1 for a seed),
- * valence (once the report has it), and a flag that is 1 next to a singular point.
+ * Value of each column for a particle, by the name of the column.
+ * @type {Record<string, (columns: Columns, i: number) => number | undefined>}
+ */
+const READ = {
+  x: ({ positions }, i) => positions[3 * i],
+  y: ({ positions }, i) => positions[3 * i + 1],
+  z: ({ positions }, i) => positions[3 * i + 2],
+  nx: ({ normals }, i) => normals[3 * i],
+  ny: ({ normals }, i) => normals[3 * i + 1],
+  nz: ({ normals }, i) => normals[3 * i + 2],
+  radius: ({ radii }, i) => radii[i],
+  level: ({ levels }, i) => levels[i],
+  parent: ({ parents }, i) => (parents[i] === NO_PARENT ? -1 : parents[i]),
+  valence: ({ valence }, i) => valence?.[i],
+  nearest: ({ nearest }, i) => nearest?.[i],
+  residual: ({ residual }, i) => residual?.[i],
+  singular: ({ slots }, i) => (slots[i] & SINGULAR ? 1 : 0),
+};
+
+/** Columns whose values are known; some are known only after the particles were measured. @param {Columns} columns @param {readonly Column[]} all */
+const known = ({ valence, nearest, residual }, all) =>
+  all.filter(({ measured }) => !measured || (valence && nearest && residual));
+
+/** Size of a value in bytes, and the method that writes it, by the type of the column. */
+const BINARY = {
+  float: { bytes: 4, write: DataView.prototype.setFloat32 },
+  int: { bytes: 4, write: DataView.prototype.setInt32 },
+  uint: { bytes: 4, write: DataView.prototype.setUint32 },
+  uchar: { bytes: 1, write: DataView.prototype.setUint8 },
+};
+
+/**
+ * Returns a binary PLY file with one vertex per particle.
  * @param {Columns} columns
+ * @param {readonly Column[]} all  all columns, as the core describes them
  * @param {{comment: string}} options  one line that describes the contents; line breaks are removed
  * @returns {Blob}
  */
-export function ply(columns, { comment }) {
-  const { count, valence } = columns;
+export function ply(columns, all, { comment }) {
+  const { count } = columns;
+  const some = known(columns, all);
   const header = [
     'ply',
     'format binary_little_endian 1.0',
     `comment ${comment.replace(/[\r\n]+/g, ' ')}`,
     `element vertex ${count}`,
-    ...['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius'].map((name) => `property float ${name}`),
-    'property uint level',
-    'property int parent',
-    ...(valence ? ['property uchar valence'] : []),
-    'property uchar singular',
+    ...some.map(({ name, kind }) => `property ${kind} ${name}`),
     'end_header',
     '',
   ].join('\n');
-  const stride = 7 * 4 + 4 + 4 + (valence ? 2 : 1);
+  const stride = some.reduce((sum, { kind }) => sum + BINARY[kind].bytes, 0);
   const body = new DataView(new ArrayBuffer(count * stride));
-  for (let i = 0, at = 0; i < count; i += 1, at += stride) {
-    for (let k = 0; k < 3; k += 1) {
-      body.setFloat32(at + 4 * k, columns.positions[3 * i + k], true);
-      body.setFloat32(at + 12 + 4 * k, columns.normals[3 * i + k], true);
-    }
-    body.setFloat32(at + 24, columns.radii[i], true);
-    body.setUint32(at + 28, columns.levels[i], true);
-    body.setInt32(at + 32, columns.parents[i] === NO_PARENT ? -1 : columns.parents[i], true);
-    if (valence) body.setUint8(at + 36, valence[i]);
-    body.setUint8(at + stride - 1, columns.slots[i] & SINGULAR ? 1 : 0);
+  let offset = 0;
+  for (const { name, kind } of some) {
+    const { bytes, write } = BINARY[kind];
+    for (let i = 0, at = offset; i < count; i += 1, at += stride)
+      write.call(body, at, READ[name](columns, i) ?? 0, true);
+    offset += bytes;
   }
   return new Blob([new TextEncoder().encode(header), body.buffer], { type: 'application/octet-stream' });
 }
 
 /**
- * Returns the same data as CSV text, one line per particle, with valence, nearest distance and residual once the report
- * has them. Reading a number back gives the same single-precision value.
+ * Returns the same data as CSV text, one line per particle. Reading a number back gives the same single-precision value.
  * @param {Columns} columns
+ * @param {readonly Column[]} all  all columns, as the core describes them
  * @returns {Blob}
  */
-export function csv(columns) {
-  const { count, positions, normals, radii, levels, parents, slots, valence, nearest, residual } = columns;
-  const names = ['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius', 'level', 'parent'];
-  if (valence && nearest && residual) names.push('valence', 'nearest', 'residual');
-  names.push('singular');
-  const parts = [`${names.join(',')}\n`];
+export function csv(columns, all) {
+  const some = known(columns, all);
+  const parts = [`${some.map(({ name }) => name).join(',')}\n`];
+  const readers = some.map(({ name, kind }) => {
+    const read = READ[name];
+    return kind === 'float'
+      ? (/** @type {number} */ i) => single(read(columns, i) ?? 0)
+      : (/** @type {number} */ i) => read(columns, i);
+  });
   /** @type {string[]} */
   let rows = [];
-  for (let i = 0; i < count; i += 1) {
-    /** @type {(string | number)[]} */
-    const row = [];
-    for (let k = 0; k < 3; k += 1) row.push(single(positions[3 * i + k]));
-    for (let k = 0; k < 3; k += 1) row.push(single(normals[3 * i + k]));
-    row.push(single(radii[i]), levels[i], parents[i] === NO_PARENT ? -1 : parents[i]);
-    if (valence && nearest && residual) row.push(valence[i], single(nearest[i]), single(residual[i]));
-    row.push(slots[i] & SINGULAR ? 1 : 0);
-    rows.push(row.join(','));
+  for (let i = 0; i < columns.count; i += 1) {
+    rows.push(readers.map((read) => read(i)).join(','));
     if (rows.length === ROWS) {
       parts.push(`${rows.join('\n')}\n`);
       rows = [];

@@ -17,15 +17,12 @@ import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
  * @typedef {import('../types.js').Parameter} Parameter
  */
 
-/** Largest length of a formula, as in the core. */
-export const LONGEST_FORMULA = 4096;
 /** Largest number of parameters in a state. */
 const MOST_PARAMETERS = 64;
-/** Largest coordinate of a clip box. Beyond it, single precision cannot resolve a surface. */
-const FARTHEST = 1e6;
+/** Largest number of a camera, which the graphics card reads in single precision. */
+const LARGEST_SINGLE = 3e38;
 /** Upper limit for generation levels in a state; no run reaches it. */
 const LAST_LEVEL = 1e6;
-const NAME = /^[A-Za-z_\u0370-\u03ff][A-Za-z0-9_\u0370-\u03ff]{0,31}$/;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
 export const COLOUR_MODES = [
@@ -138,35 +135,45 @@ const within = (v, min, max) =>
 /** @param {unknown} v @returns {v is Record<string, unknown>} */
 const isRecord = (v) => typeof v === 'object' && v !== null && !Array.isArray(v);
 
-/** @param {unknown} v @param {number} limit @returns {Vec3 | undefined} */
-function vec3(v, limit) {
-  if (!Array.isArray(v) || v.length !== 3) return undefined;
-  const out = v.map((c) => within(c, -limit, limit));
-  return out.every((c) => c !== undefined) ? /** @type {Vec3} */ (out) : undefined;
-}
+/** @param {unknown} v */
+const finite = (v) => (Number.isFinite(v) ? /** @type {number} */ (v) : undefined);
 
-/** @param {unknown} v @returns {Bounds | undefined} */
-export function validBounds(v) {
+/** @param {unknown} v @returns {Vec3 | undefined} */
+const vec3 = (v) =>
+  Array.isArray(v) && v.length === 3 && v.every(Number.isFinite) ? /** @type {Vec3} */ (v) : undefined;
+
+/** A box that the core takes. @param {unknown} v @param {import('../types.js').Limits} limits @returns {Bounds | undefined} */
+export function validBounds(v, limits) {
   if (!isRecord(v)) return undefined;
-  const min = vec3(v.min, FARTHEST);
-  const max = vec3(v.max, FARTHEST);
-  if (!min || !max || min.some((m, k) => max[k] - m < 1e-6)) return undefined;
-  return { min, max };
+  const [min, max] = [vec3(v.min), vec3(v.max)];
+  if (!min || !max || !min.every((m, k) => m < max[k])) return undefined;
+  const diagonal = Math.hypot(...max.map((m, k) => m - min[k]));
+  const farthest = Math.max(...[...min, ...max].map(Math.abs));
+  const fits = diagonal >= limits.diagonal_min && diagonal <= limits.diagonal_max;
+  return fits && farthest <= limits.farthest_corner * diagonal ? { min, max } : undefined;
 }
 
-/** @param {unknown} v @returns {Parameter | undefined} */
-function validParameter(v) {
-  if (!isRecord(v) || typeof v.name !== 'string' || !NAME.test(v.name)) return undefined;
-  const min = within(v.min, -FARTHEST, FARTHEST) ?? -2;
-  const max = within(v.max, -FARTHEST, FARTHEST) ?? 2;
+/** The parameter of this name as the core would begin it. @param {Description} description @param {string} name @returns {Parameter} */
+export const newParameter = ({ new_parameter }, name) => ({ ...new_parameter, name, label: name });
+
+/** Whether a parameter may have this name. @param {Description} description @param {string} name */
+const isName = ({ limits }, name) => new RegExp(limits.name_pattern).test(name);
+
+/** @param {unknown} v @param {Description} description @returns {Parameter | undefined} */
+function validParameter(v, description) {
+  if (!isRecord(v) || typeof v.name !== 'string' || !isName(description, v.name)) return undefined;
+  const usual = newParameter(description, v.name);
+  const min = finite(v.min) ?? usual.min;
+  const max = finite(v.max) ?? usual.max;
+  const step = finite(v.step) ?? 0;
   if (!(max > min)) return undefined;
   return {
     name: v.name,
-    label: typeof v.label === 'string' ? v.label.slice(0, 64) : v.name,
-    value: within(v.value, -FARTHEST, FARTHEST) ?? 1,
+    label: typeof v.label === 'string' ? v.label.slice(0, 64) : usual.label,
+    value: finite(v.value) ?? usual.value,
     min,
     max,
-    step: within(v.step, 1e-9, FARTHEST) ?? (max - min) / 200,
+    step: step > 0 ? step : usual.step,
   };
 }
 
@@ -201,14 +208,14 @@ export function sanitize(raw, description, hasFile = false) {
     } else reset.push('surface');
   }
   if (raw.formula !== undefined && !(points && raw.formula === '')) {
-    if (typeof raw.formula === 'string' && raw.formula.length <= LONGEST_FORMULA && !points)
+    if (typeof raw.formula === 'string' && raw.formula.length <= description.limits.formula_bytes && !points)
       state.formula = raw.formula;
     else reset.push('formula');
   }
   if (raw.parameters !== undefined) {
     if (isRecord(raw.parameters)) {
       for (const [name, value] of Object.entries(raw.parameters).slice(0, MOST_PARAMETERS)) {
-        const v = NAME.test(name) ? within(value, -FARTHEST, FARTHEST) : undefined;
+        const v = isName(description, name) ? finite(value) : undefined;
         if (v === undefined || v !== value) reset.push(`parameter ${name.slice(0, 32)}`);
         if (v !== undefined) state.parameters[name] = v;
       }
@@ -218,14 +225,14 @@ export function sanitize(raw, description, hasFile = false) {
   if (raw.declared !== undefined) {
     if (Array.isArray(raw.declared)) {
       for (const item of raw.declared.slice(0, MOST_PARAMETERS)) {
-        const parameter = validParameter(item);
+        const parameter = validParameter(item, description);
         if (parameter && !state.declared.some((p) => p.name === parameter.name)) state.declared.push(parameter);
         else reset.push('a declared parameter');
       }
     } else reset.push('declared parameters');
   }
   if (raw.bounds !== undefined && raw.bounds !== null) {
-    const bounds = validBounds(raw.bounds);
+    const bounds = validBounds(raw.bounds, description.limits);
     if (bounds) state.bounds = bounds;
     else reset.push('clip box');
   }
@@ -316,8 +323,8 @@ export function validView(raw, view, reset = []) {
   }
   if (raw.camera !== undefined) {
     const c = isRecord(raw.camera) ? raw.camera : {};
-    const target = vec3(c.target, FARTHEST);
-    const distance = within(c.distance, 1e-4, FARTHEST);
+    const target = vec3(c.target);
+    const distance = within(c.distance, 1 / LARGEST_SINGLE, LARGEST_SINGLE);
     const yaw = within(c.yaw, -2 * Math.PI, 2 * Math.PI);
     const pitch = within(c.pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
     if (target && distance !== undefined && yaw !== undefined && pitch !== undefined) {

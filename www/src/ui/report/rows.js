@@ -43,7 +43,7 @@ export function figuresOf(report, key) {
 /**
  * Returns whether a report has a figure, as not every run has all of them. Without a report all rows are shown.
  * @param {Report | null} report
- * @param {Pick<ReportRow, 'key' | 'unless'>} row
+ * @param {{key: string, unless?: string | null}} row
  */
 export function isTold(report, { key, unless }) {
   const has = (/** @type {string} */ path) => {

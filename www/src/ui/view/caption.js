@@ -16,8 +16,6 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
   switch (progress.phase) {
     case 'seeding':
       return 'Looking for the surface';
-    case 'pilot':
-      return 'Finding the radius for the wanted count';
     case 'generation':
       return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
     case 'search':

@@ -1,0 +1,168 @@
+//! The options that say how a surface is sampled: one for each entry of the table of settings.
+
+use crate::arguments::{Length, length, number};
+use crate::summary::grouped;
+use clap::builder::PossibleValuesParser;
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
+use marching_particles::math::{Bounds, shortest_text};
+use marching_particles::sampler::{COUNT_ROOM, Kind, Setting, Settings, SettingsError, Value};
+use serde_json::{Map, Value as Json};
+
+/// The option that asks for sizes that follow the curvature, and the setting that it chooses a value of.
+const ADAPTIVE: &str = "adaptive";
+const SAMPLING: &str = "sampling";
+/// The option that asks for a number of particles, by which the measure of the size is chosen too.
+const COUNT: &str = "count";
+const SIZE_MODE: &str = "size_mode";
+/// The limit is raised with the wanted number.
+const MAX_PARTICLES: &str = "max_particles";
+
+/// How a surface is sampled, as it was asked for: lengths are not shares of the box's diagonal before there is a box.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sampling {
+    values: Map<String, Json>,
+    lengths: Vec<(&'static str, Length)>,
+}
+
+impl Sampling {
+    /// The settings in a box; what was not asked for has its default.
+    ///
+    /// # Panics
+    ///
+    /// Never: clap has checked every value.
+    pub(crate) fn settings(&self, bounds: &Bounds) -> Settings {
+        let mut values = self.values.clone();
+        for (name, length) in &self.lengths {
+            values.insert((*name).to_owned(), length.share(bounds.diagonal()).into());
+        }
+        let mut settings: Settings =
+            serde_json::from_value(values.into()).expect("clap has checked the values");
+        // Asking for a number of particles is asking for the room they take.
+        if self.values.contains_key(COUNT) && !self.values.contains_key(MAX_PARTICLES) {
+            let room = (f64::from(settings.count) * COUNT_ROOM).ceil() as u32;
+            settings.max_particles = settings.max_particles.max(room);
+        }
+        settings
+    }
+}
+
+impl Args for Sampling {
+    fn augment_args(command: Command) -> Command {
+        command.args(Settings::table().iter().filter(|setting| setting.name != SIZE_MODE).map(option))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Sampling {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut sampling = Self::default();
+        sampling.update_from_arg_matches(matches)?;
+        Ok(sampling)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        let missing = |name: &str| Error::raw(ErrorKind::InvalidValue, format!("--{name} has no value"));
+        for setting in Settings::table() {
+            let name = setting.name;
+            if name == SIZE_MODE || matches.value_source(name) != Some(ValueSource::CommandLine) {
+                continue;
+            }
+            let value: Json = match setting.kind {
+                Kind::Choice if name == SAMPLING => ADAPTIVE.into(),
+                Kind::Choice => {
+                    let word: &String = matches.get_one(name).ok_or_else(|| missing(name))?;
+                    word.replace('-', "_").into()
+                }
+                Kind::Integer => (*matches.get_one::<u64>(name).ok_or_else(|| missing(name))?).into(),
+                Kind::Number if setting.is_share() => {
+                    let length = *matches.get_one(name).ok_or_else(|| missing(name))?;
+                    self.lengths.push((name, length));
+                    continue;
+                }
+                Kind::Number => (*matches.get_one::<f64>(name).ok_or_else(|| missing(name))?).into(),
+            };
+            if name == COUNT {
+                self.values.insert(SIZE_MODE.to_owned(), COUNT.into());
+            }
+            self.values.insert(name.to_owned(), value);
+        }
+        Ok(())
+    }
+}
+
+/// The option of a setting.
+fn option(setting: &Setting) -> Arg {
+    let needs_adaptive = setting.needs(SAMPLING, ADAPTIVE);
+    let heading = if needs_adaptive || setting.name == SAMPLING { "Adaptive sampling" } else { "Sampling" };
+    let mut arg = Arg::new(setting.name).long(setting.option()).help(help(setting)).help_heading(heading);
+    if needs_adaptive {
+        arg = arg.requires(SAMPLING);
+    }
+    if setting.needs(SAMPLING, "uniform") {
+        arg = arg.conflicts_with(SAMPLING);
+    }
+    if setting.needs(SIZE_MODE, "radius") {
+        arg = arg.conflicts_with(COUNT);
+    }
+    if setting.name == SAMPLING {
+        return arg.action(ArgAction::SetTrue);
+    }
+    match setting.kind {
+        Kind::Choice => {
+            let words = setting.choices.iter().map(|choice| choice.value.replace('_', "-"));
+            arg.value_name("WORD").value_parser(PossibleValuesParser::new(words.collect::<Vec<_>>()))
+        }
+        Kind::Integer => {
+            let (min, max) = setting.accepted().into_inner();
+            // Counts that are too large are refused with what they are counts of, by the settings themselves.
+            let largest = if max > f64::from(u32::MAX) { u64::MAX } else { u32::MAX.into() };
+            arg.value_name("N").value_parser(value_parser!(u64).range(min as u64..=largest))
+        }
+        Kind::Number if setting.is_share() => arg.value_name("SHARE%|LENGTH").value_parser(length),
+        Kind::Number => arg.value_name("NUMBER").value_parser(number),
+    }
+}
+
+/// What the option does, with its default.
+fn help(setting: &Setting) -> String {
+    let help = setting.help.trim_end_matches('.');
+    let default = match setting.default {
+        _ if setting.name == SAMPLING || setting.name == COUNT => return help.to_owned(),
+        Value::Choice(value) => value.replace('_', "-"),
+        Value::Integer(whole) if setting.name == MAX_PARTICLES => {
+            format!("{}, or a tenth more than --count", grouped(whole as usize))
+        }
+        Value::Integer(whole) => grouped(whole as usize),
+        Value::Number(share) if setting.is_share() => percent(share),
+        Value::Number(number) => shortest_text(number),
+    };
+    format!("{help} [default: {default}]")
+}
+
+/// A share as it is typed.
+fn percent(share: f64) -> String {
+    let short: Option<f64> = format!("{:.3e}", 100.0 * share).parse().ok();
+    format!("{}%", shortest_text(short.unwrap_or(share)))
+}
+
+/// Why settings are refused, by the name of the option and with shares as they are typed.
+pub(crate) fn refusal(error: &SettingsError) -> String {
+    let SettingsError::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let setting = Settings::table().into_iter().find(|setting| setting.name == *name);
+    let option = match setting {
+        Some(setting) => setting.option(),
+        // Of the other method's settings only two have an option.
+        None => name.trim_start_matches("max_").replace('_', "-"),
+    };
+    if setting.is_some_and(|setting| setting.is_share()) {
+        let [value, min, max] = [*value, *min, *max].map(percent);
+        return format!("--{option} is {value} of the box diagonal, but must lie between {min} and {max}");
+    }
+    let [value, min, max] = [*value, *min, *max].map(shortest_text);
+    format!("--{option} is {value}, but must lie between {min} and {max}")
+}

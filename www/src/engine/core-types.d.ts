@@ -1,0 +1,576 @@
+// The types of what the core and the solver for points say and are told. Written from the Rust types by a test:
+// UPDATE_GOLDEN=1 cargo test --lib page_types
+
+/** What a command is answered: the fields of the value, or the error. */
+export type Answer<T, E> = ({ ok: true } & T) | { ok: false; error: E };
+
+/** An axis-aligned box, in the field's coordinates. */
+export type Bounds = {
+  /** Smallest corner. */
+  min: [number, number, number],
+  /** Largest corner. */
+  max: [number, number, number],
+};
+
+/** One value of a choice. */
+export type Choice = {
+  /** Value, as it stands in JSON. */
+  value: string,
+  /** Name for a person. */
+  label: string,
+};
+
+/** A way to colour the particles. */
+export type Colour = {
+  /** Identifier. */
+  id: string,
+  /** Name for a person. */
+  label: string,
+  /** One line of explanation. */
+  help: string,
+  /** Unit of the legend. */
+  unit: string,
+};
+
+/** A column of PLY and CSV files, here and on the page. */
+export type Column = {
+  /** Name in the file. */
+  name: string,
+  /** What its values are. */
+  kind: ColumnKind,
+  /** Whether it is known only once the particles are measured. */
+  measured: boolean,
+};
+
+/** What the values of a column are, by the name of the type in PLY. */
+export type ColumnKind = "float" | "int" | "uint" | "uchar";
+
+/** What has to hold of another setting. */
+export type Condition = {
+  /** Name of the other setting. */
+  name: string,
+  /** One of its choices. */
+  value: string,
+  /** Whether it has that value then, or another one. */
+  equal: boolean,
+};
+
+/** The whole description. */
+export type Description = {
+  /** Version of this crate. */
+  version: string,
+  /** Identifier of the surface to begin with. */
+  default_surface: string,
+  /** The gallery. */
+  surfaces: Array<SurfaceEntry>,
+  /** The models from points. */
+  models: Array<Model>,
+  /** Settings of a run. */
+  settings: Array<Setting>,
+  /** Rows of the report. */
+  report: Array<ReportRow>,
+  /** What can become of a child. */
+  fates: Array<Fate>,
+  /** Functions of the formula language. */
+  functions: Array<FunctionInfo>,
+  /** Ways to colour the particles. */
+  colours: Array<Colour>,
+  /** Columns of PLY and CSV files. */
+  columns: Array<Column>,
+  /** What a new parameter is, but for its name. */
+  new_parameter: Parameter,
+  /** What is accepted. */
+  limits: Limits,
+};
+
+/** What can become of a child. */
+export type Fate = {
+  /** Name, as in the report's counts. */
+  name: string,
+  /** Name for a person. */
+  label: string,
+  /** One line of explanation. */
+  help: string,
+};
+
+/** Fates of children, counted. */
+export type FateCounts = {
+  /** New particles, seeds not counted. */
+  added: number,
+  /** Slots where an existing particle sits. */
+  matched: number,
+  /** No surface met on the circle. */
+  not_converged: number,
+  /** Outside the clip box. */
+  outside: number,
+  /** No value or no gradient. */
+  undefined: number,
+  /** Not placed because the limit on particles was reached. */
+  capped: number,
+};
+
+/** What is wrong with a command. */
+export type Fault = {
+  /** What it is about. */
+  kind: FaultKind,
+  /** One sentence for a person; plain text. */
+  message: string,
+  /** Where the mistake begins in the formula, in UTF-16 code units, as the selection of a text field counts. */
+  start: number,
+  /** Where it ends. */
+  end: number,
+  /** Text that would mend the span, if there is a good guess. */
+  suggestion: string | null,
+  /** Unknown names that could become sliders. */
+  names: Array<string>,
+};
+
+/** What a refused command was about. */
+export type FaultKind = "request" | "settings" | "unknown_surface" | "box" | "points" | FormulaErrorKind;
+
+/** The field as it now is. */
+export type FieldAnswer = {
+  /** What it is made of. */
+  kind: FieldKind,
+  /** The model, if it is made of points. */
+  model: ModelInfo | null,
+  /** Gallery surface, if the formula is still its own. */
+  surface: string | null,
+  /** Text of the formula; empty if there is none. */
+  formula: string,
+  /** Parameters with values and ranges. */
+  parameters: Array<Parameter>,
+  /** Parameters that were not declared but found in the formula. */
+  auto: Array<string>,
+  /** Clip box. */
+  bounds: Bounds,
+  /** The formula as MathML; none if there is no formula. */
+  mathml: MathNode | null,
+};
+
+/** What a field is made of. */
+export type FieldKind = "formula" | "points";
+
+/** What a caller asks of the field; everything is optional. */
+export type FieldRequest = {
+  /** Identifier of a gallery surface to start from; without one, the present field is changed. */
+  surface: string | null,
+  /** Text of the formula, in the place of the surface's. */
+  formula: string | null,
+  /** Values of parameters by name. */
+  parameters: { [key in string]: number },
+  /** Parameters that the formula's unknown names become. */
+  declare: Array<Parameter>,
+  /** Clip box. */
+  bounds: Bounds | null,
+};
+
+/** One number per property; NaN (null in JSON) where undefined. Lengths are over d_hex unless said otherwise. */
+export type Figures = {
+  /** Spacing of a perfect hexagonal lattice of as many points on the same area, √(2A/(√3 N)), in the field's units. */
+  d_hex: number,
+  /** Area, as given or of the triangles found, in the field's units. */
+  area: number,
+  /** Largest first-order distance |f|/|∇f| to the surface. */
+  err_max: number,
+  /** Mean first-order distance to the surface. */
+  err_mean: number,
+  /** Points whose residual is undefined (∇f = 0 or f undefined); left out of `err_max` and `err_mean`. */
+  undefined: number,
+  /** Smallest nearest-neighbour distance. */
+  nn_min: number,
+  /** Mean nearest-neighbour distance. */
+  nn_mean: number,
+  /** Standard deviation of the nearest-neighbour distance over its mean. */
+  nn_cv: number,
+  /** Smallest over mean nearest-neighbour distance. */
+  nn_ratio: number,
+  /** Normalised Poisson-disk radius: `nn_min` under its usual name. */
+  rho: number,
+  /** First percentile of the nearest-neighbour distance. */
+  rho_1: number,
+  /** Radius of the largest hole over d_hex/√3, that of the perfect lattice: 1 is ideal. */
+  cover: number,
+  /** Mean squared distance from the surface to the nearest point over that of the perfect lattice: 1 is ideal. */
+  quant: number,
+  /** Fraction of the points with exactly six natural neighbours. */
+  six: number,
+  /** Fraction of the points with five or seven natural neighbours. */
+  five_seven: number,
+  /** Standard deviation of the valence. */
+  val_sd: number,
+  /** Number of points whose cell is not proven complete among their 200 nearest points. */
+  open: number,
+  /** Mean over the points of |mean over natural neighbours of exp(6iθ)|: 1 for a lattice. */
+  psi6: number,
+  /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
+  * points away from the border that a kept triangle fills. */
+  tri_ok: number,
+  /** Fraction of the triangles found (away from the border) that all three corners agree on. */
+  agree: number,
+  /** Euler number of the kept triangles, quarrels settled (see [`super::triangles`]). */
+  euler: number,
+  /** Number of components of the surface by the natural neighbours: those of the same triangles, and points far from all
+  * of them. */
+  components: number,
+  /** Smallest angle of any triangle, in degrees. */
+  ang_min: number,
+  /** Mean over the triangles of their smallest angle, in degrees. */
+  ang_min_mean: number,
+  /** Fraction of the triangles with an angle below 30°. */
+  lt30: number,
+  /** Fraction of the triangles with an angle above 90°. */
+  gt90: number,
+  /** Fraction of all angles below 30°. */
+  a_lt30: number,
+  /** Fraction of all angles above 90°. */
+  a_gt90: number,
+  /** Standard deviation over mean of the length of mutual natural-neighbour edges. */
+  edge_cv: number,
+  /** Standard deviation over mean of edge length over the sum of the wanted radii. */
+  size_cv: number,
+  /** Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii
+  * there (the mean of those of the points around the hole), all scaled by one factor so that the cells have the
+  * area. 1 is ideal, and where all radii are equal this is `cover`. */
+  cover_local: number,
+  /** Smallest distance of natural neighbours over the sum of their wanted radii, in which a duplicate has 0. 1 where
+  * particles just touch. */
+  overlap_min: number,
+  /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
+  dup: number,
+  /** Points with a non-finite coordinate; left out of everything. */
+  not_finite: number,
+  /** Mean angle between the given normals (either sign) and ∇f, in degrees. */
+  nrm_mean: number,
+  /** Largest angle between the given normals (either sign) and ∇f, in degrees. */
+  nrm_max: number,
+  /** Points within 4 d_hex of the border of a clipped surface, left out of the per-point figures. */
+  boundary_excluded: number,
+};
+
+/** The class of a [`FormulaError`]; its name in JSON is the snake-case form. */
+export type FormulaErrorKind = "empty" | "too_long" | "too_deep" | "too_complex" | "unexpected_end" | "unexpected_symbol" | "unexpected_character" | "bad_number" | "decimal_comma" | "ambiguous" | "missing_brackets" | "wrong_arity" | "too_many_equations" | "unknown_name" | "unknown_function" | "not_finite" | "bad_parameter";
+
+/** Entry of the function reference. */
+export type FunctionInfo = {
+  /** Name as typed in a formula. */
+  name: string,
+  /** Name with its arguments. */
+  signature: string,
+  /** Description in one sentence. */
+  help: string,
+};
+
+/** Where a setting is shown. */
+export type Group = "Sampling" | "Advanced";
+
+/** Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost. */
+export type Histogram = {
+  /** Lower end of the first bin. */
+  min: number,
+  /** Upper end of the last bin. */
+  max: number,
+  /** Counts. */
+  bins: Array<number>,
+};
+
+/** JobStage of a job, as the page shows it. */
+export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
+
+/** What the values of a setting are. */
+export type Kind = "number" | "integer" | "choice";
+
+/** What the core accepts. */
+export type Limits = {
+  /** Longest formula, in bytes of UTF-8. */
+  formula_bytes: number,
+  /** The names that parameters may have, as a regular expression of JavaScript. */
+  name_pattern: string,
+  /** Smallest diagonal of a clip box. */
+  diagonal_min: number,
+  /** Largest diagonal of a clip box. */
+  diagonal_max: number,
+  /** Largest coordinate of a clip box, in its diagonals. */
+  farthest_corner: number,
+  /** Room for the particles that are expected, as a multiple of them. */
+  count_room: number,
+};
+
+/** Element of MathML Core with child elements. */
+export type MathGroup = "mrow" | "mfrac" | "msup" | "msub" | "msqrt" | "mroot";
+
+/** MathML element with its content. */
+export type MathNode = {
+  /** Name of the element. */
+  tag: MathToken,
+  /** The text, not escaped. */
+  text: string, } | {
+  /** Name of the element. */
+  tag: MathGroup,
+  /** The child elements, in order. */
+  children: Array<MathNode>,
+};
+
+/** Element of MathML Core with text. */
+export type MathToken = "mi" | "mn" | "mo";
+
+/** A built-in model. */
+export type Model = {
+  /** Identifier: lower case, words joined by hyphens. No gallery surface has the same one. */
+  id: string,
+  /** Name for the user. */
+  name: string,
+  /** Two sentences about the model. */
+  story: string,
+  /** Credit for the points. */
+  credit: string,
+  /** Number of points. */
+  points: number,
+};
+
+/** Report of a model from points. */
+export type ModelInfo = {
+  /** Name of the built-in model or of the file. */
+  name: string,
+  /** Credit for the points; empty for a file. */
+  credit: string,
+  /** Number of points read. */
+  points: number,
+  /** Number of points that the function interpolates. */
+  centres: number,
+  /** Estimated condition number of the system. */
+  condition: number,
+  /** Mean residual |f|/|∇f| of all points, as a share of the diagonal of their box. */
+  residual_mean: number,
+  /** Maximum residual, as a share of that diagonal. */
+  residual_max: number,
+  /** Origin of the normals. */
+  normals: NormalSource,
+  /** Warnings for the user. */
+  warnings: Array<string>,
+};
+
+/** Origin of the normals of a model's points. */
+export type NormalSource = "given" | "from_mesh" | "estimated";
+
+/** A named number of a formula, which can be changed without parsing the formula again. */
+export type Parameter = {
+  /** Name in the formula. */
+  name: string,
+  /** Label for the user. */
+  label: string,
+  /** Current value. */
+  value: number,
+  /** Smallest value of the slider. */
+  min: number,
+  /** Largest value of the slider. */
+  max: number,
+  /** Step of the slider. */
+  step: number,
+};
+
+/** What the sampler is doing. */
+export type Phase = "idle" | "seeding" | "generation" | "search" | "relaxation" | "done";
+
+/** Error of a job, as the page shows it. */
+export type PointsFault = {
+  /** Kind of error as a word in snake case. */
+  kind: string,
+  /** One sentence for the user, in plain text. */
+  message: string,
+  /** Number, from 1, of the line of a text file that is in error. */
+  line: number | null,
+};
+
+/** Progress of a job. */
+export type PointsProgress = {
+  /** Current stage. */
+  stage: JobStage,
+  /** Current stage in words. */
+  label: string,
+  /** Fraction of the whole work, from 0 to 1. It never decreases. */
+  fraction: number,
+  /** Whether the field is complete. */
+  done: boolean,
+};
+
+/** State after a step. */
+export type Progress = {
+  /** Current phase. */
+  phase: Phase,
+  /** Particles in the columns that will stay. */
+  particles: number,
+  /** Generation level under way. */
+  level: number,
+  /** Relaxation steps done. */
+  relax_step: number,
+  /** Relaxation steps asked for. */
+  relax_steps: number,
+  /** Field evaluations so far, all phases. */
+  evaluations: number,
+  /** Estimated share of the work done. */
+  fraction: number,
+  /** Set once the run has ended. */
+  stop_reason: StopReason | null,
+  /** A sentence for the user where the reason needs one. */
+  message: string | null,
+  /** Repulsion radius. */
+  radius: number,
+  /** Whether particles that were there before this step have moved or gone. */
+  moved: boolean,
+};
+
+/** Everything worth knowing about a run. */
+export type Report = {
+  /** Number of particles. */
+  count: number,
+  /** Number of generation levels. */
+  levels: number,
+  /** Fronts started, each from a seed of its own. */
+  components_seeded: number,
+  /** Number of components of the surface, by the natural neighbours of the particles. */
+  components: number,
+  /** Whether every component is proven to have been found. */
+  search: Search,
+  /** Cells of the box in which the proof could not decide; none where no proof was attempted. */
+  undecided_cells: number | null,
+  /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
+  singular_points: number | null,
+  /** Particles placed in gaps between fronts. */
+  gaps_filled: number,
+  /** Repulsion radius. */
+  radius: number,
+  /** Repulsion radius of the smallest particle; 0 without particles. */
+  radius_min: number,
+  /** Repulsion radius of the largest particle. */
+  radius_max: number,
+  /** Field evaluations of the whole run. */
+  evaluations: number,
+  /** Field evaluations of the front per particle. */
+  evaluations_per_particle: number,
+  /** What became of the children. */
+  fates: FateCounts,
+  /** Why the run ended. */
+  stop_reason: StopReason | null,
+  /** Things the user should know, in words. */
+  warnings: Array<string>,
+  /** Particles per generation level. */
+  level_counts: Array<number>,
+  /** Energy per particle before the first relaxation step and after each. */
+  energy: Array<number>,
+  /** Digest of the particles, 16 hexadecimal digits. */
+  digest: string,
+  /** Quality now. */
+  quality: Figures | null,
+  /** Quality after the front, before the relaxation. */
+  quality_before: Figures | null,
+  /** Nearest-neighbour distances. */
+  nearest_histogram: Histogram,
+};
+
+/** A row of the report. */
+export type ReportRow = {
+  /** Path into the report. What is null there has no place in the run. */
+  key: string,
+  /** Path of the upper end, if the row is a range that begins at `key`. */
+  to: string | null,
+  /** Path of the figure that stands in its place where that one is there: what a lattice of one size is the measure of says
+  * nothing of particles of many. */
+  unless: string | null,
+  /** Name for a person. */
+  label: string,
+  /** Group it is shown in. */
+  group: string,
+  /** Unit; `%` shows the value times 100. */
+  unit: string,
+  /** Digits after the point. */
+  digits: number,
+  /** The ideal value, in words. */
+  ideal: string,
+  /** Which way is better. */
+  better: string | null,
+  /** Definition and meaning. */
+  help: string,
+};
+
+/** How values are spread over a slider. */
+export type Scale = "linear" | "log";
+
+/** How the first points of the connected components were found. */
+export type Search = "proven" | "searched";
+
+/** A setting of a run. */
+export type Setting = {
+  /** Name in [`Settings`](super::Settings). */
+  name: string,
+  /** Name for a person. */
+  label: string,
+  /** One line of explanation. */
+  help: string,
+  /** Group it is shown in. */
+  group: Group,
+  /** What its values are. */
+  kind: Kind,
+  /** Default value. */
+  default: Value,
+  /** Smallest value; 0 for a choice. */
+  min: number,
+  /** Largest value that the page offers; 0 for a choice. */
+  max: number,
+  /** Step of a slider; on a logarithmic scale a factor minus one. 0 for a choice. */
+  step: number,
+  /** How values are spread over a slider. */
+  scale: Scale,
+  /** Unit; `%` stands for a share of the diagonal of the box, which is shown times 100. */
+  unit: string,
+  /** Values of a choice. */
+  choices: Array<Choice>,
+  /** The setting has an effect, and is shown, while all of these hold; always if there is none. */
+  when: Array<Condition>,
+};
+
+/** Report and box that accompany a solved system to the session that samples it. */
+export type SolvedModel = {
+  /** Report of the model. */
+  info: ModelInfo,
+  /** Box to sample in. */
+  bounds: Bounds,
+};
+
+/** What [`Sampler::start`] found out. */
+export type Start = {
+  /** Repulsion radius of the run. */
+  radius: number,
+  /** Particles to expect. */
+  predicted_count: number,
+  /** Estimated area of the surface in the box. */
+  area: number,
+  /** Things the user should know, in words. */
+  warnings: Array<string>,
+};
+
+/** Why a run ended. */
+export type StopReason = "complete" | "cancelled" | "cap" | "no_surface" | "constant" | "undefined" | "one_particle";
+
+/** A gallery surface. */
+export type SurfaceEntry = {
+  /** Identifier. */
+  id: string,
+  /** Name. */
+  name: string,
+  /** Formula. */
+  formula: string,
+  /** Parameters with their ranges. */
+  parameters: Array<Parameter>,
+  /** Clip box. */
+  bounds: Bounds,
+  /** Degree of the polynomial, if it is one. */
+  degree: number | null,
+  /** Genus, where the surface is closed, connected and smooth. */
+  genus: number | null,
+  /** Two sentences about it. */
+  story: string,
+};
+
+/** The value of a setting. */
+export type Value = number | number | string;
