@@ -107,7 +107,7 @@
 //! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
 //! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
-//! * `pieces`: long work that can be left and gone on with, as measuring is.
+//! * `slices`: long work that can be left and gone on with, as measuring is.
 //! * [`trace`]: the log with which the adaptive front can be replayed.
 //! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
 //! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
@@ -131,13 +131,13 @@ pub mod mesh;
 #[cfg(all(test, feature = "points"))]
 mod page_types;
 pub mod particles;
-mod pieces;
 #[cfg(feature = "points")]
 pub mod pointcloud;
 pub mod quality;
 pub mod render;
 pub mod sampler;
 pub mod session;
+mod slices;
 pub mod spatial;
 pub mod trace;
 #[cfg(target_arch = "wasm32")]

@@ -15,7 +15,7 @@ const ROOMS: [Room; 4] = [
         &[
             ("math", &[]),
             // Long work in slices: of any kind.
-            ("pieces", &[]),
+            ("slices", &[]),
             // The form of an answer, whatever is answered.
             ("answer", &[]),
             ("field", &["math"]),
@@ -23,7 +23,7 @@ const ROOMS: [Room; 4] = [
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever made them.
-            ("spatial", &["math", "pieces"]),
+            ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
             ("trace", &["math", "particles"]),
             ("mesh", &["math", "spatial", "particles"]),
@@ -31,13 +31,13 @@ const ROOMS: [Room; 4] = [
             // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
             ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
             // Figures about a set of particles must not depend on what made them.
-            ("quality", &["math", "pieces", "field", "differential", "spatial", "particles"]),
+            ("quality", &["math", "slices", "field", "differential", "spatial", "particles"]),
             ("export", &["math", "spatial", "particles", "mesh", "quality"]),
             (
                 "session",
                 &[
                     "math",
-                    "pieces",
+                    "slices",
                     "field",
                     "differential",
                     "spatial",

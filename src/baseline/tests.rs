@@ -22,7 +22,7 @@ fn witkin_heckbert() -> WitkinHeckbert {
     WitkinHeckbert::new(&Settings::default(), tolerance(WANTED, 0.0, 1.0), &bounds, WANTED, DIAMETER)
 }
 
-/// Particles of many sizes, all over a piece of the plane z = 0.
+/// Particles of many sizes, all over a part of the plane z = 0.
 fn crowd(count: u32) -> Vec<Particle> {
     (0..count)
         .map(|k| {

@@ -106,7 +106,7 @@ impl Estimator {
         ];
         if components > 1 {
             warnings.push(format!(
-                "The points fall into {components} pieces without a connection; the normals of each were turned outward by itself."
+                "The points fall into {components} components without a connection; the normals of each were turned outward by itself."
             ));
         }
         let opposite =

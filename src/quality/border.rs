@@ -2,7 +2,7 @@
 
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::pieces::piece;
+use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
@@ -44,7 +44,7 @@ impl Border {
                     let mut face = Face::new(bounds, axis, sign, d_hex);
                     for row in 0..=face.rows {
                         face.cross(field, row, &mut curve);
-                        piece().await;
+                        pause().await;
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use super::scene::Scene;
 use super::triangles::find;
 use crate::math::sort_few;
-use crate::pieces::{piece, ranges};
+use crate::slices::{pause, ranges};
 
 /// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no
 /// triangle, and if their distance is at most this many times the spacing at either. The limit is for the gaps that a
@@ -36,7 +36,7 @@ pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize)
             let nearest: f32 = lengths.first().copied().unwrap_or(0.0);
             lengths.get(RANK - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
         }));
-        piece().await;
+        pause().await;
     }
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut is_used = vec![false; n];
@@ -54,7 +54,7 @@ pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize)
                 is_used[i] = true;
             }
         }
-        piece().await;
+        pause().await;
     }
     for i in (0..n).filter(|&i| !is_used[i]) {
         scene.rings.of(i).for_each(|j| join(i, j));

@@ -8,7 +8,7 @@ use super::sizes::Wanted;
 use super::triangles::area_vector;
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::pieces::piece;
+use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
@@ -138,7 +138,7 @@ impl HoleSearch {
                 }
             }
             self.add_corner_batch(field, cover, &mut batch);
-            piece().await;
+            pause().await;
         }
     }
 
@@ -190,7 +190,7 @@ impl HoleSearch {
                 batch.push(p.as_vec3(), corner.max((b - c).length() * 0.5) as f32, triangle);
                 if batch.position.len() == BATCH {
                     self.add_random(field, cover, &mut batch);
-                    piece().await;
+                    pause().await;
                 }
                 next = share * (stratum + unit());
                 stratum += 1.0;
@@ -264,7 +264,7 @@ pub(super) async fn uncovered(
                 uncovered.largest.relative = uncovered.largest.relative.max(relative);
             }
         }
-        piece().await;
+        pause().await;
     }
     if all > 0.0 {
         uncovered.share = far / all;
@@ -277,7 +277,7 @@ pub(super) async fn uncovered(
 mod tests {
     use super::*;
     use crate::field::formula::FormulaField;
-    use crate::pieces::complete;
+    use crate::slices::complete;
 
     #[test]
     fn corners_that_do_not_come_to_the_surface_are_no_holes() {

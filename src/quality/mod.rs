@@ -39,7 +39,7 @@ pub use spacing::Histogram;
 use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::{Bounds, SQRT_3};
-use crate::pieces::{self, piece, ranges};
+use crate::slices::{self, pause, ranges};
 use accuracy::{first_order_distance, residuals};
 use border::Border;
 use figures::hexagonal_spacing;
@@ -99,11 +99,11 @@ pub fn measure(
     bounds: Option<&Bounds>,
     options: &Options,
 ) -> Report {
-    pieces::complete(in_pieces(position, normal, field, bounds, options))
+    slices::complete(in_slices(position, normal, field, bounds, options))
 }
 
 /// [`measure`] in slices of work. A few of them look at all particles, for some 20 ns each.
-pub(crate) async fn in_pieces(
+pub(crate) async fn in_slices(
     position: &[Vec3],
     normal: &[Vec3],
     field: &mut dyn Field,
@@ -150,7 +150,7 @@ pub(crate) async fn in_pieces(
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
     let factor = comfortable_factor(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let Prepared { scene, mesh, .. } = pieces::complete(Prepared::new(position, normal, field, None));
+    let Prepared { scene, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None));
     let origin = &scene.tree.origin;
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
@@ -170,7 +170,7 @@ async fn figures_of(
     }
     figures.area = options.area.unwrap_or_else(|| triangles::area(&scene.tree.position, mesh));
     figures.d_hex = hexagonal_spacing(figures.area, n + duplicates);
-    piece().await;
+    pause().await;
     residuals(&scene.residual, &mut figures);
     (figures.nrm_mean, figures.nrm_max) = scene.normal_angles.figures();
 
@@ -180,9 +180,9 @@ async fn figures_of(
     };
     let inner = points_away_from(border.as_ref(), scene).await;
     figures.boundary_excluded = inner.iter().filter(|&&inner| !inner).count();
-    piece().await;
+    pause().await;
     spacing::measure(scene, &inner, &mut figures);
-    piece().await;
+    pause().await;
     let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
     measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
     let component = measure_triangles(prepared, &inner, options.euler, &mut figures).await;
@@ -202,7 +202,7 @@ async fn points_away_from(border: Option<&Border>, scene: &Scene) -> Vec<bool> {
     if let Some(border) = border {
         for range in ranges(n, SLICE) {
             range.for_each(|i| inner[i] = !border.is_near(scene.tree.position[i]));
-            piece().await;
+            pause().await;
         }
     }
     inner
@@ -224,7 +224,7 @@ async fn measure_neighbourhoods(
             scene.mutual(inner, i).for_each(|j| edge.add(scene.distance(i, j)));
             wanted.iter().for_each(|wanted| ratios.add(wanted, scene, inner, i));
         }
-        piece().await;
+        pause().await;
     }
     order.figures(figures);
     figures.edge_cv = edge.variation();
@@ -250,12 +250,12 @@ async fn measure_triangles(
         for chunk in list.chunks(SLICE) {
             chunk.iter().filter(away).for_each(|&triangle| angles.add(&scene.tree.position, triangle));
             corners += chunk.iter().flatten().filter(|&&i| inner[i as usize]).count();
-            piece().await;
+            pause().await;
         }
     }
     angles.figures(figures);
     figures.euler = euler_number(n, mesh);
-    piece().await;
+    pause().await;
     let (component, count) = components::label(scene, mesh).await;
     figures.components = count;
     let unanimous = triangles.unanimous.iter().filter(away).count();

@@ -3,7 +3,7 @@
 use super::cell::VoronoiCell;
 use super::nearby::Nearby;
 use crate::math::{LANES, tangent_frame};
-use crate::pieces::piece;
+use crate::slices::pause;
 use crate::spatial::tree::{Tree, key, unkey};
 use core::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
@@ -54,7 +54,7 @@ impl OneRings {
         let mut scratch = Scratch { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
         for leaf in tree.leaves() {
             rings.add_leaf(tree, normal, leaf, &mut scratch);
-            piece().await;
+            pause().await;
         }
         rings
     }

@@ -8,7 +8,7 @@
 use super::projection::project;
 use crate::field::Field;
 use crate::math::Bounds;
-use crate::pieces::piece;
+use crate::slices::pause;
 use glam::{DVec3, Vec3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -33,7 +33,7 @@ pub(super) async fn crossings(field: &mut dyn Field, bounds: &Bounds, seed: u64)
         let mut random = Pcg32::seed_from_u64(seed ^ STREAM);
         for _ in 0..LINES / BATCH {
             cross(field, bounds, &mut random, &mut found);
-            piece().await;
+            pause().await;
         }
     }
     found

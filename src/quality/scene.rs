@@ -5,13 +5,13 @@ use super::figures::hexagonal_spacing;
 use super::one_rings::OneRings;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
-use crate::pieces::piece;
+use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use glam::{DVec3, Vec3};
 
 /// Points closer than this many d_hex to an earlier one are duplicates of it.
 const DUPLICATE: f64 = 1e-6;
-/// Points at which the field is evaluated together, in one piece of work.
+/// Points at which the field is evaluated together, in one slice of work.
 const BATCH: usize = 64;
 
 /// The points and what the figures are made from. All columns are in tree order.
@@ -37,7 +37,7 @@ impl Scene {
         drop: &[bool],
     ) -> Self {
         let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
-        let tree = Tree::in_pieces(kept).await;
+        let tree = Tree::in_slices(kept).await;
         let mut normal = Vec::with_capacity(tree.len());
         let mut residual = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();
@@ -52,7 +52,7 @@ impl Scene {
                 normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
                 residual.push(first_order_distance(value, slope));
             }
-            piece().await;
+            pause().await;
         }
         let rings = OneRings::new(&tree, &normal).await;
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
@@ -100,15 +100,15 @@ impl Prepared {
         let mut has_duplicate = vec![false; position.len()];
         // Equal points go first: all of them would be nearest neighbours of one another.
         drop_equal(position, &mut drop, &mut has_duplicate);
-        piece().await;
+        pause().await;
         loop {
             let scene = Scene::new(position, normal, field, &has_duplicate, &drop).await;
             let triangles = Triangles::new(&scene.rings).await;
             let mesh = triangles.settled(&scene.tree.position);
-            piece().await;
+            pause().await;
             let area = known_area.unwrap_or_else(|| area(&scene.tree.position, &mesh));
             let d_hex = hexagonal_spacing(area, position.len() - not_finite);
-            piece().await;
+            pause().await;
             if !drop_close(&scene, (DUPLICATE * d_hex) as f32, &mut drop) {
                 let duplicates = position.len() - not_finite - scene.tree.len();
                 return Self { scene, triangles, mesh, duplicates, not_finite, drop };

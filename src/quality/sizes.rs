@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::differential::exact_curvature;
 use crate::field::Field;
 use crate::math::SQRT_3;
-use crate::pieces::{piece, ranges};
+use crate::slices::{pause, ranges};
 use glam::Vec3;
 
 /// Area of a Voronoi cell in a hexagonal lattice of radius 1: 2√3.
@@ -51,7 +51,7 @@ impl Wanted {
                             own[j].add(half);
                         }
                     }
-                    piece().await;
+                    pause().await;
                 }
                 own.iter().map(Moments::mean).collect()
             }
@@ -63,7 +63,7 @@ impl Wanted {
                 let mut radius = Vec::with_capacity(n);
                 for chunk in scene.tree.position.chunks(SLICE) {
                     radius.extend(chunk.iter().map(&mut of));
-                    piece().await;
+                    pause().await;
                 }
                 radius
             }

@@ -4,7 +4,7 @@ use super::figures::Figures;
 use super::moments::{Moments, share};
 use super::one_rings::OneRings;
 use crate::math::SQRT_3;
-use crate::pieces::{piece, ranges};
+use crate::slices::{pause, ranges};
 use crate::spatial::tree::{key, unkey};
 use glam::{DVec3, Vec3};
 
@@ -28,7 +28,7 @@ impl Triangles {
         let mut triangles = Self { unanimous: Vec::with_capacity(2 * rings.len()), ..Self::default() };
         for range in ranges(rings.len(), SLICE) {
             range.for_each(|i| triangles.add(rings, i));
-            piece().await;
+            pause().await;
         }
         triangles
     }

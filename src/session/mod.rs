@@ -16,12 +16,12 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::pieces::{self, Work};
 use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
     BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError,
     SizeMode, Start, StopReason,
 };
+use crate::slices::{self, Work};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -207,14 +207,14 @@ impl Kept {
         Self { position: position.clone(), normal: normal.clone(), radius: radius.clone() }
     }
 
-    /// [`quality::measure`], a piece at a time.
+    /// [`quality::measure`], a slice at a time.
     async fn measure(&self, field: &mut dyn Field, bounds: &Bounds, sampling: Sampling) -> quality::Report {
         let sizes = match sampling {
             Sampling::Uniform => Sizes::None,
             Sampling::Adaptive => Sizes::Given(&self.radius),
         };
         let options = quality::Options { sizes, ..quality::Options::default() };
-        quality::in_pieces(&self.position, &self.normal, field, Some(bounds), &options).await
+        quality::in_slices(&self.position, &self.normal, field, Some(bounds), &options).await
     }
 }
 
@@ -490,7 +490,7 @@ impl Session {
         curvatures.iter().map(|curvature| [curvature.k1, curvature.k2]).collect()
     }
 
-    /// Measures the particles, before and after the relaxation: up to `budget` pieces of the work, some 10 to 50 microseconds
+    /// Measures the particles, before and after the relaxation: up to `budget` slices of the work, some 10 to 50 microseconds
     /// each; the report, once it is complete. Call it when the run has ended. A measurement that anything comes between is
     /// given up, and the next call begins anew.
     pub fn measure(&mut self, budget: u32) -> Option<Report> {
@@ -508,7 +508,7 @@ impl Session {
                 Measured { front, now: report, facing: warnings::facing_another_sheet(&now).await }
             })
         });
-        let Measured { front, now, facing } = pieces::advance(work.as_mut(), budget)?;
+        let Measured { front, now, facing } = slices::advance(work.as_mut(), budget)?;
         self.measuring = None;
         if front.is_some() {
             (self.front, self.front_figures) = (None, front);

@@ -1,8 +1,8 @@
 //! What a user should know about a run, in words.
 
 use super::Kept;
-use crate::pieces::{piece, ranges};
 use crate::sampler::{COUNT_TOLERANCE, Counts, FateCounts};
+use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 
 /// Sheets are said to be close if at least this share of the particles face one, and at least this many.
@@ -66,12 +66,12 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> 
 pub(super) async fn facing_another_sheet(particles: &Kept) -> usize {
     /// Normals at more than 120° face each other: across a sharp edge they are nearer.
     const FACING: f32 = -0.5;
-    /// Particles looked at in one piece of work.
-    const PIECE: usize = 64;
-    let tree = Tree::in_pieces(particles.position.iter().copied().zip(0..).collect()).await;
+    /// Particles looked at in one slice of work.
+    const SLICE: usize = 64;
+    let tree = Tree::in_slices(particles.position.iter().copied().zip(0..).collect()).await;
     let mut near = Vec::new();
     let mut count = 0;
-    for range in ranges(tree.len(), PIECE) {
+    for range in ranges(tree.len(), SLICE) {
         // In tree order: near particles look at the same memory.
         for k in range {
             let i = tree.origin[k] as usize;
@@ -85,7 +85,7 @@ pub(super) async fn facing_another_sheet(particles: &Kept) -> usize {
             });
             count += usize::from(is_facing);
         }
-        piece().await;
+        pause().await;
     }
     count
 }

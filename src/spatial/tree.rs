@@ -2,14 +2,14 @@
 //! points are distributed nor on distant outliers.
 
 use crate::math::sort_few;
-use crate::pieces::{self, piece};
+use crate::slices::{self, pause};
 use glam::Vec3;
 
 /// Largest number of points in a leaf; a leaf holds at least half as many, so the candidates of a whole leaf can be
 /// gathered once. 16 was the fastest of 8, 16 and 32 for the Voronoi cells of 50,000 points.
 const LEAF: usize = 16;
 /// Points whose nodes are made in one slice of work.
-const PIECE: usize = 1024;
+const SLICE: usize = 1024;
 /// Depth of the traversal stack: a balanced tree over 2³² points has fewer than 33 levels.
 const STACK: usize = 64;
 
@@ -60,14 +60,14 @@ impl Tree {
         Self::of(points.iter().copied().zip(0..).collect())
     }
 
-    /// [`Tree::in_pieces`], at once.
+    /// [`Tree::in_slices`], at once.
     pub(crate) fn of(items: Vec<(Vec3, u32)>) -> Self {
-        pieces::complete(Self::in_pieces(items))
+        slices::complete(Self::in_slices(items))
     }
 
     /// Makes the tree over points with their indices in slices of work, the largest of which visits all points once.
     /// The points must be finite. The result depends only on them and their indices.
-    pub(crate) async fn in_pieces(mut items: Vec<(Vec3, u32)>) -> Self {
+    pub(crate) async fn in_slices(mut items: Vec<(Vec3, u32)>) -> Self {
         let mut nodes = Vec::with_capacity(items.len() / 4 + 1);
         // Ranges that are still to become nodes, each with the node whose second child it is.
         let mut open = vec![(0..items.len(), None)];
@@ -88,9 +88,9 @@ impl Tree {
                 // The median search leaves an unspecified order; sorting by index makes it our own.
                 sort_few(&mut items[range], |a, b| a.1 < b.1);
             }
-            if seen >= PIECE {
+            if seen >= SLICE {
                 seen = 0;
-                piece().await;
+                pause().await;
             }
         }
         let (position, origin) = items.into_iter().unzip();

@@ -113,7 +113,7 @@ impl Core {
         self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }
 
-    /// Measures the particles, up to `budget` pieces of the work: `Report` once it is complete, nothing before.
+    /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
     pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
         self.session.measure(budget).map(|report| to_js(&report))
     }

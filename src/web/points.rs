@@ -35,7 +35,7 @@ impl Points {
         self.begin(Job::file(name, bytes, if centres == 0 { DEFAULT_CENTRES } else { centres }))
     }
 
-    /// Does up to `budget` pieces of work: an `Answer` with `Progress`.
+    /// Does up to `budget` slices of work: an `Answer` with `Progress`.
     pub fn step(&mut self, budget: u32) -> JsValue {
         let job = self.job.as_mut().ok_or_else(|| nothing("no model and no file was begun"));
         answer(job.and_then(|job| job.step(budget).map_err(|error| Fault::from(&error))))

@@ -16,7 +16,7 @@ use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::HtmlCanvasElement;
 
 /// Particles copied at a time, so that a million need no second copy of themselves in this memory.
-const PIECE: u32 = 1 << 16;
+const SLICE: u32 = 1 << 16;
 /// Milliseconds between two looks at whether a picture has arrived, where nobody calls (WebGL2).
 const POLL_MS: i32 = 4;
 
@@ -144,8 +144,8 @@ impl Renderer {
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
         let Scratch { positions: p, normals: n, radii: r, levels: l, colours: c } = &mut *scratch;
-        for from in (0..count).step_by(PIECE as usize) {
-            let to = count.min(from + PIECE);
+        for from in (0..count).step_by(SLICE as usize) {
+            let to = count.min(from + SLICE);
             copy(&positions.subarray(3 * from, 3 * to), p);
             copy(&normals.subarray(3 * from, 3 * to), n);
             copy(&radii.subarray(from, to), r);
@@ -166,8 +166,8 @@ impl Renderer {
         check_end(first, count)?;
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
-        for from in (0..count).step_by(PIECE as usize) {
-            let to = count.min(from + PIECE);
+        for from in (0..count).step_by(SLICE as usize) {
+            let to = count.min(from + SLICE);
             copy_words(&colours.subarray(from, to), &mut scratch.colours);
             inner.write_colours(first + from, &scratch.colours);
         }

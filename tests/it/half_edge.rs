@@ -137,10 +137,10 @@ proptest! {
                 prop_assert_eq!(fine.valence(v), if fine.is_border(v) { 4 } else { 6 });
             }
         }
-        // In small pieces it is the same.
-        let mut pieces = Subdivision::new(&mesh);
-        while pieces.step(&mesh, budget) == 0 {}
-        let (other, other_ends) = pieces.finish();
+        // In small slices it is the same.
+        let mut sliced = Subdivision::new(&mesh);
+        while sliced.step(&mesh, budget) == 0 {}
+        let (other, other_ends) = sliced.finish();
         prop_assert_eq!(format!("{other:?}"), format!("{fine:?}"));
         prop_assert_eq!(other_ends, ends);
     }

@@ -4,8 +4,8 @@ use super::layer::Layer;
 use crate::mesh::half_edge::NONE;
 use crate::particles::Particles;
 
-/// Particles handed on in one piece of work.
-const PIECE: usize = 256;
+/// Particles handed on in one slice of work.
+const SLICE: usize = 256;
 
 /// A breadth-first walk over the surface that fills the columns.
 ///
@@ -41,10 +41,10 @@ impl Rings {
         }
     }
 
-    /// Goes on for a piece. Returns whether all is done; `particles` then has the particles of the layer, with this radius.
+    /// Goes on for a slice. Returns whether all is done; `particles` then has the particles of the layer, with this radius.
     pub(super) fn step(&mut self, layer: &Layer, radius: f32, particles: &mut Particles) -> bool {
         if !self.is_walked {
-            self.is_walked = !(0..PIECE).all(|_| self.walk(layer));
+            self.is_walked = !(0..SLICE).all(|_| self.walk(layer));
             if self.is_walked {
                 particles.clear();
                 particles.reserve(self.order.len());
@@ -52,7 +52,7 @@ impl Rings {
             return false;
         }
         let start = particles.len();
-        let end = self.order.len().min(start + PIECE);
+        let end = self.order.len().min(start + SLICE);
         for k in start..end {
             let v = self.order[k] as usize;
             particles.push(

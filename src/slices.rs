@@ -1,6 +1,6 @@
 //! Long computations in slices of bounded length.
 //!
-//! A computation is an `async` function that awaits [`piece`] wherever it may be interrupted, so the compiler makes its
+//! A computation is an `async` function that awaits [`pause`] wherever it may be interrupted, so the compiler makes its
 //! state machine. It never waits for anything, so it needs no waker. The owner does as many slices as there is time
 //! for, and cancels the computation by dropping it. The result does not depend on how slices were grouped.
 
@@ -13,7 +13,7 @@ use core::task::{Context, Poll, Waker};
 pub(crate) type Work<T> = Pin<Box<dyn Future<Output = T> + Send>>;
 
 /// Ends a slice of work. A slice should take 10 to 50 µs natively.
-pub(crate) fn piece() -> impl Future<Output = ()> + Send {
+pub(crate) fn pause() -> impl Future<Output = ()> + Send {
     let mut is_over = false;
     poll_fn(move |_| if core::mem::replace(&mut is_over, true) { Poll::Ready(()) } else { Poll::Pending })
 }
@@ -48,10 +48,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_budget_is_a_number_of_pieces() {
+    fn a_budget_is_a_number_of_slices() {
         let mut work: Work<u32> = Box::pin(async {
             for _ in 0..5 {
-                piece().await;
+                pause().await;
             }
             7
         });
@@ -59,6 +59,6 @@ mod tests {
         assert_eq!(advance(work.as_mut(), 2), None);
         assert_eq!(advance(work.as_mut(), 3), None);
         assert_eq!(advance(work.as_mut(), 1), Some(7));
-        assert_eq!(complete(async { piece().await }), ());
+        assert_eq!(complete(async { pause().await }), ());
     }
 }
