@@ -1,7 +1,6 @@
 //! What a list of triangles adds up to, found from the list alone.
 
-/// No vertex.
-const NONE: u32 = u32::MAX;
+use core::ops::Range;
 
 /// A connected part of a mesh: vertices that edges join.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,9 +68,20 @@ impl Corners {
         Self { start, ends }
     }
 
-    fn of(&self, v: usize) -> &[[u32; 2]] {
-        &self.ends[self.start[v] as usize..self.start[v + 1] as usize]
+    fn range(&self, v: usize) -> Range<usize> {
+        self.start[v] as usize..self.start[v + 1] as usize
     }
+}
+
+/// What the corners of a vertex add up to.
+#[derive(Clone, Copy, Default)]
+struct Star {
+    /// Number of neighbours.
+    degree: u32,
+    /// Number of border edges that leave the vertex.
+    border: u32,
+    /// The end of such an edge, if the vertex has one open fan and nothing else.
+    border_to: Option<u32>,
 }
 
 impl Topology {
@@ -83,16 +93,15 @@ impl Topology {
     /// If a triangle names a vertex that is not below `vertex_count`.
     #[must_use]
     pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
-        let corners = Corners::new(triangles, vertex_count);
+        let mut corners = Corners::new(triangles, vertex_count);
         let mut topology = Self::default();
-        // The border edge that leaves each vertex.
-        let mut border_to = vec![NONE; vertex_count];
-        let mut border_vertices = Vec::new();
+        let mut stars = Vec::with_capacity(vertex_count);
         for v in 0..vertex_count {
-            topology.add_vertex(v as u32, corners.of(v), &mut border_to, &mut border_vertices);
+            let range = corners.range(v);
+            stars.push(topology.add_vertex(v as u32, &mut corners.ends[range]));
         }
-        topology.trace_borders(&mut border_to, &border_vertices);
-        topology.count_components(&corners, vertex_count);
+        topology.count_components(&corners, &stars);
+        topology.trace_borders(&mut stars);
         topology
     }
 
@@ -114,51 +123,44 @@ impl Topology {
         self.components.iter().map(Component::euler).sum()
     }
 
-    /// Looks at the star of a vertex: its crowded edges, its fans and its border edge.
-    fn add_vertex(
-        &mut self,
-        v: u32,
-        corners: &[[u32; 2]],
-        border_to: &mut [u32],
-        border_vertices: &mut Vec<u32>,
-    ) {
+    /// Looks at the corners of a vertex: its crowded edges, its fans and its border edges.
+    fn add_vertex(&mut self, v: u32, corners: &mut [[u32; 2]]) -> Star {
         let mut is_simple = true;
-        for (k, &[next, _]) in corners.iter().enumerate() {
-            if corners[..k].iter().any(|other| other[0] == next) {
+        for (k, &[next, previous]) in corners.iter().enumerate() {
+            if corners[..k].iter().any(|earlier| earlier[0] == next) {
                 self.crowded_edges.push([v, next]);
                 is_simple = false;
             }
-            if corners[..k].iter().any(|other| other[1] == corners[k][1]) {
-                is_simple = false;
-            }
+            is_simple &= corners[..k].iter().all(|earlier| earlier[1] != previous);
         }
-        if corners.is_empty() || !is_simple {
-            return;
+        if corners.is_empty() {
+            return Star::default();
         }
-        // An open fan starts at the corner whose next vertex is no corner's previous one.
-        let first = corners.iter().find(|corner| corners.iter().all(|other| other[1] != corner[0]));
-        let start = first.unwrap_or(&corners[0]);
-        let mut last = start;
-        let mut seen = 1;
-        while let Some(corner) = corners.iter().find(|corner| corner[0] == last[1] && *corner != start) {
-            last = corner;
-            seen += 1;
+        let count = corners.len() as u32;
+        if is_simple && is_one_fan(corners) {
+            let (first, last) = (corners[0][0], corners[corners.len() - 1][1]);
+            return if first == last {
+                Star { degree: count, border: 0, border_to: None }
+            } else {
+                Star { degree: count + 1, border: 1, border_to: Some(first) }
+            };
         }
-        if seen < corners.len() {
+        if is_simple {
             self.pinched_vertices.push(v);
-        } else if let Some(first) = first {
-            border_to[v as usize] = first[0];
-            border_vertices.push(v);
         }
+        let ends = corners.as_flattened();
+        let degree = (0..ends.len()).filter(|&k| !ends[..k].contains(&ends[k])).count() as u32;
+        let leaves = |corner: &&[u32; 2]| corners.iter().all(|other| other[1] != corner[0]);
+        Star { degree, border: corners.iter().filter(leaves).count() as u32, border_to: None }
     }
 
-    fn trace_borders(&mut self, border_to: &mut [u32], border_vertices: &[u32]) {
-        for &start in border_vertices {
+    fn trace_borders(&mut self, stars: &mut [Star]) {
+        for start in 0..stars.len() {
             let mut border = Vec::new();
-            let mut v = start;
-            while border_to[v as usize] != NONE {
+            let mut v = start as u32;
+            while let Some(next) = stars[v as usize].border_to.take() {
                 border.push(v);
-                v = core::mem::replace(&mut border_to[v as usize], NONE);
+                v = next;
             }
             if !border.is_empty() {
                 self.borders.push(border);
@@ -166,37 +168,56 @@ impl Topology {
         }
     }
 
-    fn count_components(&mut self, corners: &Corners, vertex_count: usize) {
-        let mut seen = vec![false; vertex_count];
+    fn count_components(&mut self, corners: &Corners, stars: &[Star]) {
+        let mut seen = vec![false; stars.len()];
         let mut open = Vec::new();
-        for first in 0..vertex_count {
-            if seen[first] || corners.of(first).is_empty() {
+        for first in 0..stars.len() {
+            if seen[first] || corners.range(first).is_empty() {
                 continue;
             }
             let mut component = Component::default();
-            let mut corner_count = 0;
+            let (mut corner_count, mut edge_ends) = (0, 0_u64);
             seen[first] = true;
             open.push(first as u32);
             while let Some(v) = open.pop() {
-                let star = corners.of(v as usize);
+                let star = &stars[v as usize];
+                let corners = &corners.ends[corners.range(v as usize)];
                 component.vertices += 1;
-                corner_count += star.len();
-                let ends = star.as_flattened();
-                for (k, &w) in ends.iter().enumerate() {
-                    if !core::mem::replace(&mut seen[w as usize], true) {
-                        open.push(w);
-                    }
-                    // An edge is counted once, at its smaller end.
-                    if v < w && !ends[..k].contains(&w) {
-                        component.edges += 1;
-                        component.border_edges += u32::from(!ends[k + 1..].contains(&w));
+                component.border_edges += star.border;
+                corner_count += corners.len();
+                edge_ends += u64::from(star.degree);
+                for &[next, previous] in corners {
+                    for w in [next, previous] {
+                        if !core::mem::replace(&mut seen[w as usize], true) {
+                            open.push(w);
+                        }
                     }
                 }
             }
             component.triangles = (corner_count / 3) as u32;
+            component.edges = (edge_ends / 2) as u32;
             self.components.push(component);
         }
     }
+}
+
+/// Whether the corners, no two of which have the same vertex before or after them, form one fan; if so, they are put in
+/// its order, counter-clockwise.
+fn is_one_fan(corners: &mut [[u32; 2]]) -> bool {
+    let mut count = 1;
+    while count < corners.len() {
+        let (first, last) = (corners[0][0], corners[count - 1][1]);
+        if let Some(k) = (count..corners.len()).find(|&k| corners[k][0] == last) {
+            corners.swap(count, k);
+        } else if let Some(k) = (count..corners.len()).find(|&k| corners[k][1] == first) {
+            corners.swap(count, k);
+            corners[..=count].rotate_right(1);
+        } else {
+            return false;
+        }
+        count += 1;
+    }
+    true
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::math::{LANES, tangent_frame};
 use crate::spatial::LANES_OF;
 use crate::spatial::tree::{Tree, unkey};
-use glam::{BVec4A, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 
 /// Most points of a ball.
 pub(super) const MOST: usize = 64;
@@ -45,6 +45,14 @@ impl Surroundings {
     }
 }
 
+/// A number for each point of a ball.
+type Row = [f32; MOST];
+
+/// Four numbers of a row.
+fn four(row: &Row, block: usize) -> Vec4 {
+    Vec4::from_array(row.as_chunks().0[block])
+}
+
 /// Points round a centre, four by four. Those that are not on its sheet lie at the centre, infinitely far away.
 pub(super) struct Ball {
     /// Number of points.
@@ -52,17 +60,17 @@ pub(super) struct Ball {
     /// The points, by their place in the tree.
     index: [u32; MOST],
     /// Offset from the centre and normal.
-    point: [[[f32; WIDTH]; BLOCKS]; 6],
+    point: [Row; 6],
     /// Place in the tangent plane, and the true distance, squared.
-    flat: [[[f32; WIDTH]; BLOCKS]; 2],
-    distance_sq: [[f32; WIDTH]; BLOCKS],
+    flat: [Row; 2],
+    distance_sq: Row,
     /// Squared distance of the nearest point, whatever its sheet.
     nearest_sq: f32,
 }
 
 impl Default for Ball {
     fn default() -> Self {
-        let zero = [[0.0; WIDTH]; BLOCKS];
+        let zero = [0.0; MOST];
         Self {
             count: 0,
             index: [0; MOST],
@@ -146,7 +154,7 @@ impl Ball {
         let k = self.count % MOST;
         self.index[k] = index;
         for (row, value) in self.point.iter_mut().zip(point) {
-            row[k / WIDTH][k % WIDTH] = value;
+            row[k] = value;
         }
         self.count = k + 1;
     }
@@ -160,30 +168,29 @@ impl Ball {
     pub(super) fn unroll(&mut self, normal: Vec3, twin_sq: f32) {
         let (u, v) = tangent_frame(normal);
         let dot = |x: Vec4, y: Vec4, z: Vec4, a: Vec3| x * a.x + y * a.y + z * a.z;
-        for k in self.count..self.blocks() * WIDTH {
-            // Far away, and on no sheet.
-            for (row, value) in self.point.iter_mut().zip([f32::MAX, 0.0, 0.0, 0.0, 0.0, 0.0]) {
-                row[k / WIDTH][k % WIDTH] = value;
-            }
+        let padding = self.count..self.blocks() * WIDTH;
+        // Far away, and on no sheet.
+        for (row, value) in self.point.iter_mut().zip([f32::MAX, 0.0, 0.0, 0.0, 0.0, 0.0]) {
+            row[padding.clone()].fill(value);
         }
         let mut nearest_sq = Vec4::INFINITY;
         for block in 0..self.blocks() {
             let [x, y, z, a, b, c] = &self.point;
-            let [x, y, z, a, b, c] = [x, y, z, a, b, c].map(|row| Vec4::from_array(row[block]));
+            let [x, y, z, a, b, c] = [x, y, z, a, b, c].map(|row| four(row, block));
             let (along_u, along_v, rise) = (dot(x, y, z, u), dot(x, y, z, v), dot(x, y, z, normal));
             let lift = rise + (x * a + y * b + z * c);
             let flat_sq = along_u * along_u + along_v * along_v;
             let distance_sq = flat_sq + rise * rise;
             nearest_sq = nearest_sq.min(distance_sq);
             let stretch = Vec4::from_array((distance_sq / flat_sq).to_array().map(f32::sqrt));
-            let is_near: BVec4A = dot(a, b, c, normal).cmpgt(Vec4::ZERO)
+            let is_near = dot(a, b, c, normal).cmpgt(Vec4::ZERO)
                 & flat_sq.cmpge(distance_sq * MIN_FLAT)
                 & (lift * lift).cmple(distance_sq * (MAX_LIFT * MAX_LIFT))
                 & distance_sq.cmpgt(Vec4::splat(twin_sq));
             let kept = |value: Vec4, other: Vec4| Vec4::select(is_near, value, other).to_array();
-            self.flat[0][block] = kept(along_u * stretch, Vec4::ZERO);
-            self.flat[1][block] = kept(along_v * stretch, Vec4::ZERO);
-            self.distance_sq[block] = kept(distance_sq, Vec4::INFINITY);
+            self.flat[0].as_chunks_mut().0[block] = kept(along_u * stretch, Vec4::ZERO);
+            self.flat[1].as_chunks_mut().0[block] = kept(along_v * stretch, Vec4::ZERO);
+            self.distance_sq.as_chunks_mut().0[block] = kept(distance_sq, Vec4::INFINITY);
         }
         self.nearest_sq = nearest_sq.min_element();
     }
@@ -195,12 +202,12 @@ impl Ball {
 
     /// Squared distance of a point from the centre.
     pub(super) fn distance_sq(&self, k: usize) -> f32 {
-        self.distance_sq[k / WIDTH][k % WIDTH]
+        self.distance_sq[k]
     }
 
     /// The nearest point of the sheet.
     pub(super) fn nearest(&self) -> Option<usize> {
-        least(&self.distance_sq[..self.blocks()]).map(|(_, k)| k)
+        self.least(|block| four(&self.distance_sq, block)).map(|(_, k)| k)
     }
 
     /// The point after `from` in the hull of the inverted points: to its left where `side` is 1, to its right where it is −1; and
@@ -208,24 +215,40 @@ impl Ball {
     /// turn.
     pub(super) fn next(&self, from: usize, side: f32) -> (Option<usize>, f32) {
         let [u, v] = self.flat(from);
-        let mut cotangents = [[0.0; WIDTH]; BLOCKS];
-        let cotangents = &mut cotangents[..self.blocks()];
-        let rows = self.flat[0].iter().zip(&self.flat[1]).zip(&self.distance_sq);
-        for (cotangent, ((&x, &y), &distance_sq)) in cotangents.iter_mut().zip(rows) {
-            let [x, y, distance_sq] = [x, y, distance_sq].map(Vec4::from_array);
+        let found = self.least(|block| {
+            let [x, y] = [&self.flat[0], &self.flat[1]].map(|row| four(row, block));
             let cross = y * (side * u) - x * (side * v);
-            // Of the angle at the point over the chord from the centre to `from`: the circle's centre is half that many chords
-            // away from the chord.
-            let value = (distance_sq - (x * u + y * v)) / cross;
-            *cotangent = Vec4::select(cross.cmpgt(Vec4::ZERO), value, Vec4::INFINITY).to_array();
-        }
-        let found = least(cotangents);
+            // The cotangent of the angle at the point over the chord from the centre to `from`: the circle's centre is half
+            // that many chords away from the chord.
+            let cotangent = (four(&self.distance_sq, block) - (x * u + y * v)) / cross;
+            Vec4::select(cross.cmpgt(Vec4::ZERO), cotangent, Vec4::INFINITY)
+        });
         let cotangent = found.map_or(f32::INFINITY, |(cotangent, _)| cotangent);
         (found.map(|(_, k)| k), self.distance_sq(from) * (1.0 + cotangent * cotangent))
     }
 
+    /// The least of the numbers that the points have, and the first point that has it; none if none is finite.
+    #[inline]
+    fn least(&self, numbers: impl Fn(usize) -> Vec4) -> Option<(f32, usize)> {
+        let mut values = [Vec4::INFINITY; BLOCKS];
+        let mut least = Vec4::INFINITY;
+        for (block, value) in values[..self.blocks()].iter_mut().enumerate() {
+            *value = numbers(block);
+            least = least.min(*value);
+        }
+        let least = least.min_element();
+        for (block, value) in values[..self.blocks()].iter().enumerate() {
+            let lanes = value.cmpeq(Vec4::splat(least)).bitmask();
+            if lanes != 0 {
+                let first = WIDTH * block + lanes.trailing_zeros() as usize;
+                return (least < f32::INFINITY).then_some((least, first));
+            }
+        }
+        None
+    }
+
     fn flat(&self, k: usize) -> [f32; 2] {
-        [self.flat[0][k / WIDTH][k % WIDTH], self.flat[1][k / WIDTH][k % WIDTH]]
+        [self.flat[0][k], self.flat[1][k]]
     }
 
     /// Whether the direction of `k` lies strictly between those of `a` and `b`, which are less than half a turn apart,
@@ -242,20 +265,6 @@ impl Ball {
             return false;
         }
         let [x, y, z, ..] = &self.point;
-        (0..self.count).any(|k| {
-            let (block, lane) = (k / WIDTH, k % WIDTH);
-            let offset = Vec3::new(x[block][lane], y[block][lane], z[block][lane]);
-            self.index[k] < i && offset.length_squared() <= twin_sq
-        })
+        (0..self.count).any(|k| self.index[k] < i && Vec3::new(x[k], y[k], z[k]).length_squared() <= twin_sq)
     }
-}
-
-/// The least number and its place, the first one if there are several; none if none is finite.
-fn least(values: &[[f32; WIDTH]]) -> Option<(f32, usize)> {
-    let values = || values.iter().map(|&four| Vec4::from_array(four));
-    let least = values().fold(Vec4::INFINITY, Vec4::min).min_element();
-    let is_least = |four: Vec4| four.cmpeq(Vec4::splat(least)).bitmask();
-    let first = values().position(|four| is_least(four) != 0).filter(|_| least < f32::INFINITY)?;
-    let lane = is_least(values().nth(first)?).trailing_zeros() as usize;
-    Some((least, WIDTH * first + lane))
 }
