@@ -32,6 +32,20 @@ describe('a fit', () => {
     expect(scene.fitBall(columns, false)).toEqual(scene.boxBall(false));
   });
 
+  test('is as small as the particles of a tiny box', () => {
+    const columns = new Columns();
+    columns.write({
+      first: 0,
+      total: 2,
+      positions: Float32Array.of(-1e-10, 0, 0, 1e-10, 0, 0),
+      normals: new Float32Array(6),
+      radii: Float32Array.of(1e-11, 1e-11),
+      levels: new Uint32Array(2),
+      parents: new Uint32Array(2),
+    });
+    expect(new Scene().fitBall(columns, false).radius).toBeCloseTo(1.1e-10, 14);
+  });
+
   test('is within planes that enclose the box on the page and the one asked for', () => {
     const scene = new Scene();
     scene.bounds = cube(1);

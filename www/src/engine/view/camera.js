@@ -73,7 +73,7 @@ export function viewOf(camera, widthPx, heightPx, scene, insets = { left: 0, rig
   const depth = dot(forward, [scene.centre[0] - eye[0], scene.centre[1] - eye[1], scene.centre[2] - eye[2]]);
   // The near plane is at least a thousandth of the far plane. Below that, a 24-bit depth buffer cannot separate
   // neighbouring discs.
-  const far = Math.max(depth + scene.radius * 1.05, distance * 0.02, 1e-6);
+  const far = Math.max(depth + scene.radius * 1.05, distance * 0.02, 1e-30);
   const near = Math.max(depth - scene.radius * 1.05, far * 1e-3);
   const a = far / (near - far);
   const b = (far * near) / (near - far);

@@ -62,7 +62,8 @@ export class Scene {
  * @param {Vec3} centre
  */
 function ballAround({ positions, radii, count }, centre) {
-  let radius = 1e-6;
+  // Above 0 without particles, and below the particles of the smallest box.
+  let radius = 1e-30;
   for (let i = 0; i < count; i += 1) {
     const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - centre[k]);
     radius = Math.max(radius, Math.hypot(x, y, z) + radii[i]);
