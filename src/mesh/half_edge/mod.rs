@@ -68,14 +68,14 @@ enum Change {
 }
 
 /// The half-edge that follows `h` in its face.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn next(h: u32) -> u32 {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
 /// The half-edge before `h` in its face.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn previous(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
@@ -115,28 +115,28 @@ impl HalfEdges {
     }
 
     /// The vertex at which `h` begins.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn origin(&self, h: u32) -> u32 {
         self.origin[h as usize]
     }
 
     /// The vertex at which `h` ends.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn target(&self, h: u32) -> u32 {
         self.origin[next(h) as usize]
     }
 
     /// The half-edge on the other side; [`NONE`] at the border.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn twin(&self, h: u32) -> u32 {
         self.twin[h as usize]
     }
 
     /// A half-edge that leaves `v`, the first of the fan at a border vertex; [`NONE`] for a vertex without faces.
-    #[inline(always)]
+    #[inline]
     #[must_use]
     pub fn outgoing(&self, v: u32) -> u32 {
         self.outgoing[v as usize]
@@ -302,7 +302,7 @@ pub struct Around<'a> {
 impl Iterator for Around<'_> {
     type Item = u32;
 
-    #[inline(always)]
+    #[inline]
     fn next(&mut self) -> Option<u32> {
         let here = self.at;
         if here == NONE {

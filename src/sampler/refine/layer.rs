@@ -95,7 +95,7 @@ impl Layer {
     ///
     /// A particle sees the new places of those before it, as in the method of Gauss and Seidel. That these are not yet
     /// back on the surface changes a distance in second order only.
-    #[inline(always)]
+    #[inline]
     pub(super) fn relax(
         &mut self,
         ground: &mut Ground,
@@ -155,7 +155,7 @@ impl Layer {
     }
 
     /// Moves each particle by the tangential part of `step`, one after the other, and brings all back onto the surface.
-    #[inline(always)]
+    #[inline]
     fn shift(
         &mut self,
         ground: &mut Ground,
@@ -231,7 +231,7 @@ impl Layer {
 
     /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its
     /// quadrilateral is Delaunay's, and the flip is allowed.
-    #[inline(always)]
+    #[inline]
     pub(super) fn wants_flip(&self, h: u32) -> bool {
         let t = self.mesh.twin(h);
         if t == NONE {
