@@ -73,7 +73,7 @@ impl Corners {
     }
 }
 
-/// What the corners of a vertex add up to.
+/// The neighbours and border edges of a vertex, counted over the triangle corners at it.
 #[derive(Clone, Copy, Default)]
 struct Star {
     /// Number of neighbours.

@@ -1,4 +1,4 @@
-//! What the caller knows beside the points.
+//! Options of a measurement: the wanted radii, the exact area and Euler number where they are known, and the sampling of holes.
 
 /// The wanted radius of each particle, for [`Figures::size_cv`](super::Figures::size_cv),
 /// [`cover_local`](super::Figures::cover_local) and [`overlap_min`](super::Figures::overlap_min).

@@ -25,7 +25,7 @@ pub enum FaultKind {
     Formula(FormulaErrorKind),
 }
 
-/// What is wrong with a command.
+/// The error with which a command is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Fault {

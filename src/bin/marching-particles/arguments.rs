@@ -132,8 +132,8 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "N", default_value_t = baseline().max_iterations, help_heading = "Other method")]
     pub(crate) iterations: u32,
 
-    /// Mean way of its particles in an iteration, in radii, below which they count as at rest; once no particle has divided or
-    /// died either for 20 iterations, it has settled
+    /// Mean distance, in radii, that its particles travel in an iteration, below which they count as at rest. The method has
+    /// settled once no particle has divided or died for 20 iterations either
     #[arg(long, value_name = "RADII", default_value_t = baseline().rest, help_heading = "Other method")]
     pub(crate) rest: f64,
 

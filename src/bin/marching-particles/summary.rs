@@ -139,7 +139,7 @@ fn mesh_line(mesh: &Mesh) -> String {
     format!("{triangles}, {components}, Euler number {}, {borders}", mesh.euler)
 }
 
-/// What a mesh lacks, as sentences.
+/// Returns a sentence for each kind of defect of a mesh.
 fn mesh_warnings(mesh: &Mesh) -> Vec<String> {
     let mut warnings = Vec::new();
     if mesh.holes > 0 {

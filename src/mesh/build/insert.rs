@@ -7,7 +7,7 @@ use crate::spatial::tree::{Tree, unkey};
 
 /// How many of the nearest points are looked at for the triangle below a point.
 const NEAR: usize = 32;
-/// How far outside a triangle a point may lie, as a share of the triangle's height there.
+/// Largest distance of a point outside a triangle that still counts as inside, as a share of the triangle's height.
 const OUTSIDE: f64 = 0.25;
 /// Least cosine of the angle between the normals of a point and of the triangle below it.
 const FACING: f64 = 0.2;

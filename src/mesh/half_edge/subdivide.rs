@@ -2,7 +2,7 @@
 
 use super::{HalfEdges, NONE, next};
 
-/// What a subdivision does next.
+/// The stages of a subdivision, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Number the vertices of the finer surface.

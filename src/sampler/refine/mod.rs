@@ -49,7 +49,7 @@ const TRIAL_UNITS: u32 = 64;
 /// Half-edges looked at for a unit.
 const HALF_EDGES_PER_UNIT: u32 = 12;
 
-/// What a refinement aims at.
+/// The number of levels, the radius and the count that a refinement is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     /// Levels to come after the coarse one, k.

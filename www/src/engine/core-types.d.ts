@@ -109,7 +109,7 @@ export type FateCounts = {
   capped: number,
 };
 
-/** What is wrong with a command. */
+/** The error with which a command is refused. */
 export type Fault = {
   /** What it is about. */
   kind: FaultKind,

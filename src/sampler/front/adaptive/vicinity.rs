@@ -1,4 +1,4 @@
-//! What is known of the circle around a parent: the particles near it, and who takes which angle of it.
+//! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
 
 use super::{LISTED, RING, TOUCHING, is_same_sheet_by_size};
 use crate::math::functions::atan2;
