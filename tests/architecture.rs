@@ -65,7 +65,7 @@ const ROOMS: [Room; 4] = [
             ("setting", &[]),
             ("settings", &["setting"]),
             ("fates", &[]),
-            ("phase", &[]),
+            ("phase", &["refine"]),
             ("projection", &[]),
             ("neighbours", &["projection"]),
             ("discovery", &["projection"]),

@@ -45,7 +45,6 @@ use front::Front;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use projection::Projector;
-use refine::Refinement;
 use relaxation::Relaxation;
 use run::Input;
 use sizing::Sizing;
@@ -65,8 +64,6 @@ pub struct Sampler {
     projector: Projector,
     seeds: Seeds,
     front: Front,
-    /// Of a coarse front, while it goes on.
-    refinement: Option<Box<Refinement>>,
     relaxation: Relaxation,
     neighbours: PackedNeighbours,
     particles: Particles,
@@ -96,7 +93,6 @@ impl Sampler {
             projector: Projector::new(),
             seeds: Seeds::default(),
             front: Front::new(),
-            refinement: None,
             relaxation: Relaxation::new(),
             neighbours: PackedNeighbours::default(),
             particles: Particles::default(),
@@ -227,7 +223,6 @@ impl Sampler {
             Sizing::new(field, bounds, settings, &self.survey, &mut self.counts.seeding_evaluations)
         });
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
-        self.refinement = None;
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.factor);
             let max_curvature = refine::max_curvature(field, &self.survey.position);

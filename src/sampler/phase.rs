@@ -1,5 +1,6 @@
 //! The phases of a run: their public names, and the state that each of them carries.
 
+use super::refine::Refinement;
 use serde::Serialize;
 
 /// What the sampler is doing.
@@ -12,8 +13,10 @@ pub enum Phase {
     Idle,
     /// Looking for a first point on every component that the survey has met.
     Seeding,
-    /// Placing particles, level by level, and refining them.
+    /// Placing particles, level by level.
     Generation,
+    /// Refining a coarse front.
+    Refinement,
     /// Looking for components that the survey has missed.
     Search,
     /// Relaxing the particles.
@@ -62,7 +65,7 @@ pub enum StopReason {
 /// | any before `Marking` | the caller cancels the run | `Marking` |
 ///
 /// `Sampler::next` makes every transition.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum PhaseState {
     /// There is no run.
     Idle,
@@ -76,7 +79,7 @@ pub(super) enum PhaseState {
     /// Fills the gaps that the fronts have left.
     Filling,
     /// Brings a coarse front into order and refines it.
-    Refinement,
+    Refinement(Box<Refinement>),
     /// Moves the particles to more even distances.
     Relaxation,
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
@@ -87,11 +90,12 @@ pub(super) enum PhaseState {
 
 impl PhaseState {
     /// The name that the phase has outside.
-    pub(super) fn name(self) -> Phase {
+    pub(super) fn name(&self) -> Phase {
         match self {
             Self::Idle => Phase::Idle,
             Self::Seeding(_) => Phase::Seeding,
-            Self::Generation(_) | Self::Filling | Self::Refinement => Phase::Generation,
+            Self::Generation(_) | Self::Filling => Phase::Generation,
+            Self::Refinement(_) => Phase::Refinement,
             Self::Search => Phase::Search,
             Self::Relaxation => Phase::Relaxation,
             Self::Marking(_) | Self::Done(_) => Phase::Done,
@@ -99,9 +103,9 @@ impl PhaseState {
     }
 
     /// Why the run has ended, if it has.
-    pub(super) fn stop_reason(self) -> Option<StopReason> {
+    pub(super) fn stop_reason(&self) -> Option<StopReason> {
         match self {
-            Self::Marking(reason) | Self::Done(reason) => Some(reason),
+            Self::Marking(reason) | Self::Done(reason) => Some(*reason),
             _ => None,
         }
     }

@@ -103,16 +103,14 @@ impl Sampler {
     fn fraction(&self, particles: usize) -> f64 {
         let relax_steps = f64::from(self.settings.relax_steps);
         let generation = 1.0 / (1.0 + RELAXATION_STEP_COST * relax_steps);
-        if let Some(refinement) = &self.refinement {
-            return refinement.fraction();
-        }
-        match self.phase.name() {
-            Phase::Idle => 0.0,
-            Phase::Relaxation => {
+        match &self.phase {
+            PhaseState::Idle => 0.0,
+            PhaseState::Refinement(refinement) => refinement.fraction(),
+            PhaseState::Relaxation => {
                 let relaxed = f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
-            Phase::Done => 1.0,
+            PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run.

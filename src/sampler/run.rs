@@ -37,7 +37,7 @@ pub(super) enum Input<'a> {
 impl Sampler {
     /// Makes the transition that the input asks for: the only place where the phase changes.
     pub(super) fn next(&mut self, input: Input) {
-        let phase = self.phase;
+        let phase = core::mem::replace(&mut self.phase, PhaseState::Idle);
         self.phase = match input {
             Input::Start => self.begin_attempt(),
             Input::Refuse => PhaseState::Idle,
@@ -61,10 +61,7 @@ impl Sampler {
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 // The columns hold the last level that was finished.
-                PhaseState::Refinement => {
-                    self.refinement = None;
-                    PhaseState::Marking(StopReason::Cancelled)
-                }
+                PhaseState::Refinement(_) => PhaseState::Marking(StopReason::Cancelled),
             },
             Input::Work { field, left } => match phase {
                 PhaseState::Idle | PhaseState::Done(_) => phase,
@@ -72,7 +69,7 @@ impl Sampler {
                 PhaseState::Generation(after) => self.grow(field, left, after),
                 PhaseState::Search => self.search_components(field, left),
                 PhaseState::Filling => self.fill(field, left),
-                PhaseState::Refinement => self.refine(field, left),
+                PhaseState::Refinement(refinement) => self.refine(field, left, refinement),
                 PhaseState::Relaxation => self.relax_particles(field, left),
                 PhaseState::Marking(reason) => self.mark(field, reason),
             },
@@ -274,8 +271,7 @@ impl Sampler {
                 self.front.release();
                 // They are those of the front.
                 self.neighbours.clear();
-                self.refinement = Some(Box::new(refinement));
-                PhaseState::Refinement
+                PhaseState::Refinement(Box::new(refinement))
             }
             Err(refusal) => self.refuse(refusal),
         }
@@ -283,7 +279,6 @@ impl Sampler {
 
     /// Tries a front of half the radius, or goes back to one of the wanted radius.
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
-        self.refinement = None;
         self.attempt.levels = match self.attempt.levels {
             Some(levels) if levels > 1 && refusal.is_coarse() => Some(levels - 1),
             _ => None,
@@ -295,12 +290,15 @@ impl Sampler {
         self.begin_attempt()
     }
 
-    fn refine(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
-        let Some(refinement) = &mut self.refinement else { return PhaseState::Marking(StopReason::Complete) };
+    fn refine(
+        &mut self,
+        field: &mut dyn Field,
+        left: &mut u32,
+        mut refinement: Box<Refinement>,
+    ) -> PhaseState {
         let before = refinement.evaluations();
         let step = refinement.step(field, &mut self.particles, *left);
         let evaluations = refinement.evaluations() - before;
-        let is_done = refinement.is_done();
         self.projector.evaluations += evaluations;
         self.counts.generation_evaluations += evaluations;
         match step {
@@ -308,11 +306,10 @@ impl Sampler {
             Ok((units, has_changed)) => {
                 *left = left.saturating_sub(units);
                 self.moved |= has_changed;
-                if !is_done {
-                    return PhaseState::Refinement;
+                if !refinement.is_done() {
+                    return PhaseState::Refinement(refinement);
                 }
                 self.counts.refined_levels = self.attempt.levels.take();
-                self.refinement = None;
                 PhaseState::Marking(StopReason::Complete)
             }
         }

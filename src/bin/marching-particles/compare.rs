@@ -231,7 +231,7 @@ fn write(out: &mut impl Write, comparison: &Comparison, method: &str) -> io::Res
     };
     line(out, "", ["after front", "relaxed", method, "ideal"])?;
     let s = &ours.seconds;
-    let front = s.seeding + s.generation;
+    let front = s.seeding + s.generation + s.refinement;
     let ours_total = front + s.relaxation;
     let step =
         |seconds: f64| if ours.steps > 0 { time(seconds / f64::from(ours.steps)) } else { "–".into() };

@@ -15,6 +15,7 @@ pub(crate) struct Seconds {
     pub(crate) points: f64,
     pub(crate) seeding: f64,
     pub(crate) generation: f64,
+    pub(crate) refinement: f64,
     pub(crate) relaxation: f64,
     pub(crate) quality: f64,
     /// Time to join the particles to triangles.

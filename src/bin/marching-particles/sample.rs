@@ -231,6 +231,7 @@ pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &Progres
         match phase {
             Phase::Relaxation => seconds.relaxation += spent,
             Phase::Generation => seconds.generation += spent,
+            Phase::Refinement => seconds.refinement += spent,
             _ => seconds.seeding += spent,
         }
         if progress.stop_reason.is_some() || progress.phase == Phase::Done {
@@ -243,6 +244,7 @@ pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &Progres
                 Phase::Relaxation => {
                     format!("relaxation {}/{}", progress.relax_step, progress.relax_steps)
                 }
+                Phase::Refinement => format!("refining {} particles", progress.particles),
                 _ => format!("level {}, {} particles", progress.level, progress.particles),
             });
         }

@@ -34,14 +34,11 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     if outcome.model.is_some() {
         write!(out, "points {}, ", time(s.points))?;
     }
-    write!(
-        out,
-        "seeding {}, generation {}, relaxation {}, quality {}",
-        time(s.seeding),
-        time(s.generation),
-        time(s.relaxation),
-        time(s.quality)
-    )?;
+    write!(out, "seeding {}, generation {}", time(s.seeding), time(s.generation))?;
+    if s.refinement > 0.0 {
+        write!(out, ", refinement {}", time(s.refinement))?;
+    }
+    write!(out, ", relaxation {}, quality {}", time(s.relaxation), time(s.quality))?;
     if let Some(mesh) = &outcome.mesh {
         write!(out, ", mesh {}\nmesh of {}", time(s.mesh), mesh_line(mesh))?;
     }

@@ -206,12 +206,12 @@ export type Figures = {
   /** Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
   * points away from the border that a kept triangle fills. */
   tri_ok: number,
-  /** Fraction of the triangles found (away from the border) that all three corners agree on. */
+  /** Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners. */
   agree: number,
-  /** Euler number of the kept triangles, quarrels settled (see [`super::triangles`]). */
+  /** Euler number of the triangles kept where stars disagree (see [`super::triangles`]). */
   euler: number,
-  /** Number of components of the surface by the natural neighbours: those of the same triangles, and points far from all
-  * of them. */
+  /** Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
+  * all of them. */
   components: number,
   /** Smallest angle of any triangle, in degrees. */
   ang_min: number,
@@ -229,12 +229,12 @@ export type Figures = {
   edge_cv: number,
   /** Standard deviation over mean of edge length over the sum of the wanted radii. */
   size_cv: number,
-  /** Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii
-  * there (the mean of those of the points around the hole), all scaled by one factor so that the cells have the
-  * area. 1 is ideal, and where all radii are equal this is `cover`. */
+  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the wanted
+  * radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area. 1
+  * is ideal. With equal radii this is `cover`. */
   cover_local: number,
-  /** Smallest distance of natural neighbours over the sum of their wanted radii, in which a duplicate has 0. 1 where
-  * particles just touch. */
+  /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
+  * duplicates. */
   overlap_min: number,
   /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
   dup: number,
@@ -370,7 +370,7 @@ export type Parameter = {
 };
 
 /** What the sampler is doing. */
-export type Phase = "idle" | "seeding" | "generation" | "search" | "relaxation" | "done";
+export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
 
 /** Error of a job, as the page shows it. */
 export type PointsFault = {

@@ -62,7 +62,7 @@
  * quality figures are being computed.
  * @typedef {Omit<CoreProgress, 'phase'> & {phase: CorePhase | 'quality', run: number, live: boolean}} Progress
  */
-/** @typedef {{seeding: number, generation: number, relaxation: number, quality: number}} Seconds */
+/** @typedef {{seeding: number, generation: number, refinement: number, relaxation: number, quality: number}} Seconds */
 /** A report with what the worker measured. @typedef {CoreReport & {seconds: Seconds}} Report */
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
@@ -150,7 +150,7 @@
  * @property {string[]} colours
  * @property {boolean} [pending]
  */
-/** @typedef {{total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing */
+/** @typedef {{sampling: number, total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing */
 /**
  * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
  * picture.

@@ -120,12 +120,6 @@ export function formatSeconds(seconds) {
   return `${write(seconds, { minimumFractionDigits: 2, maximumFractionDigits: 2 })}${THIN_NO_BREAK}s`;
 }
 
-/**
- * Returns the sampling time of a run, without its measurement.
- * @param {import('../engine/types.js').Seconds} seconds
- */
-export const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + generation + relaxation;
-
 /** Returns the number of decimals of a step such as 0.05 or 1e-4. @param {number} step */
 export function decimalsOf(step) {
   if (!(step > 0) || !Number.isFinite(step)) return 6;

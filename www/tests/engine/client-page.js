@@ -14,7 +14,7 @@ export let told = [];
 /** @type {number[]} */
 export let asked = [];
 
-export const seconds = { seeding: 0.001, generation: 0.002, relaxation: 0.003, quality: 0 };
+export const seconds = { seeding: 0.001, generation: 0.002, refinement: 0, relaxation: 0.003, quality: 0 };
 export const progress = (/** @type {number} */ particles, /** @type {any} */ more = {}) => ({
   phase: 'generation',
   particles,

@@ -70,6 +70,7 @@ describe('coarse to fine', () => {
   const seconds = (/** @type {number} */ n) => ({
     seeding: 0.004,
     generation: n * 1.2e-6,
+    refinement: 0,
     relaxation: n * 10 * 0.3e-6,
     quality: 0,
   });
@@ -132,7 +133,7 @@ describe('coarse to fine', () => {
   test('even a very slow machine keeps the shape visible', () => {
     const cost = new CostModel();
     cost.record({
-      seconds: { seeding: 0.5, generation: 10, relaxation: 30, quality: 0 },
+      seconds: { seeding: 0.5, generation: 10, refinement: 0, relaxation: 30, quality: 0 },
       particles: 50_000,
       relax_steps: 10,
       size: radius,
@@ -154,6 +155,7 @@ describe('coarse to fine', () => {
     const slow = (/** @type {number} */ n) => ({
       seeding: 0.004,
       generation: n * 6e-6,
+      refinement: 0,
       relaxation: n * 10 * 1e-6,
       quality: 0,
     });

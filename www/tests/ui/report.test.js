@@ -153,8 +153,9 @@ describe('the caption', () => {
   });
   const facts = { partial: false, empty: false, busy: true, seconds: null };
 
-  it('names the level and the count while the front grows', () => {
+  it('names the phase and the count while a run is under way', () => {
     expect(captionOf(progress, facts)).toBe('Level 12 · 1,463 particles');
+    expect(captionOf({ ...progress, phase: 'refinement' }, facts)).toBe('Refining · 1,463 particles');
     expect(captionOf({ ...progress, phase: 'relaxation' }, facts)).toBe('Relaxation 4 of 10 · 1,463 particles');
   });
 

@@ -59,8 +59,7 @@ const FIRST_SLICES = 32;
 const PICTURE_MS = 15;
 /** Returns the entry of the times to which a phase of the core counts. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
-  if (phase === 'relaxation') return 'relaxation';
-  return phase === 'generation' ? 'generation' : 'seeding';
+  return phase === 'generation' || phase === 'refinement' || phase === 'relaxation' ? phase : 'seeding';
 }
 
 /** Returns empty columns. */
@@ -128,7 +127,7 @@ class JobRun {
     this.job = job;
     this.env = env;
     /** @type {Seconds} */
-    this.seconds = { seeding: 0, generation: 0, relaxation: 0, quality: 0 };
+    this.seconds = { seeding: 0, generation: 0, refinement: 0, relaxation: 0, quality: 0 };
     /** @type {CoreProgress | null} */
     this.progress = null;
     this.predicted = 0;

@@ -83,7 +83,8 @@ export class Pace {
 }
 
 /** Returns the sampling time, without the measurement of the figures. @param {Seconds} seconds */
-const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + generation + relaxation;
+const samplingSeconds = ({ seeding, generation, refinement, relaxation }) =>
+  seeding + generation + refinement + relaxation;
 
 /**
  * Returns the timing before the report has arrived.
@@ -93,8 +94,9 @@ const samplingSeconds = ({ seeding, generation, relaxation }) => seeding + gener
  * @returns {Timing}
  */
 export function timingOf(seconds, particles, live) {
-  const total = samplingSeconds(seconds);
-  return { total, seconds, us_per_particle: particles > 0 ? (total * 1e6) / particles : 0, particles, live };
+  const sampling = samplingSeconds(seconds);
+  const usPerParticle = particles > 0 ? (sampling * 1e6) / particles : 0;
+  return { sampling, total: sampling, seconds, us_per_particle: usPerParticle, particles, live };
 }
 
 /**
@@ -103,9 +105,16 @@ export function timingOf(seconds, particles, live) {
  * @returns {Timing}
  */
 export function timingOfReport({ seconds, count }) {
-  const total = samplingSeconds(seconds) + seconds.quality;
-  const usPerParticle = ((total - seconds.quality) * 1e6) / Math.max(1, count);
-  return { total, seconds, us_per_particle: usPerParticle, particles: count, live: false };
+  const sampling = samplingSeconds(seconds);
+  const usPerParticle = (sampling * 1e6) / Math.max(1, count);
+  return {
+    sampling,
+    total: sampling + seconds.quality,
+    seconds,
+    us_per_particle: usPerParticle,
+    particles: count,
+    live: false,
+  };
 }
 
 /**

@@ -134,7 +134,7 @@ export class CostModel {
     const share = this.known ? 0.5 : 1;
     const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
     this.fixedMs = blend(this.fixedMs, seconds.seeding * 1e3);
-    this.frontUs = blend(this.frontUs, (seconds.generation * 1e6) / particles);
+    this.frontUs = blend(this.frontUs, ((seconds.generation + seconds.refinement) * 1e6) / particles);
     if (relax_steps > 0) this.relaxUs = blend(this.relaxUs, (seconds.relaxation * 1e6) / (particles * relax_steps));
     this.known = true;
   }

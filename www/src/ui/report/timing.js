@@ -1,11 +1,12 @@
 /** Shows the times of the sampling, of each of its phases as figures and bars, and of the measurement. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { formatSeconds, formatSignificant, samplingSeconds } from '../format.js';
+import { formatSeconds, formatSignificant } from '../format.js';
 
 const PHASES = /** @type {const} */ ([
   ['seeding', 'Seeding'],
   ['generation', 'Generation'],
+  ['refinement', 'Refinement'],
   ['relaxation', 'Relaxation'],
 ]);
 
@@ -19,9 +20,9 @@ export function createTiming(engine, report) {
     const timing = engine.timing.value;
     section.hidden = timing === null || timing.particles === 0 || report.value === null;
     if (!timing || section.hidden) return;
-    const { seconds, particles } = timing;
-    const sampling = samplingSeconds(seconds);
-    const longest = Math.max(...PHASES.map(([key]) => seconds[key]), 1e-9);
+    const { sampling, seconds, particles } = timing;
+    const phases = PHASES.filter(([key]) => key !== 'refinement' || seconds[key] > 0);
+    const longest = Math.max(...phases.map(([key]) => seconds[key]), 1e-9);
     fill(
       section,
       h(
@@ -41,7 +42,7 @@ export function createTiming(engine, report) {
         h(
           'tbody',
           null,
-          PHASES.map(([key, label]) => {
+          phases.map(([key, label]) => {
             const bar = h('span', { class: 'bar', 'aria-hidden': 'true' });
             bar.style.width = `${(seconds[key] / longest) * 100}%`;
             return h(

@@ -18,6 +18,8 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
       return 'Looking for the surface';
     case 'generation':
       return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
+    case 'refinement':
+      return busy ? `Refining · ${particles}` : resting();
     case 'search':
       return busy ? `Looking for further components · ${particles}` : resting();
     case 'relaxation':

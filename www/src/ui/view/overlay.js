@@ -1,7 +1,6 @@
 /** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
-import { samplingSeconds } from '../format.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
@@ -33,7 +32,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
             partial: engine.partial.value,
             empty: engine.empty.value,
             busy: engine.busy.value,
-            seconds: engine.timing.value && samplingSeconds(engine.timing.value.seconds),
+            seconds: engine.timing.value?.sampling ?? null,
           }),
   );
   // The field panel announces the loading.
