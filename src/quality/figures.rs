@@ -46,12 +46,12 @@ pub struct Figures {
     /// Kept triangles over 2N − 2χ: 1 for a closed manifold. On a clipped surface, the share of the sectors around
     /// points away from the border that a kept triangle fills.
     pub tri_ok: f64,
-    /// Fraction of the triangles found (away from the border) that all three corners agree on.
+    /// Fraction of the triangles (away from the border) that belong to the natural-neighbour stars of all three corners.
     pub agree: f64,
-    /// Euler number of the kept triangles, quarrels settled (see [`super::triangles`]).
+    /// Euler number of the triangles kept where stars disagree (see [`super::triangles`]).
     pub euler: i64,
-    /// Number of components of the surface by the natural neighbours: those of the same triangles, and points far from all
-    /// of them.
+    /// Number of components of the surface, by natural neighbours: components of the kept triangles, and groups of points far from
+    /// all of them.
     pub components: usize,
     /// Smallest angle of any triangle, in degrees.
     pub ang_min: f64,
@@ -69,12 +69,12 @@ pub struct Figures {
     pub edge_cv: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
     pub size_cv: f64,
-    /// Largest hole relative to the ideal one where it is: over the holes of a hexagonal lattice of the wanted radii
-    /// there (the mean of those of the points around the hole), all scaled by one factor so that the cells have the
-    /// area. 1 is ideal, and where all radii are equal this is `cover`.
+    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the wanted
+    /// radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area. 1
+    /// is ideal. With equal radii this is `cover`.
     pub cover_local: f64,
-    /// Smallest distance of natural neighbours over the sum of their wanted radii, in which a duplicate has 0. 1 where
-    /// particles just touch.
+    /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
+    /// duplicates.
     pub overlap_min: f64,
     /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
     pub dup: usize,

@@ -1,4 +1,4 @@
-//! What can be asked for.
+//! The command line's arguments, as clap reads and explains them.
 
 use crate::options::Sampling;
 use clap::{Args, Parser, Subcommand};
@@ -78,9 +78,9 @@ machine, with one thread each, one after the other.";
 const COMPARE_AFTER: &str = "\
 What the lines say:
   Steps            relaxation steps, or iterations of the other method: forces, motion, fission and death
-  Evaluations      places at which the field was asked for its value and gradient, the survey's included
+  Evaluations      evaluations of the field and its gradient, those of the survey included
   Figures          as of `sample`; lengths are in units of a perfect lattice of as many particles, so that counts may differ
-  Ended            settled: nothing divides, dies or moves; iterations: it still does, and --iterations are over
+  Ended            settled: nothing divides, dies or moves; iterations: they still do, and --iterations are used up
 
 Times are of one run each on a machine that may have other work: compare them by their ratio, and repeat the command.
 
@@ -153,7 +153,7 @@ pub(crate) struct Surface {
     #[arg(long, value_name = "ID", help_heading = "Surface")]
     pub(crate) surface: Option<String>,
 
-    /// Formula of the surface; with --surface, in the place of its own
+    /// Formula of the surface; with --surface, it replaces the formula of that surface
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true, help_heading = "Surface")]
     pub(crate) formula: Option<String>,
 
@@ -187,7 +187,7 @@ pub(crate) struct Surfaces {
     pub(crate) json: bool,
 }
 
-/// A length, as it is given.
+/// A length on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Length {
     /// Share of the box diagonal.

@@ -1,15 +1,15 @@
-//! Where in a cell the highest point of a component of the surface can be.
+//! Narrows the part of a cell in which the highest point of a component of the surface can lie.
 //!
 //! At such a point p the function f and its derivatives along the sides vanish: as many equations as there are free axes. By
 //! Taylor's theorem from p to the middle m of the cell, with d = m − p,
 //!
 //! f(m) = ∂f/∂up(p) · d_up + ½ dᵀ H d  and  ∂f/∂side(m) = (H d)_side,
 //!
-//! H being second derivatives somewhere between: the sides do not occur in the first equation but in H. Bounds of H over the
-//! cell make both linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel), those of the sides
-//! multiplied by the inverse of their middle first, as Krawczyk's and Hansen's forms of the interval Newton method do
-//! (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where nothing is left the cell holds no such point;
-//! near one the range shrinks with the square of the width.
+//! where H holds second derivatives at points between. The sides occur in the first equation only through H. Bounds of H over
+//! the cell make both equations linear with intervals for coefficients. They are solved for d axis by axis (Gauss–Seidel). Those of the sides
+//! are first multiplied by the inverse of their midpoint matrix, as Krawczyk's and Hansen's forms of the interval Newton method do
+//! (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell holds no such
+//! point; near one, the range shrinks with the square of the cell's width.
 
 use crate::field::Enclosure;
 use glam::DVec3;
@@ -18,7 +18,7 @@ type Range = [f64; 2];
 
 /// Rounds of narrowing.
 const ROUNDS: u32 = 2;
-/// What the operations of one step may have been rounded by, as a share of what goes into it.
+/// Bound of the rounding error of one step, relative to its operands.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 fn add(a: Range, b: Range) -> Range {
@@ -43,12 +43,12 @@ fn size([lo, hi]: Range) -> f64 {
     hi.abs().max(lo.abs())
 }
 
-/// `range` cut to where `slope` · d = `right` has a solution d; none if that is nowhere.
+/// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
 fn solved(range: Range, slope: Range, right: Range) -> Option<Range> {
     let slack = ROUNDING * (size(right) + size(slope) * size(range));
     let right = [right[0] - slack, right[1] + slack];
     let cut = if slope[0] > 0.0 || slope[1] < 0.0 {
-        // The quotient is rounded by far less than the slack.
+        // The rounding error of the quotient is far below the slack.
         let quotient = product(right, [1.0 / slope[1], 1.0 / slope[0]]);
         [range[0].max(quotient[0]), range[1].min(quotient[1])]
     } else {
@@ -58,13 +58,12 @@ fn solved(range: Range, slope: Range, right: Range) -> Option<Range> {
         }
         range
     };
-    // True for NaN, of which nothing is known.
+    // NaN compares as false, so an unknown range is kept.
     if cut[0] > cut[1] { None } else { Some(cut) }
 }
 
-/// The part of the box from `lo` to `hi` in which there can be a point where f and its derivatives along the free `sides` vanish;
-/// none if there can be none. What is `known` of f holds in the box, as do the bounds of the `second` derivatives; `middle` is what
-/// is known in its middle.
+/// The part of the box from `lo` to `hi` in which f and its derivatives along the free `sides` can vanish together; none if they
+/// cannot. `known` and `second` are bounds of f and of its second derivatives over the box; `middle` are those of f at its middle.
 pub(crate) fn narrowed(
     [lo, hi]: [DVec3; 2],
     (sides, up): ([Option<usize>; 2], usize),
@@ -81,7 +80,7 @@ pub(crate) fn narrowed(
     let h = |i: usize, j: usize| second[ENTRY[i][j]];
     let half = 0.5 * (hi - lo);
     let m = 0.5 * (lo + hi);
-    // Of a pinned axis it is 0.
+    // It is 0 along a pinned axis, whose side has no length.
     let mut d: [Range; 3] = core::array::from_fn(|axis| [-half[axis], half[axis]]);
     for _ in 0..ROUNDS {
         let mut quadratic = [0.0; 2];
@@ -106,7 +105,7 @@ pub(crate) fn narrowed(
                     if !row.iter().all(|entry| entry.is_finite()) {
                         continue;
                     }
-                    // The two may nearly cancel.
+                    // The two terms may nearly cancel, so the slack follows their sizes.
                     let combined = |v: [Range; 2]| {
                         let slack = ROUNDING * (row[0].abs() * size(v[0]) + row[1].abs() * size(v[1]));
                         add(add(scaled(v[0], row[0]), scaled(v[1], row[1])), [-slack, slack])
@@ -116,7 +115,7 @@ pub(crate) fn narrowed(
                     let rest = negated(product(coefficients[1 - k], d[other]));
                     d[axis] = solved(d[axis], coefficients[k], add(combined(rights), rest))?;
                 }
-                // As they are: the inverse is of no use where they are nearly dependent.
+                // Also without the inverse, which is of no use where the equations are nearly dependent.
                 for (axis, other) in [(i, j), (j, i)] {
                     let rest = negated(product(h(axis, other), d[other]));
                     d[axis] = solved(d[axis], h(axis, axis), add(right(axis, &d), rest))?;
@@ -131,7 +130,7 @@ pub(crate) fn narrowed(
     let room = ROUNDING * (lo.abs() + hi.abs());
     let from = m - DVec3::from_array(d.map(|range| range[1])) - room;
     let to = m - DVec3::from_array(d.map(|range| range[0])) + room;
-    // A free axis stays one.
+    // A range without width would pin a free axis, so the old one is kept there.
     let is_wide = from.max(lo).cmplt(to.min(hi));
     Some([DVec3::select(is_wide, from.max(lo), lo), DVec3::select(is_wide, to.min(hi), hi)])
 }

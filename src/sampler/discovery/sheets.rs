@@ -1,8 +1,9 @@
-//! Whether two points of the surface lie on one sheet of it, or on two that only come near each other.
+//! Decides whether two points of the surface lie on one sheet or on two sheets that come near each other.
 //!
-//! Between two sheets with like normals there is always one with the opposite normal. On one sheet the chord rises from
-//! one end's tangent plane as much as it sinks below the other's, up to the change of the curvature: the *lift*, half the sum
-//! of the two, is of third order in the distance. Between sheets at a distance g it is about g.
+//! The test is the *lift*: the mean height of each point above the tangent plane at the other, along the normals. On one sheet
+//! the two heights have opposite signs and cancel but for the change of the curvature, so the lift is of third order in the
+//! distance. Between two sheets at a distance g the lift is about g. Two sheets that face the same way always have a third one
+//! between them that faces the other way.
 
 use crate::field::{Enclosure, Field};
 use crate::particles::Particles;
@@ -10,18 +11,17 @@ use crate::sampler::projection::Projector;
 use crate::spatial::Neighbour;
 use glam::{DVec3, Vec3};
 
-/// Half the sum of what the chord rises from the tangent plane at its beginning and at its end.
+/// The lift of two points at this offset from each other, with these unit normals.
 pub(crate) fn lift(offset: Vec3, normal: Vec3, other: Vec3) -> f32 {
     (0.5 * offset.dot(normal + other)).abs()
 }
 
-/// Lift, in spacings, above which two particles a spacing apart are looked at more closely: they are on two sheets that far from
-/// each other, or where the curvature changes by 12 times as much over a spacing, in units of its inverse.
+/// Lift, in spacings, above which two particles a spacing apart may lie on two sheets. On one sheet such a lift needs a change
+/// of the curvature, over one spacing, by 0.24 of an inverse spacing.
 pub(crate) const MAX_LIFT: f32 = 0.02;
 
-/// Whether a particle at `offset` with the normal `other` may belong to another sheet than a point with the unit normal
-/// `normal`, although both normals point the same way: the lift is more than the change of the curvature over that distance
-/// would make it.
+/// Whether a particle at `offset` with the unit normal `other` may lie on another sheet than a point with the unit normal
+/// `normal` that faces the same way: the lift is larger than [`MAX_LIFT`] allows at that distance.
 pub(crate) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
     let lift = lift(offset, normal, other);
     // The lift grows with the third power of the distance.
@@ -29,8 +29,8 @@ pub(crate) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32)
     lift * lift > (MAX_LIFT * spacing) * (MAX_LIFT * spacing) * (share * share * share).max(1.0)
 }
 
-/// Whether one of the particles `near` a point, all with normals like that of the point, belongs to its sheet; `spacing`
-/// is the usual distance between particles at each.
+/// Whether one of the particles `near` a point lies on the point's sheet. All of them face the same way as the point;
+/// `spacing` is the usual distance between particles at each.
 pub(crate) fn is_near_own(
     field: &mut dyn Field,
     projector: &mut Projector,
@@ -47,11 +47,11 @@ pub(crate) fn is_near_own(
 }
 
 /// Whether a point of the surface with the unit normal `normal` and another one at `offset` from it, with the unit normal
-/// `other`, seem to be on one sheet, by the field at one place between them.
+/// `other`, seem to lie on one sheet. One evaluation of the field between them decides.
 ///
-/// The cubic curve that leaves and arrives in the two tangent planes misses one sheet by the fourth order of the distance in
-/// its middle: the surface is far nearer there than half the lift, and faces the same way. Between two sheets that middle is
-/// half the lift away from both, and beyond the sheet between them.
+/// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of
+/// this middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
+/// two sheets the middle is half the lift away from both.
 pub(crate) fn is_one_sheet(
     field: &mut dyn Field,
     projector: &mut Projector,
@@ -59,9 +59,9 @@ pub(crate) fn is_one_sheet(
     offset: Vec3,
     other: Vec3,
 ) -> bool {
-    /// Least share of the length that the lift is taken for.
+    /// Smallest lift, as a share of the distance, that rounding leaves meaningful.
     const ROUNDING: f32 = 0.01;
-    /// Share of the lift within which the surface has to be.
+    /// Share of the lift within which the surface has to be of the middle.
     const NEAR: f32 = 0.25;
     let length = offset.length();
     let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
@@ -71,19 +71,19 @@ pub(crate) fn is_one_sheet(
     gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
 }
 
-/// Pairs of points that are looked at together: with both ends a chunk of boxes.
+/// Pairs of points that are tested in one call: a pair needs three boxes, and a chunk of the field holds 32.
 pub(crate) const TOGETHER: usize = 10;
 
 /// A point of the surface, and the unit normal there.
 pub(crate) type Oriented = (DVec3, DVec3);
 
-/// For each of at most [`TOGETHER`] pairs of points of the surface, the first with its normal, whether the bounds of the gradient
-/// prove that the surface connects them; `slack` is how far they may be from it.
+/// For each of at most [`TOGETHER`] pairs of points of the surface, the first with its normal: whether bounds of the gradient
+/// prove that the surface connects them. The points may be up to `slack` away from the surface. With corners `within`, the
+/// connection has to stay between them.
 ///
-/// The proof is that of the [octree](super::octree) on a box around both: f is monotone along the axis of the normal, and the
-/// surface through the one cannot leave the box over the rectangle between the two, so that it is the graph of a function
-/// there, which meets the line through the other in one point. It need not stay between the two corners of a box, unless there
-/// are corners `within` which it has to.
+/// The proof is that of the [octree](super::octree), on a box around both points. f is monotone along the axis nearest the
+/// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function over
+/// the rectangle between the two, and meets the line through the second point exactly once.
 pub(crate) fn are_connected(
     field: &mut dyn Field,
     part: usize,
@@ -110,9 +110,10 @@ pub(crate) fn are_connected(
     })
 }
 
-/// Whether the way between two points of the surface, cut into segments, is [connected](are_connected): for points too far from
-/// each other, as the surface bends, for one box. A segment that is not is cut in two, again and again, at
-/// a point in the box from `lo` to `hi`; one outside is brought at least `margin` inside and back to the surface by turns.
+/// Whether two points of the surface are connected by a chain of segments, each of which [is proven](are_connected). Points
+/// between which the surface bends too much for one box need more than one segment: a segment without a proof is halved, at a point
+/// of the surface in the box from `lo` to `hi`. A midpoint outside that box is moved `margin` inside and back to the surface, by
+/// turns.
 pub(crate) fn is_connected_by_segments(
     field: &mut dyn Field,
     part: usize,
@@ -121,9 +122,9 @@ pub(crate) fn is_connected_by_segments(
     slack: f64,
     ([lo, hi], margin): ([DVec3; 2], f64),
 ) -> bool {
-    /// Most turns that bring a point back into the box.
+    /// Largest number of turns.
     const MOST_TURNS: u32 = 8;
-    /// Largest number of rounds, and of segments that wait.
+    /// Largest number of rounds, and of segments without a proof.
     const MOST_ROUNDS: u32 = 8;
     const MOST_WAITING: usize = 3 * TOGETHER;
     let is_inside = |p: DVec3| p.cmpge(lo).all() && p.cmple(hi).all();
@@ -146,7 +147,7 @@ pub(crate) fn is_connected_by_segments(
                 let Some(next) = land(field, middle.0.clamp(lo + margin, hi - margin)) else { return false };
                 middle = next;
             }
-            // Elsewhere than between the two.
+            // A midpoint far from that of the chord does not lie between the two.
             let offset = middle.0 - (start.0 + 0.5 * chord);
             if count + 2 > MOST_WAITING
                 || offset.length_squared() > 0.25 * chord.length_squared()
@@ -165,7 +166,7 @@ pub(crate) fn is_connected_by_segments(
     false
 }
 
-/// The surface near `p` by Newton's method along the gradient, and the unit normal there.
+/// The point of the surface that Newton's method along the gradient finds from `p`, and the unit normal there.
 fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
     const STEPS: u32 = 8;
     for _ in 0..STEPS {
@@ -182,7 +183,7 @@ fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
     None
 }
 
-/// The box of one segment, its upward axis and how far it reaches beyond the ends along that.
+/// The box of one segment, the axis nearest its normal, and how far the box reaches beyond the ends along that axis.
 fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
     let size = normal.abs();
     let up = if size.x >= size.y && size.x >= size.z {
@@ -201,7 +202,8 @@ fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usiz
     ([lo, hi], up, room)
 }
 
-/// Whether the surface through any point of a box, `room` away from its lower and upper face, is a graph over all of it.
+/// Whether the surface through any point of a box is a graph over the whole box, if the point is at least `room` away from the
+/// lower and the upper face.
 fn proves_graph(known: &Enclosure, [lo, hi]: [DVec3; 2], up: usize, room: f64) -> bool {
     let [least, most] = known.gradient[up];
     if !(known.defined && known.continuous) || least <= 0.0 && most >= 0.0 {

@@ -18,42 +18,44 @@ use crate::particles::{Particles, Slots};
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
 
-/// Sizes of a box around a singular point that are tried: the largest is this share of the longest side of the whole box, each
-/// of the others half of the one before it.
+/// Largest size of a box around a singular point, as a share of the longest side of the whole box. Every further size is
+/// half the one before.
 const LARGEST: f64 = 0.25;
+/// Number of sizes tried.
 const SIZES: usize = 10;
-/// Number of larger sizes that are tried in sub-boxes beyond the one that is proven as a whole, and number of sub-boxes.
+/// Number of sizes, above the largest one that is proven as a whole, that are tried in sub-boxes.
 const MOST_LARGER: usize = 2;
+/// Number of sub-boxes.
 const SUB_BOXES: usize = 27;
-/// How far the sides of such a box are from the point, in units of its size: not equally, because where they are, symmetric
-/// surfaces have more of their highest points in one place than can be told apart.
+/// Distances of the sides of such a box from the point, in units of its size. They differ, because in a symmetric box a symmetric
+/// surface has several of its highest points in one place, where they cannot be told apart.
 const BELOW: DVec3 = DVec3::new(0.967, 0.983, 0.941);
 const ABOVE: DVec3 = DVec3::new(0.953, 0.929, 0.991);
 
-/// Most Newton steps to a singular point: at a cusp each only halves the distance.
+/// Largest number of Newton steps to a singular point. At a cusp each step only halves the distance.
 const MOST_STEPS: u32 = 24;
-/// Most that f may be at a singular point, in what its second derivatives make of it over the distance to the point: far above
-/// what rounding leaves of a zero.
+/// Largest |f| that counts as zero at a singular point, in units of |H| d², where H is the Hessian and d the search distance. It is
+/// far above rounding.
 const LARGEST_VALUE: f64 = 1e-8;
-/// The same where it is as good as one for the search: the neck of a cone point that has just opened.
+/// The same for the narrow neck that a cone point leaves when it opens, which the search treats as a singular point.
 const LARGEST_NECK: f64 = 1e-3;
-/// Where the second derivatives along a direction are smaller than this share of the largest, a singular point is looked for
-/// across that direction only.
+/// A direction along which the second derivatives are smaller than this share of the largest is taken for that of a singular
+/// curve: the Newton step does not run along it.
 const SMALL: f64 = 1e-6;
 
 /// A point where the gradient of f vanishes and f is 0, or nearly so.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Singular {
     pub(crate) position: DVec3,
-    /// How far around it was looked.
+    /// Distance within which it was searched for.
     pub(crate) reach: f64,
     /// Whether f is 0 there but for rounding.
     pub(crate) is_zero: bool,
-    /// Whether it is alone: the second derivatives tell that the gradient vanishes nowhere else near it.
+    /// Whether it is isolated: the Hessian is regular, so the gradient vanishes nowhere else near it.
     pub(crate) is_alone: bool,
 }
 
-/// Such a point near `start`, not farther than `reach`, found by Newton's method on the gradient.
+/// Finds a singular point within `reach` of `start`, by Newton's method on the gradient.
 pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) -> Option<Singular> {
     let mut p = start;
     // False for NaN.
@@ -86,8 +88,8 @@ pub(crate) fn singular_point(field: &mut dyn Field, start: DVec3, reach: f64) ->
     })
 }
 
-/// Number of places that the points are of: one for each that is alone, and one for all others that are linked by steps no longer
-/// than they looked around.
+/// Number of singular points and curves: one for each isolated point, and one for each group of the others that are linked by
+/// steps within their search distances.
 pub(crate) fn places(points: &[Singular]) -> u64 {
     let alone = points.iter().filter(|point| point.is_alone).count();
     let mut rest: Vec<Singular> = points.iter().filter(|point| !point.is_alone).copied().collect();
@@ -108,12 +110,12 @@ pub(crate) fn places(points: &[Singular]) -> u64 {
     (alone + groups) as u64
 }
 
-/// Marks the particles within 2r of a singular point. Of a curve the `points` are a selection: near it each particle looks for
-/// itself.
+/// Marks the particles within 2r of a singular point. The `points` of a curve are only some of it, so every particle near a curve
+/// searches for the point nearest to itself.
 pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut Particles) {
     let places: Vec<Vec3> = points.iter().map(|point| point.position.as_vec3()).collect();
     let tree = Tree::new(&places);
-    // The distance between those of a curve that were found last, all along it: the first ones looked much farther.
+    // The smallest search distance is the distance between the points that were found last, which are all along the curve.
     let on_curves = points.iter().filter(|point| !point.is_alone).map(|point| point.reach);
     let widest = on_curves.reduce(f64::min).unwrap_or(0.0);
     let mut near = Vec::new();
@@ -132,7 +134,7 @@ pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut P
     }
 }
 
-/// One copy of the product, which is long.
+/// Matrix product, in a function of its own because its code is long.
 fn times(a: &DMat3, b: &DMat3) -> DMat3 {
     *a * *b
 }
@@ -145,8 +147,8 @@ fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
 
-/// The largest of a number of boxes around the singular point `at` of one part of the field in which that part has no local
-/// extremum, in the box from `lo` to `hi` and away from those `taken`.
+/// The largest of [`SIZES`] boxes around the singular point `at` in which one part of the field has no local extremum. It lies in
+/// the box from `lo` to `hi` and meets none of the boxes `taken`.
 pub(crate) fn isolating_box(
     field: &mut dyn Field,
     part: usize,
@@ -166,7 +168,7 @@ pub(crate) fn isolating_box(
     let mut is_so = [false; SUB_BOXES];
     has_no_extremum(field, part, &boxes, &mut is_so);
     let as_one = is_so[..SIZES].iter().position(|&is_so| is_so)?;
-    // Larger ones may be proven in sub-boxes: the bounds of each are tighter.
+    // Larger boxes may be proven in sub-boxes, whose bounds are tighter.
     let in_sub_boxes = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
         fits(&boxes[k]) && {
             has_no_extremum(field, part, &sub_boxes(boxes[k]), &mut is_so);
@@ -230,9 +232,9 @@ fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> 
     }
 }
 
-/// Bounds of the second derivative along a direction, from those of the six.
+/// Bounds of the second derivative along a direction, from bounds of the six second derivatives.
 fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
-    /// What the few operations here may have been rounded by.
+    /// Bound of the relative rounding error of the operations here.
     const ROUNDING: f64 = 32.0 * f64::EPSILON;
     let factors = [d.x * d.x, 2.0 * d.x * d.y, 2.0 * d.x * d.z, d.y * d.y, 2.0 * d.y * d.z, d.z * d.z];
     let (mut lo, mut hi, mut size) = (0.0, 0.0, 0.0);
@@ -242,6 +244,6 @@ fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
         hi += a.max(b);
         size += a.abs().max(b.abs());
     }
-    // NaN, from bounds that are infinite, is no sign.
+    // Infinite bounds give NaN, which compares as false: no sign is proven.
     [lo - ROUNDING * size, hi + ROUNDING * size]
 }
