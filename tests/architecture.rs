@@ -72,7 +72,7 @@ const ROOMS: [Room; 4] = [
             ("sizing", &["settings", "projection", "discovery"]),
             ("front", &["settings", "fates", "projection", "neighbours", "discovery", "sizing"]),
             ("relaxation", &["projection", "neighbours", "sizing"]),
-            ("refine", &[]),
+            ("refine", &["sizing"]),
             ("message", &["discovery", "phase"]),
             ("progress", &["fates", "phase", "refine"]),
             ("attempt", &["settings", "projection", "discovery", "sizing", "refine"]),

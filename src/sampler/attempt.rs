@@ -37,6 +37,8 @@ pub(super) struct Attempt {
     pub(super) radius: f64,
     /// The radius field of an adaptive run.
     pub(super) sizing: Option<Sizing>,
+    /// The same while a front of one size is to be refined to these radii.
+    pub(super) graded: Option<Sizing>,
     /// Estimated area of the surface.
     area: f64,
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
@@ -54,6 +56,7 @@ impl Default for Attempt {
         Self {
             radius: 1.0,
             sizing: None,
+            graded: None,
             area: 0.0,
             packing: PACKING,
             levels: None,
@@ -99,24 +102,37 @@ impl Attempt {
     pub(super) fn refine(&mut self, settings: &Settings, max_curvature: f64) {
         let count = self.predicted_count(settings);
         let radius = (self.count_times_radius_sq() / count).sqrt();
-        let levels = refine::levels(max_curvature * 2.0 * radius, count);
+        let levels = refine::levels(max_curvature * 2.0 * radius, count, self.sizing.is_some());
         // There is no radius where there is no surface.
-        if levels.is_some()
-            && radius > 0.0
-            && self.sizing.is_none()
-            && count <= f64::from(settings.max_particles)
-        {
+        if levels.is_some() && radius > 0.0 && count <= f64::from(settings.max_particles) {
             (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
+            self.graded = self.sizing.take();
+            if let Some(sizing) = &mut self.graded {
+                sizing.scale_to(count / self.packing);
+            }
         }
     }
 
     /// What a refinement of this attempt's front aims at.
     pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
-        let count = match settings.size_mode {
-            SizeMode::Radius => refine::Count::PerCell(self.packing),
-            SizeMode::Count => refine::Count::Total(f64::from(settings.count)),
+        let count = match (settings.size_mode, &self.graded) {
+            (SizeMode::Count, _) => refine::Count::Total(f64::from(settings.count)),
+            (SizeMode::Radius, None) => refine::Count::PerCell(self.packing),
+            (SizeMode::Radius, Some(sizing)) => refine::Count::Total(self.packing * sizing.predicted_count()),
         };
-        self.levels.map(|levels| refine::Target { levels, radius: self.radius as f32, count })
+        let grading = self.graded.as_ref().map(Sizing::slope);
+        self.levels.map(|levels| refine::Target { levels, radius: self.radius as f32, grading, count })
+    }
+
+    /// The first attempt at the front that stands because this one's was refused.
+    pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
+        Self::first(settings, self.area, diagonal, self.graded.take().map(Sizing::unscaled))
+    }
+
+    /// Ends the refinement: the particles have the radii of the radius field, if there is one. Returns how often the front was refined.
+    pub(super) fn end_refinement(&mut self) -> Option<u32> {
+        self.sizing = self.sizing.take().or(self.graded.take());
+        self.levels.take()
     }
 
     /// Radius of the front.

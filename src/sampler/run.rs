@@ -54,6 +54,7 @@ impl Sampler {
                 | PhaseState::Search
                 | PhaseState::Filling => {
                     self.front.active_mut().stop(&mut self.particles);
+                    self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 PhaseState::Relaxation => {
@@ -61,7 +62,10 @@ impl Sampler {
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 // The columns hold the last level that was finished.
-                PhaseState::Refinement(_) => PhaseState::Marking(StopReason::Cancelled),
+                PhaseState::Refinement(_) => {
+                    self.attempt.end_refinement();
+                    PhaseState::Marking(StopReason::Cancelled)
+                }
             },
             Input::Work { field, left } => match phase {
                 PhaseState::Idle | PhaseState::Done(_) => phase,
@@ -88,6 +92,7 @@ impl Sampler {
         let mut settings = self.settings;
         if self.attempt.levels.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
+            settings.sampling = Sampling::Uniform;
         }
         self.front.reset(&FrontSetup {
             settings: &settings,
@@ -285,7 +290,7 @@ impl Sampler {
         };
         if self.attempt.levels.is_none() {
             self.counts.refusal = Some(refusal);
-            self.attempt = Attempt::first(&self.settings, self.survey.area, self.bounds.diagonal(), None);
+            self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
         }
         self.begin_attempt()
     }
@@ -297,7 +302,7 @@ impl Sampler {
         mut refinement: Box<Refinement>,
     ) -> PhaseState {
         let before = refinement.evaluations();
-        let step = refinement.step(field, &mut self.particles, *left);
+        let step = refinement.step(field, self.attempt.graded.as_ref(), &mut self.particles, *left);
         let evaluations = refinement.evaluations() - before;
         self.projector.evaluations += evaluations;
         self.counts.generation_evaluations += evaluations;
@@ -309,7 +314,7 @@ impl Sampler {
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
                 }
-                self.counts.refined_levels = self.attempt.levels.take();
+                self.counts.refined_levels = self.attempt.end_refinement();
                 PhaseState::Marking(StopReason::Complete)
             }
         }

@@ -234,7 +234,6 @@ settings! {
         help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on closed smooth surfaces.",
         group: Group::Advanced,
         choices: Method::CHOICES,
-        when: &[UNIFORM],
     }
     // The paper names no tolerance; 0.7 gives the most particles with six neighbours on smooth surfaces.
     match_tolerance: f64 = 0.7 => {

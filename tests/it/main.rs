@@ -13,6 +13,7 @@ mod formula_functions;
 mod formula_properties;
 mod front;
 mod gallery;
+mod graded;
 mod half_edge;
 mod mesh;
 mod mesh_export;

@@ -6,13 +6,18 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self, Figures};
-use marching_particles::sampler::{Method, Refusal, Sampler, Sampling, Settings, SizeMode};
+use marching_particles::sampler::{Method, Refusal, Sampler, Settings, SizeMode};
 
 fn refined(count: u32, seed: u64) -> Settings {
     Settings { method: Method::Refined, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
 }
 
-fn sampled(field: &mut FormulaField, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+pub(crate) fn sampled(
+    field: &mut FormulaField,
+    bounds: &Bounds,
+    settings: &Settings,
+    budget: u32,
+) -> Sampler {
     let mut sampler = Sampler::new();
     sampler.start(field, bounds, settings).expect("valid settings");
     while sampler.step(field, budget).stop_reason.is_none() {}
@@ -25,7 +30,7 @@ fn figures(field: &mut FormulaField, bounds: &Bounds, particles: &Particles) -> 
 }
 
 /// Columns that belong together: every particle but the first of a component has a parent one level below.
-fn assert_rings(particles: &Particles) {
+pub(crate) fn assert_rings(particles: &Particles) {
     for i in 0..particles.len() {
         let parent = particles.parent[i];
         if parent == Particles::NO_PARENT {
@@ -132,12 +137,10 @@ fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
     let heart = gallery::find("heart").expect("a surface of the gallery");
     let sphere = gallery::find("sphere").expect("a surface of the gallery");
     let few = Settings { count: 100, ..refined(100, 0) };
-    let adaptive = Settings { sampling: Sampling::Adaptive, ..refined(2_000, 0) };
     for (surface, settings, refusal) in [
         (gyroid, refined(20_000, 0), Refusal::Border),
         (heart, refined(2_000, 0), Refusal::Unsuitable),
         (sphere, few, Refusal::Unsuitable),
-        (sphere, adaptive, Refusal::Unsuitable),
     ] {
         let id = surface.id;
         let mut field = surface.field();

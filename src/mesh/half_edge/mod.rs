@@ -198,6 +198,14 @@ impl HalfEdges {
         (0..self.origin.len() as u32).filter(|&h| self.has_half_edge(h) && h < self.twin(h))
     }
 
+    /// The vertices of face `f`, if it is there.
+    #[inline]
+    #[must_use]
+    pub fn face(&self, f: u32) -> Option<[u32; 3]> {
+        let corners = &self.origin[3 * f as usize..3 * f as usize + 3];
+        (corners[0] != NONE).then(|| [corners[0], corners[1], corners[2]])
+    }
+
     /// The faces that are there, by their vertices.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.origin.chunks_exact(3).filter(|corners| corners[0] != NONE).map(|c| [c[0], c[1], c[2]])

@@ -5,6 +5,8 @@ use super::{HalfEdges, NONE, next};
 /// The stages of a subdivision, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
+    /// Make room for what follows.
+    Room,
     /// Number the vertices of the finer surface.
     Vertices,
     /// Write its faces.
@@ -39,26 +41,26 @@ impl Subdivision {
     pub fn new(coarse: &HalfEdges) -> Self {
         let (faces, vertices) = (coarse.faces(), coarse.vertex_slots());
         let slots = coarse.half_edge_slots();
-        let fine = HalfEdges {
-            origin: vec![NONE; 12 * faces],
-            twin: vec![NONE; 12 * faces],
-            ..HalfEdges::default()
-        };
         // A closed surface has half as many edges as half-edges; a border adds a few, for which there is room to grow.
         let expected = vertices + 3 * faces / 2;
+        let fine = HalfEdges {
+            origin: Vec::with_capacity(12 * faces),
+            twin: Vec::with_capacity(12 * faces),
+            outgoing: Vec::with_capacity(expected),
+            ..HalfEdges::default()
+        };
         Self {
             fine,
             ends: Vec::with_capacity(expected),
-            kept: vec![NONE; vertices],
-            middle: vec![NONE; slots],
-            rank: vec![NONE; slots / 3],
+            kept: Vec::with_capacity(vertices),
+            middle: Vec::with_capacity(slots),
+            rank: Vec::with_capacity(slots / 3),
             ranked: 0,
-            part: Part::Vertices,
+            part: Part::Room,
             next: 0,
         }
     }
 
-    /// What comes next.
     /// What comes next.
     #[must_use]
     pub fn part(&self) -> Part {
@@ -68,23 +70,48 @@ impl Subdivision {
     /// Goes on with up to `budget` vertices or faces of `coarse`, and returns what is left of it.
     pub fn step(&mut self, coarse: &HalfEdges, mut budget: u32) -> u32 {
         while budget > 0 && self.part != Part::Done {
-            let is_vertices = self.part == Part::Vertices;
-            let slots = if is_vertices { coarse.vertex_slots() } else { coarse.half_edge_slots() / 3 } as u32;
+            let vertices = coarse.vertex_slots() as u32;
+            let faces = (coarse.half_edge_slots() / 3) as u32;
+            let slots = match self.part {
+                Part::Room => vertices.max(faces),
+                Part::Vertices => vertices,
+                Part::Faces | Part::Done => faces,
+            };
             let end = slots.min(self.next.saturating_add(budget));
+            if self.part == Part::Room {
+                self.make_room(coarse, end as usize);
+            }
             for at in self.next..end {
-                if is_vertices { self.number(coarse, at) } else { self.write(coarse, at) }
+                match self.part {
+                    Part::Vertices => self.number(coarse, at),
+                    Part::Faces => self.write(coarse, at),
+                    Part::Room | Part::Done => {}
+                }
             }
             budget -= end - self.next;
             self.next = end;
             if end == slots {
                 self.next = 0;
-                self.part = if is_vertices { Part::Faces } else { Part::Done };
-                if is_vertices {
-                    self.fine.outgoing = vec![NONE; self.ends.len()];
-                }
+                self.part = match self.part {
+                    Part::Room => Part::Vertices,
+                    Part::Vertices => Part::Faces,
+                    Part::Faces | Part::Done => Part::Done,
+                };
             }
         }
         budget
+    }
+
+    /// Fills the columns up to vertex or face `end` of `coarse`: memory that is first touched takes longer than what is then done
+    /// with it.
+    fn make_room(&mut self, coarse: &HalfEdges, end: usize) {
+        self.kept.resize(coarse.vertex_slots().min(end), NONE);
+        let end = (coarse.half_edge_slots() / 3).min(end);
+        self.rank.resize(end, NONE);
+        self.middle.resize(3 * end, NONE);
+        let fine = (12 * end).min(12 * coarse.faces());
+        self.fine.origin.resize(fine, NONE);
+        self.fine.twin.resize(fine, NONE);
     }
 
     /// The finer surface, and for each of its vertices the two ends of the edge that it halves: twice the same for an old vertex.
@@ -102,22 +129,27 @@ impl Subdivision {
         if !coarse.has_vertex(v) {
             return;
         }
-        self.kept[v as usize] = self.ends.len() as u32;
-        self.ends.push([v, v]);
+        self.kept[v as usize] = self.add([v, v]);
         for h in coarse.around(v) {
             if self.rank[h as usize / 3] == NONE {
                 self.rank[h as usize / 3] = self.ranked;
                 self.ranked += 1;
             }
             if self.middle[h as usize] == NONE {
-                let m = self.ends.len() as u32;
-                self.ends.push([v, coarse.target(h)]);
+                let m = self.add([v, coarse.target(h)]);
                 self.middle[h as usize] = m;
                 if coarse.twin(h) != NONE {
                     self.middle[coarse.twin(h) as usize] = m;
                 }
             }
         }
+    }
+
+    /// Adds a vertex of the finer surface.
+    fn add(&mut self, ends: [u32; 2]) -> u32 {
+        self.ends.push(ends);
+        self.fine.outgoing.push(NONE);
+        self.ends.len() as u32 - 1
     }
 
     /// First half-edge of the new face at the corner of an old face at which `h` begins.

@@ -40,7 +40,7 @@ const SHARP: f32 = 0.5;
 pub enum Refusal {
     /// What is asked for, or the surface, is of another kind.
     #[error(
-        "The front stands, and is not refined: that takes one radius, at least 720 particles and room for them below the limit, a \
+        "The front stands, and is not refined: that takes at least 720 particles and room for them below the limit, a \
          spacing of less than 0.45 of the smallest radius of curvature, and a gradient that vanishes nowhere on the surface."
     )]
     Unsuitable,
@@ -82,14 +82,16 @@ pub(crate) fn max_curvature(field: &mut dyn Field, points: &[Vec3]) -> f64 {
 }
 
 /// How often a front can be refined that has `count` particles in the end, where the spacing times the largest curvature is
-/// `bend`; `None` if not once. Surgery on a front at full resolution does not pay: on the decocube with 20,000 particles it leaves
+/// `bend`; `None` if not once. Sizes that differ take a front with four times as many particles, in which there is room for them: on the
+/// ellipsoid that gains 0.5° of the mean angle and costs 0.4 % of the particles with six neighbours. Surgery on a front at full resolution does not pay: on the decocube with 20,000 particles it leaves
 /// pairs at 0.42 of the ideal distance.
-pub(crate) fn levels(bend: f64, count: f64) -> Option<u32> {
+pub(crate) fn levels(bend: f64, count: f64, is_graded: bool) -> Option<u32> {
     let particles = |levels: u32| count / f64::from(1_u32 << (2 * levels));
     let is_coarse = |levels: &u32| {
         bend * f64::from(1_u32 << levels) <= MAX_BEND && particles(*levels) >= f64::from(LEAST_PARTICLES)
     };
-    (1..=MAX_LEVELS).rev().find(is_coarse)
+    let levels = (1..=MAX_LEVELS).rev().find(is_coarse)?;
+    Some(if is_graded { (levels - 1).max(1) } else { levels })
 }
 
 /// The particles of a front joined to a closed surface, if that can be had beyond doubt. Particles in no triangle are
@@ -105,6 +107,7 @@ pub(super) fn join(particles: &Particles, bounds: &Bounds) -> Result<Layer, Refu
         position: particles.position.clone(),
         normal: particles.normal.clone(),
         slots: particles.slots.clone(),
+        size: Vec::new(),
     };
     judge_bend(&layer)?;
     Ok(layer)
@@ -163,7 +166,9 @@ mod tests {
             (0.033, 719.0, None),
             (0.033, 179.0, None),
         ] {
-            assert_eq!(levels(bend, count), expected, "bend {bend}, count {count}");
+            assert_eq!(levels(bend, count, false), expected, "bend {bend}, count {count}");
+            let finer = expected.map(|levels: u32| (levels - 1).max(1));
+            assert_eq!(levels(bend, count, true), finer, "bend {bend}, count {count}, sizes that differ");
         }
     }
 }

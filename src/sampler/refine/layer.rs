@@ -1,5 +1,6 @@
 //! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
 
+use crate::differential::Curvature;
 use crate::field::Field;
 use crate::mesh::half_edge::{HalfEdges, NONE, previous};
 use crate::particles::Slots;
@@ -23,7 +24,7 @@ const FLIP_SLACK: f32 = 1e-5;
 /// makes the lattice stiffer in shear: its bulk modulus over its shear modulus is 2θ/(4 − 3θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Springs {
-    /// Spacing a of the hexagonal lattice with the wanted number of particles.
+    /// Spacing a of the hexagonal lattice with the wanted number of particles, where the size of a particle is 1.
     pub(super) spacing: f32,
     /// Rest length over spacing, θ.
     pub(super) theta: f32,
@@ -52,6 +53,8 @@ pub(super) struct Block {
     points: Vec<Vec3>,
     value: Vec<f32>,
     gradient: Vec<Vec3>,
+    /// Of some particles, from which their sizes follow.
+    pub(super) curvature: Vec<Curvature>,
     /// Evaluations of the field so far.
     pub(super) evaluations: u64,
 }
@@ -78,6 +81,8 @@ pub(super) struct Layer {
     pub(super) normal: Vec<Vec3>,
     /// What became of the slots of the particles that the front placed; undecided for all others.
     pub(super) slots: Vec<Slots>,
+    /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
+    pub(super) size: Vec<f32>,
 }
 
 impl Layer {
@@ -88,7 +93,25 @@ impl Layer {
             position: Vec::with_capacity(count),
             normal: Vec::with_capacity(count),
             slots: Vec::with_capacity(count),
+            size: Vec::new(),
         }
+    }
+
+    /// Wanted spacing at `v`, in units of that of the springs.
+    #[inline]
+    pub(super) fn size_of(&self, v: u32) -> f32 {
+        self.size.get(v as usize).copied().unwrap_or(1.0)
+    }
+
+    /// Whether sizes differ.
+    pub(super) fn is_graded(&self) -> bool {
+        !self.size.is_empty()
+    }
+
+    /// Wanted length of the edge between two particles, in units of the spacing.
+    #[inline]
+    pub(super) fn size_between(&self, a: u32, b: u32) -> f32 {
+        0.5 * (self.size_of(a) + self.size_of(b))
     }
 
     /// Moves each particle by its springs, and then brings them back onto the surface together.
@@ -110,11 +133,23 @@ impl Layer {
             let (mut force, mut degree) = (Vec3::ZERO, 0.0_f32);
             for other in layer.mesh.neighbours(v) {
                 let offset = p - layer.position[other as usize];
-                force += offset * (rest / offset.length() - 1.0);
+                force += offset * (rest * layer.size_between(v, other) / offset.length() - 1.0);
                 degree += 1.0;
             }
             force * (springs.omega / (degree * stiffness))
         });
+    }
+
+    /// Mean length of the edges of `v`, in units of the wanted ones.
+    pub(super) fn mean_stretch(&self, springs: Springs, v: u32) -> f32 {
+        let p = self.position[v as usize];
+        let (mut sum, mut degree) = (0.0, 0.0_f32);
+        for other in self.mesh.neighbours(v) {
+            let wanted = springs.spacing * self.size_between(v, other);
+            sum += (self.position[other as usize] - p).length() / wanted;
+            degree += 1.0;
+        }
+        sum / degree
     }
 
     /// Moves each particle to the centre of its Voronoi cell, with the over-relaxation of the springs: Lloyd's method.
@@ -163,7 +198,6 @@ impl Layer {
         particles: impl Iterator<Item = u32>,
         step: impl Fn(&Self, u32) -> Vec3,
     ) {
-        let farthest = MAX_MOVE * spacing;
         ground.block.clear();
         for v in particles {
             if !self.mesh.has_vertex(v) {
@@ -173,6 +207,7 @@ impl Layer {
             let mut step = step(self, v);
             step -= n * step.dot(n);
             let length = step.length();
+            let farthest = MAX_MOVE * spacing * self.size_of(v);
             if length > farthest {
                 step *= farthest / length;
             }
@@ -202,7 +237,7 @@ impl Layer {
     /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient. Returns how
     /// many could not be: they go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32) -> usize {
-        let Block { which, before, points, value, gradient, evaluations } = &mut *ground.block;
+        let Block { which, before, points, value, gradient, evaluations, .. } = &mut *ground.block;
         let n = points.len();
         if value.len() < n {
             value.resize(n, 0.0);
@@ -210,13 +245,13 @@ impl Layer {
         }
         *evaluations += n as u64;
         ground.field.gradients(points, &mut value[..n], &mut gradient[..n]);
-        let longest = MAX_CORRECTION * spacing;
         let mut refused = 0;
         for k in 0..n {
             let v = which[k] as usize;
             let inverse_slope = 1.0 / gradient[k].length();
             let normal = gradient[k] * inverse_slope;
             let correction = value[k] * inverse_slope;
+            let longest = MAX_CORRECTION * spacing * self.size_of(which[k]);
             // Written so that NaN fails.
             if correction.abs() <= longest && normal.dot(self.normal[v]) >= MIN_AGREEMENT {
                 self.position[v] = points[k] - normal * correction;
@@ -272,39 +307,11 @@ impl Layer {
         (self.position[b as usize] - a).cross(self.position[c as usize] - a)
     }
 
-    /// Area of the faces.
-    pub(super) fn flat_area(&self) -> f64 {
-        0.5 * self.mesh.triangles().map(|face| f64::from(self.area_vector(face).length())).sum::<f64>()
-    }
-
-    /// Area of the surface, by Richardson's extrapolation from the faces and from those with lifted middles of edges.
-    pub(super) fn area(&self) -> f64 {
-        let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
-        let (mut coarse, mut fine) = (0.0, 0.0);
-        for face in self.mesh.triangles() {
-            let p = face.map(|v| self.position[v as usize]);
-            let m = [0, 1, 2].map(|k| self.middle(face[k], face[(k + 1) % 3]).0);
-            coarse += twice(p);
-            fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
-        }
-        0.5 * (4.0 * fine - coarse) / 3.0
-    }
-
     /// The middle of the edge between two particles, lifted to the circle through them with their normals; and its normal.
     pub(super) fn middle(&self, a: u32, b: u32) -> (Vec3, Vec3) {
         let (p, n) = (self.position[a as usize], self.normal[a as usize]);
         let (q, m) = (self.position[b as usize], self.normal[b as usize]);
         let up = (n + m).normalize_or(n);
         ((p + q) * 0.5 + up * (0.125 * (q - p).dot(m - n)), up)
-    }
-
-    /// Faces that look against the normal of a corner.
-    pub(super) fn inverted(&self) -> usize {
-        let is_inverted = |face: &[u32; 3]| {
-            let area = self.area_vector(*face);
-            // Written so that NaN counts.
-            !face.iter().all(|&v| area.dot(self.normal[v as usize]) > 0.0)
-        };
-        self.mesh.triangles().filter(is_inverted).count()
     }
 }

@@ -21,7 +21,9 @@ mod coarse;
 mod layer;
 mod recipe;
 mod rings;
+mod sizes;
 mod surgery;
+mod tally;
 
 pub use coarse::Refusal;
 pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, levels, max_curvature};
@@ -30,11 +32,13 @@ use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::mesh::half_edge::{Part, Subdivision};
 use crate::particles::{Particles, Slots};
+use crate::sampler::sizing::Sizing;
 use core::ops::RangeInclusive;
 use layer::{BLOCK, Block, Ground, Layer, Springs};
 use recipe::{Pass, Recipe};
 use rings::Rings;
 use surgery::{Aim, Surgeon};
+use tally::Tally;
 
 /// Area of the faces after a subdivision over that before: more where the surface is curved, and less only where it has lost
 /// something. Above, two sheets have been joined.
@@ -48,14 +52,19 @@ const SLACK: f32 = 0.002;
 const TRIAL_UNITS: u32 = 64;
 /// Half-edges looked at for a unit.
 const HALF_EDGES_PER_UNIT: u32 = 12;
+/// Faces measured for a unit.
+const FACES_PER_UNIT: u32 = 4;
 
 /// The number of levels, the radius and the count that a refinement is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     /// Levels to come after the coarse one, k.
     pub(crate) levels: u32,
-    /// Repulsion radius r of the particles of the last level.
+    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at which as many of one size would cover
+    /// the surface.
     pub(crate) radius: f32,
+    /// Largest slope of the radius, where sizes differ.
+    pub(crate) grading: Option<f32>,
     /// Particles of the last level.
     pub(crate) count: Count,
 }
@@ -80,7 +89,7 @@ pub(crate) struct Refinement {
     near: Vec<u32>,
     /// Levels still to come.
     to_come: u32,
-    /// Wanted number of particles of the last level.
+    /// Wanted number of particles of the last level, once the surface has been measured.
     wanted: f64,
     euler: i64,
     /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
@@ -88,6 +97,10 @@ pub(crate) struct Refinement {
     /// Faces of that lattice.
     faces: f32,
     recipe: Recipe,
+    /// Of the pass under way.
+    tally: Tally,
+    /// Area of the faces of the level before, until this one has been compared with it.
+    area_before: Option<f64>,
     work: Work,
 }
 
@@ -117,12 +130,6 @@ impl Refinement {
     }
 
     fn of_layer(layer: Layer, target: Target) -> Self {
-        let wanted = match target.count {
-            Count::Total(count) => count,
-            Count::PerCell(packing) => {
-                packing * layer.area() / (2.0 * SQRT_3 * f64::from(target.radius) * f64::from(target.radius))
-            }
-        };
         let mut refinement = Self {
             target,
             euler: layer.mesh.euler(),
@@ -130,14 +137,15 @@ impl Refinement {
             block: Block::default(),
             surgeon: Surgeon::default(),
             to_come: target.levels,
-            wanted,
+            wanted: 0.0,
             spacing: 0.0,
             faces: 0.0,
-            recipe: Recipe::of(true, target.levels),
+            recipe: Recipe::of(true, target.levels, target.grading.is_some()),
             near: Vec::new(),
+            tally: Tally::default(),
+            area_before: None,
             work: Work::Done,
         };
-        refinement.measure();
         refinement.work = refinement.begin_pass(0);
         refinement
     }
@@ -155,7 +163,7 @@ impl Refinement {
     /// Estimated share of the work that is done, that of the coarse front included.
     pub(crate) fn fraction(&self) -> f64 {
         let at = match self.work {
-            Work::Pass { pass, .. } => pass as f64 / self.recipe.passes() as f64,
+            Work::Pass { pass, .. } => pass as f64 / self.recipe.passes.len() as f64,
             _ => 1.0,
         };
         // From a quarter of the share of this level to all of it.
@@ -163,7 +171,7 @@ impl Refinement {
     }
 
     /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays there
-    /// until the next one is. Returns the units done and whether `particles` has changed.
+    /// until the next one is. Where sizes differ, `sizing` has them. Returns the units done and whether `particles` has changed.
     ///
     /// # Errors
     ///
@@ -171,6 +179,7 @@ impl Refinement {
     pub(crate) fn step(
         &mut self,
         field: &mut dyn Field,
+        sizing: Option<&Sizing>,
         particles: &mut Particles,
         budget: u32,
     ) -> Result<(u32, bool), Refusal> {
@@ -179,7 +188,7 @@ impl Refinement {
             let work = core::mem::replace(&mut self.work, Work::Done);
             has_changed |= matches!(work, Work::Show(_));
             let (next, units) = match work {
-                Work::Pass { pass, next, end } => self.pass(field, pass, next, end)?,
+                Work::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
                 Work::Show(rings) => self.show(rings, particles),
                 Work::Divide(subdivision) => self.divide(subdivision),
                 Work::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
@@ -191,27 +200,57 @@ impl Refinement {
         Ok((done, has_changed))
     }
 
-    /// The wanted numbers of this level, from the area of its faces.
-    fn measure(&mut self) {
+    /// Takes in what the faces of this level have been measured to be: the wanted numbers follow.
+    ///
+    /// # Errors
+    ///
+    /// If the area is not that of the level before.
+    fn measure(&mut self) -> Result<(), Refusal> {
+        let tally = self.tally;
+        if let Some(before) = self.area_before.take()
+            && !AREA_GAIN.contains(&(tally.flat_area() / before))
+        {
+            return Err(Refusal::Folded);
+        }
+        if self.wanted == 0.0 {
+            let radius = f64::from(self.target.radius);
+            self.wanted = match self.target.count {
+                Count::Total(count) => count,
+                Count::PerCell(packing) => packing * tally.area() / (2.0 * SQRT_3 * radius * radius),
+            };
+        }
         let share = f64::from(1_u32 << (2 * self.to_come));
         let euler = self.euler as f64;
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
         let faces = 2.0 * (self.wanted - euler) / share;
         self.faces = faces as f32;
-        self.spacing = (2.0 * self.layer.area() / (SQRT_3 * (0.5 * faces + euler))).sqrt() as f32;
+        // Each particle has the area of two faces.
+        let lattice = faces + 2.0 * euler;
+        let spacing_sq = if self.layer.is_graded() {
+            tally.cells() / lattice
+        } else {
+            2.0 * tally.area() / (SQRT_3 * (0.5 * lattice))
+        };
+        self.spacing = spacing_sq.sqrt() as f32;
+        Ok(())
     }
 
     /// The start of a pass of the recipe, or what follows after the last one.
     fn begin_pass(&mut self, pass: usize) -> Work {
-        let end = match self.recipe.pass(pass) {
-            None => return Work::Show(Rings::new(&self.layer)),
-            Some(Pass::Flip) => self.layer.mesh.half_edge_slots(),
-            Some(Pass::Find) => {
-                self.near.clear();
-                self.layer.mesh.vertex_slots()
+        let mesh = &self.layer.mesh;
+        let Some(&kind) = self.recipe.passes.get(pass) else { return Work::Show(Rings::new(&self.layer)) };
+        let end = match kind {
+            Pass::Flip => mesh.half_edge_slots(),
+            Pass::Measure | Pass::Inspect => {
+                self.tally = Tally::default();
+                mesh.half_edge_slots() / 3
             }
-            Some(Pass::Centre) => self.near.len(),
-            Some(_) => self.layer.mesh.vertex_slots(),
+            Pass::Find => {
+                self.near.clear();
+                mesh.vertex_slots()
+            }
+            Pass::Centre => self.near.len(),
+            Pass::Size(_) | Pass::Limit { .. } | Pass::Sweep | Pass::Mend | Pass::Land => mesh.vertex_slots(),
         };
         Work::Pass { pass, next: 0, end: end as u32 }
     }
@@ -220,51 +259,84 @@ impl Refinement {
     fn pass(
         &mut self,
         field: &mut dyn Field,
+        sizing: Option<&Sizing>,
         pass: usize,
         next: u32,
         end: u32,
     ) -> Result<(Work, u32), Refusal> {
-        let Recipe { theta, omega, delta, .. } = self.recipe;
-        let springs = Springs { spacing: self.spacing, theta, omega };
+        let springs = Springs { spacing: self.spacing, theta: self.recipe.theta, omega: self.recipe.omega };
         let layer = &mut self.layer;
         let mut ground = Ground { field, block: &mut self.block };
-        let kind = self.recipe.pass(pass);
-        let length = if kind == Some(Pass::Flip) { HALF_EDGES_PER_UNIT } else { 1 } * BLOCK as u32;
-        let last = end.min(next + length);
+        let kind = self.recipe.passes[pass];
+        let per_unit = match kind {
+            Pass::Flip => HALF_EDGES_PER_UNIT,
+            Pass::Measure | Pass::Inspect => FACES_PER_UNIT,
+            _ => 1,
+        };
+        let last = end.min(next + per_unit * BLOCK as u32);
         let mut units = BLOCK as u32;
         match kind {
-            None => {}
-            Some(Pass::Sweep) => layer.relax(&mut ground, springs, next..last),
-            Some(Pass::Flip) => layer.flip(next..last),
-            Some(Pass::Mend) => {
+            Pass::Size(quarters) => {
+                if let Some(sizing) = sizing {
+                    layer.find_sizes(&mut ground, sizing, self.target.radius, quarters, next..last);
+                }
+            }
+            Pass::Limit { back } => {
+                let rise = self.rise();
+                let way = |k: u32| if back { end - 1 - k } else { k };
+                self.layer.limit_sizes(rise, (next..last).map(way));
+            }
+            Pass::Measure => self.tally.measure(layer, next..last),
+            Pass::Inspect => self.tally.inspect(layer, next..last),
+            Pass::Sweep => layer.relax(&mut ground, springs, next..last),
+            Pass::Flip => layer.flip(next..last),
+            Pass::Mend => {
                 let slack = if self.to_come == self.target.levels { SLACK } else { f32::INFINITY };
-                let aim = Aim { springs, delta, faces: self.faces, slack };
+                let aim = Aim { springs, delta: self.recipe.delta, faces: self.faces, slack };
                 for v in next..last {
                     units += TRIAL_UNITS * u32::from(self.surgeon.mend(layer, &mut ground, aim, v));
                 }
             }
-            Some(Pass::Find) => {
+            Pass::Find => {
                 let is_defect = |&v: &u32| layer.mesh.has_vertex(v) && layer.mesh.valence(v) != 6;
                 self.near.extend((next..last).filter(is_defect));
-                if last == end {
-                    self.surgeon.widen(&layer.mesh, &mut self.near);
-                }
             }
-            Some(Pass::Centre) => {
+            Pass::Centre => {
                 let near = self.near[next as usize..last as usize].iter().copied();
                 layer.centre(&mut ground, springs, near);
             }
-            Some(Pass::Land) => {
+            Pass::Land => {
                 layer.land(&mut ground, self.spacing, next..last);
             }
         }
         if last < end {
             return Ok((Work::Pass { pass, next: last, end }, units));
         }
-        if self.to_come == 0 && self.recipe.pass(pass + 1).is_none() && self.layer.inverted() > 0 {
-            return Err(Refusal::Folded);
-        }
+        self.end_pass(kind)?;
         Ok((self.begin_pass(pass + 1), units))
+    }
+
+    /// How much the size may differ per unit of length at this level.
+    fn rise(&self) -> f32 {
+        let spacing = 2.0 * self.target.radius * (1_u32 << self.to_come) as f32;
+        sizes::slope(self.target.grading.unwrap_or(0.0), self.to_come) / spacing
+    }
+
+    /// What is done once after a pass.
+    fn end_pass(&mut self, kind: Pass) -> Result<(), Refusal> {
+        match kind {
+            Pass::Measure => self.measure(),
+            Pass::Find => {
+                self.surgeon.widen(&self.layer.mesh, &mut self.near);
+                Ok(())
+            }
+            Pass::Inspect if self.to_come == 0 && self.tally.inverted() > 0 => Err(Refusal::Folded),
+            Pass::Inspect => {
+                self.area_before = Some(self.tally.flat_area());
+                Ok(())
+            }
+            _ => Ok(()),
+        }
     }
 
     fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Work, u32) {
@@ -307,6 +379,7 @@ impl Refinement {
             layer.position.push(position);
             layer.normal.push(normal);
             layer.slots.push(if a == b { coarse.slots[a as usize] } else { Slots::default() });
+            layer.size.extend(coarse.is_graded().then(|| coarse.size_between(a, b)));
         }
         let mut ground = Ground { field, block: &mut self.block };
         if layer.land(&mut ground, self.spacing, start as u32..end as u32) > 0 {
@@ -315,14 +388,9 @@ impl Refinement {
         if end < ends.len() {
             return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
         }
-        let gain = layer.flat_area() / coarse.flat_area();
-        if !AREA_GAIN.contains(&gain) {
-            return Err(Refusal::Folded);
-        }
         self.to_come -= 1;
-        self.recipe = Recipe::of(false, self.to_come);
+        self.recipe = Recipe::of(false, self.to_come, self.target.grading.is_some());
         self.surgeon.forget();
-        self.measure();
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }

@@ -1,8 +1,16 @@
-//! What is done at each level, as numbers: how many sweeps, how much surgery, and in which order.
+//! What is done at each level: how many sweeps, how much surgery, and in which order.
 
-/// One pass over the particles.
+use super::sizes::WHOLE;
+
+/// One pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
+    /// Takes the sizes from the radius field, so many quarters of the way from one size everywhere.
+    Size(u8),
+    /// Limits the slope of the sizes, from the first particle to the last one or back.
+    Limit { back: bool },
+    /// Measures the surface: the spacing follows.
+    Measure,
     /// A sweep of the springs.
     Sweep,
     /// Flips to Delaunay's edges.
@@ -15,20 +23,14 @@ pub(super) enum Pass {
     Centre,
     /// One step of Newton's method for everyone, so that positions and normals are those of the surface.
     Land,
+    /// Looks at the finished faces.
+    Inspect,
 }
 
-/// The passes of a level: sweeps, then rounds of surgery with sweeps after each, then Lloyd's method near the defects that are left.
-/// A flip follows every sweep.
-#[derive(Clone, Copy, Debug)]
+/// The passes of a level.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Recipe {
-    /// Sweeps at the start.
-    sweeps: usize,
-    /// Rounds of surgery.
-    rounds: usize,
-    /// Sweeps after each.
-    calm: usize,
-    /// Lloyd steps near defects.
-    centre: usize,
+    pub(super) passes: Vec<Pass>,
     /// Rest length of the springs over the spacing.
     pub(super) theta: f32,
     /// Over-relaxation of the sweeps.
@@ -37,53 +39,120 @@ pub(super) struct Recipe {
     pub(super) delta: f32,
 }
 
+/// Sweeps, then rounds of surgery with sweeps after each, then Lloyd's method near the defects that are left. A flip follows every
+/// sweep.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// Sweeps at the start.
+    sweeps: usize,
+    /// Rounds of surgery.
+    rounds: usize,
+    /// Sweeps after each.
+    calm: usize,
+    /// Lloyd steps near defects.
+    centre: usize,
+    theta: f32,
+    omega: f32,
+    delta: f32,
+}
+
 /// The first level. Its particles are few, and what is mended here holds on every finer level.
-const FIRST: Recipe =
-    Recipe { sweeps: 10, rounds: 10, calm: 3, centre: 0, theta: 0.8, omega: 1.5, delta: 0.03 };
+const FIRST: Plan = Plan { sweeps: 10, rounds: 10, calm: 3, centre: 0, theta: 0.8, omega: 1.5, delta: 0.03 };
 /// The levels between: rest lengths nearer to the spacing keep particles and holes even (closest pairs 0.80 instead of 0.78 of
 /// the ideal on the ellipsoid), and cost 0.1° of the mean angle.
-const MIDDLE: Recipe =
-    Recipe { sweeps: 4, rounds: 5, calm: 2, centre: 0, theta: 0.9, omega: 1.5, delta: 0.015 };
+const MIDDLE: Plan = Plan { sweeps: 4, rounds: 5, calm: 2, centre: 0, theta: 0.9, omega: 1.5, delta: 0.015 };
 /// The last level but one, where surgery costs most.
-const LAST_BUT_ONE: Recipe =
-    Recipe { sweeps: 4, rounds: 4, calm: 1, centre: 0, theta: 0.9, omega: 1.5, delta: 0.012 };
+const LAST_BUT_ONE: Plan =
+    Plan { sweeps: 4, rounds: 4, calm: 1, centre: 0, theta: 0.9, omega: 1.5, delta: 0.012 };
 /// The last level: surgery would add more defects than it takes.
-const LAST: Recipe = Recipe { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.9, omega: 1.5, delta: 0.0 };
+const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.9, omega: 1.5, delta: 0.0 };
+
+/// Steps in which the first level goes from one size to those of the radius field. At once, neighbours would tangle.
+const BLEND: u8 = WHOLE;
+/// Sweeps and rounds of surgery in each of them; in the last one come those of the plan. With six rounds the distances spread by 0.061 on
+/// the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
+const BLEND_SWEEPS: usize = 3;
+const BLEND_ROUNDS: usize = 2;
+/// What differs from the plans where sizes differ: more rounds at the first level, and springs at the others that keep the lattice stiff
+/// in shear, which on the ellipsoid gains 0.2° of the mean angle.
+const GRADED_ROUNDS: usize = 16;
+const GRADED_THETA: f32 = 0.8;
+/// Passes that limit the slope of the sizes: there and back, twice. What is far in that order is near on the surface at some pass, since
+/// the order is breadth first.
+const LIMITS: usize = 4;
+
 impl Recipe {
-    /// The recipe of a level, with so many levels to come.
-    pub(super) fn of(is_first: bool, to_come: u32) -> Self {
-        match (is_first, to_come) {
+    /// The recipe of a level with so many to come, of one size or of sizes that differ.
+    pub(super) fn of(is_first: bool, to_come: u32, is_graded: bool) -> Self {
+        let mut plan = match (is_first, to_come) {
             (true, _) => FIRST,
             (false, 0) => LAST,
             (false, 1) => LAST_BUT_ONE,
             (false, _) => MIDDLE,
+        };
+        if is_graded && is_first {
+            plan.rounds = GRADED_ROUNDS;
+        } else if is_graded && to_come > 0 {
+            plan.theta = GRADED_THETA;
+        }
+        let Plan { theta, omega, delta, .. } = plan;
+        let mut recipe = Self { passes: Vec::new(), theta, omega, delta };
+        recipe.passes.push(Pass::Measure);
+        match (is_graded, is_first) {
+            (false, _) => recipe.even(plan),
+            (true, true) => recipe.blend(plan),
+            (true, false) => recipe.graded(plan),
+        }
+        recipe.passes.extend([Pass::Find].into_iter().chain([Pass::Centre].repeat(plan.centre)));
+        recipe.passes.push(Pass::Land);
+        if is_graded && to_come == 0 {
+            recipe.passes.push(Pass::Size(WHOLE));
+        }
+        recipe.passes.push(Pass::Inspect);
+        recipe
+    }
+
+    fn even(&mut self, plan: Plan) {
+        self.sweep(plan.sweeps);
+        for _ in 0..plan.rounds {
+            self.passes.push(Pass::Mend);
+            self.sweep(plan.calm);
         }
     }
 
-    /// Number of passes.
-    pub(super) fn passes(&self) -> usize {
-        2 * self.sweeps + self.rounds * (1 + 2 * self.calm) + self.centre + 2
+    /// The first level of sizes that differ: it is brought to rest with one size, and led to the others step by step.
+    fn blend(&mut self, plan: Plan) {
+        self.sweep(plan.sweeps);
+        for quarters in 1..=BLEND {
+            self.size(quarters);
+            self.sweep(BLEND_SWEEPS);
+            let rounds = if quarters == BLEND { plan.rounds } else { BLEND_ROUNDS };
+            for _ in 0..rounds {
+                self.passes.push(Pass::Mend);
+                self.sweep(plan.calm);
+                self.size(quarters);
+            }
+        }
     }
 
-    /// Pass number `at`; `None` after the last.
-    pub(super) fn pass(&self, at: usize) -> Option<Pass> {
-        let swept = |k: usize| if k.is_multiple_of(2) { Pass::Sweep } else { Pass::Flip };
-        let mut k = at;
-        if k < 2 * self.sweeps {
-            return Some(swept(k));
+    fn graded(&mut self, plan: Plan) {
+        self.size(WHOLE);
+        self.sweep(plan.sweeps);
+        for _ in 0..plan.rounds {
+            self.size(WHOLE);
+            self.passes.push(Pass::Mend);
+            self.sweep(plan.calm);
         }
-        k -= 2 * self.sweeps;
-        let round = 1 + 2 * self.calm;
-        if k < self.rounds * round {
-            return Some(if k.is_multiple_of(round) { Pass::Mend } else { swept(k % round - 1) });
-        }
-        k -= self.rounds * round;
-        match k {
-            0 => Some(Pass::Find),
-            k if k <= self.centre => Some(Pass::Centre),
-            k if k == self.centre + 1 => Some(Pass::Land),
-            _ => None,
-        }
+    }
+
+    fn sweep(&mut self, count: usize) {
+        self.passes.extend([Pass::Sweep, Pass::Flip].repeat(count));
+    }
+
+    fn size(&mut self, quarters: u8) {
+        self.passes.push(Pass::Size(quarters));
+        self.passes.extend((0..LIMITS).map(|k| Pass::Limit { back: k % 2 == 1 }));
+        self.passes.push(Pass::Measure);
     }
 }
 
@@ -92,14 +161,16 @@ mod tests {
     use super::{Pass, Recipe};
 
     #[test]
-    fn a_recipe_lists_its_passes_in_order() {
-        let recipe = Recipe { sweeps: 1, rounds: 2, calm: 1, centre: 1, theta: 1.0, omega: 1.0, delta: 0.0 };
-        let passes: Vec<Pass> = (0..).map_while(|at| recipe.pass(at)).collect();
-        let round = [Pass::Mend, Pass::Sweep, Pass::Flip];
-        let expected =
-            [&[Pass::Sweep, Pass::Flip], &round[..], &round, &[Pass::Find, Pass::Centre, Pass::Land]]
-                .concat();
-        assert_eq!(passes, expected);
-        assert_eq!(passes.len(), recipe.passes());
+    fn a_level_is_measured_first_and_inspected_last() {
+        for (is_first, to_come) in [(true, 3), (false, 2), (false, 1), (false, 0)] {
+            for is_graded in [false, true] {
+                let passes = Recipe::of(is_first, to_come, is_graded).passes;
+                assert_eq!((passes[0], passes[passes.len() - 1]), (Pass::Measure, Pass::Inspect));
+                let surgery = passes.iter().filter(|&&pass| pass == Pass::Mend).count();
+                assert_eq!(surgery > 0, to_come > 0, "{to_come} levels to come");
+                let has_sizes = passes.iter().any(|pass| matches!(pass, Pass::Size(_)));
+                assert_eq!(has_sizes, is_graded);
+            }
+        }
     }
 }

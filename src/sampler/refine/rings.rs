@@ -41,7 +41,8 @@ impl Rings {
         }
     }
 
-    /// Goes on for a slice. Returns whether all is done; `particles` then has the particles of the layer, with this radius.
+    /// Goes on for a slice. Returns whether all is done; `particles` then has the particles of the layer, with this radius
+    /// where their size is 1.
     pub(super) fn step(&mut self, layer: &Layer, radius: f32, particles: &mut Particles) -> bool {
         if !self.is_walked {
             self.is_walked = !(0..SLICE).all(|_| self.walk(layer));
@@ -58,7 +59,7 @@ impl Rings {
             particles.push(
                 layer.position[v],
                 layer.normal[v],
-                radius,
+                radius * layer.size_of(v as u32),
                 self.parent[k],
                 self.level[k],
                 layer.slots[v],

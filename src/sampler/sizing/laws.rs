@@ -105,6 +105,11 @@ impl SizingLaw {
         Self { factor: self.factor * factor as f32, ..self }
     }
 
+    /// Returns the law without any factor.
+    pub(crate) fn unscaled(self) -> Self {
+        Self { factor: 1.0, ..self }
+    }
+
     /// Returns the smallest radius that the law gives.
     pub(crate) fn least(&self) -> f32 {
         self.least * self.factor

@@ -122,6 +122,13 @@ impl Sizing {
         self.largest
     }
 
+    /// The radius field as the settings ask for it, before any [`Sizing::scale`].
+    pub(crate) fn unscaled(mut self) -> Self {
+        self.law = self.law.unscaled();
+        self.grade();
+        self
+    }
+
     /// Multiplies the law and its clamp by `factor`, and makes the envelope anew: the slope stays.
     pub(crate) fn scale(&mut self, factor: f64) {
         self.law = self.law.scaled(factor);

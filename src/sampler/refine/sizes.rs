@@ -1,0 +1,63 @@
+//! Sizes that differ: those that the radius field asks for, and the slope at which a level can follow them.
+
+use super::layer::{Ground, Layer};
+use crate::differential::{Curvature, curvatures};
+use crate::sampler::sizing::Sizing;
+use core::ops::Range;
+
+/// Steepest slope of the spacing along the surface, whatever the level. The sizes of neighbours then differ by a factor of 1.7 at
+/// most; beyond it triangles of the wanted sizes have angles that no mesh of six neighbours each has.
+const MAX_SLOPE: f32 = 0.5;
+
+/// Most steps of a blend.
+pub(super) const WHOLE: u8 = 4;
+
+/// Slope of the spacing at a level with so many to come, where that of the radius is `grading`: with the spacing, the slope doubles
+/// from level to level.
+pub(super) fn slope(grading: f32, to_come: u32) -> f32 {
+    let own = 2.0 * grading;
+    (own * (1_u32 << to_come) as f32).min(own.max(MAX_SLOPE))
+}
+
+impl Layer {
+    /// Takes the sizes of some particles from the radius field, in units of the radius `unit`. Of a blend, `quarters` says how far
+    /// from one size everywhere it has come.
+    pub(super) fn find_sizes(
+        &mut self,
+        ground: &mut Ground,
+        sizing: &Sizing,
+        unit: f32,
+        quarters: u8,
+        particles: Range<u32>,
+    ) {
+        self.size.resize(self.position.len(), 1.0);
+        let range = particles.start as usize..particles.end as usize;
+        let curvature = &mut ground.block.curvature;
+        curvature.resize(range.len(), Curvature::default());
+        ground.block.evaluations += range.len() as u64;
+        let points = &self.position[range.clone()];
+        curvatures(ground.field, points, curvature);
+        for ((size, &p), curvature) in self.size[range].iter_mut().zip(points).zip(curvature) {
+            let whole = sizing.radius(p, curvature) / unit;
+            let (half, quarter) = (whole.sqrt(), whole.sqrt().sqrt());
+            *size = match quarters {
+                1 => quarter,
+                2 => half,
+                3 => half * quarter,
+                _ => whole,
+            };
+        }
+    }
+
+    /// Lowers the sizes of some particles to what their neighbours allow, if they differ by `rise` per unit of length at most.
+    pub(super) fn limit_sizes(&mut self, rise: f32, particles: impl Iterator<Item = u32>) {
+        for v in particles {
+            let p = self.position[v as usize];
+            let highest = |least: f32, other: u32| {
+                let distance = (self.position[other as usize] - p).length();
+                least.min(self.size[other as usize] + rise * distance)
+            };
+            self.size[v as usize] = self.mesh.neighbours(v).fold(self.size[v as usize], highest);
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! Sums over the faces of a level.
+
+use super::layer::Layer;
+use crate::math::SQRT_3;
+use core::ops::Range;
+use glam::Vec3;
+
+/// Sums over faces, which can be left and gone on with.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// Twice the area of the faces.
+    coarse: f64,
+    /// Twice the area of the four faces that each would be divided into, with lifted middles of edges.
+    fine: f64,
+    /// Area of the faces in units of the faces that are wanted where they are.
+    cells: f64,
+    /// Faces that look against the normal of a corner.
+    inverted: usize,
+}
+
+impl Tally {
+    /// Adds the areas of some faces.
+    pub(super) fn measure(&mut self, layer: &Layer, faces: Range<u32>) {
+        let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
+        for face in faces.filter_map(|f| layer.mesh.face(f)) {
+            let p = face.map(|v| layer.position[v as usize]);
+            let m = [0, 1, 2].map(|k| layer.middle(face[k], face[(k + 1) % 3]).0);
+            let area = twice(p);
+            self.coarse += area;
+            self.fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
+            if layer.is_graded() {
+                let size = f64::from(face.map(|v| layer.size_of(v)).iter().sum::<f32>()) / 3.0;
+                self.cells += 2.0 * area / (SQRT_3 * size * size);
+            }
+        }
+    }
+
+    /// Looks at some finished faces.
+    pub(super) fn inspect(&mut self, layer: &Layer, faces: Range<u32>) {
+        for face in faces.filter_map(|f| layer.mesh.face(f)) {
+            let area = layer.area_vector(face);
+            self.coarse += f64::from(area.length());
+            // Written so that NaN counts.
+            let is_upright = face.iter().all(|&v| area.dot(layer.normal[v as usize]) > 0.0);
+            self.inverted += usize::from(!is_upright);
+        }
+    }
+
+    /// Area of the faces.
+    pub(super) fn flat_area(&self) -> f64 {
+        0.5 * self.coarse
+    }
+
+    /// Area of the surface, by Richardson's extrapolation.
+    pub(super) fn area(&self) -> f64 {
+        0.5 * (4.0 * self.fine - self.coarse) / 3.0
+    }
+
+    /// Equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
+    pub(super) fn cells(&self) -> f64 {
+        self.cells * self.area() / self.flat_area()
+    }
+
+    pub(super) fn inverted(&self) -> usize {
+        self.inverted
+    }
+}
