@@ -26,7 +26,7 @@ const ROOMS: [Room; 4] = [
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
             ("trace", &["math", "particles"]),
-            ("mesh", &["math", "spatial", "particles"]),
+            ("mesh", &["math", "slices", "spatial", "particles"]),
             ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh", "trace"]),
             // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
             ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
@@ -42,6 +42,7 @@ const ROOMS: [Room; 4] = [
                     "differential",
                     "spatial",
                     "particles",
+                    "mesh",
                     "trace",
                     "sampler",
                     "quality",
@@ -54,7 +55,7 @@ const ROOMS: [Room; 4] = [
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
             ("web/values", &["answer"]),
-            ("web/core", &["field", "session"]),
+            ("web/core", &["field", "export", "session"]),
             ("web/points", &["field", "pointcloud"]),
             ("web/render", &["render"]),
         ],

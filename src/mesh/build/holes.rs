@@ -2,6 +2,7 @@
 
 use super::patch::{Gap, Patch};
 use crate::math::Bounds;
+use crate::slices::pause;
 
 /// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their
 /// mean where there is no other way.
@@ -31,7 +32,7 @@ impl Borders<'_> {
 }
 
 /// Fills the holes; the number of rounds it took.
-pub(super) fn fill(patch: &mut Patch, borders: &Borders) -> u32 {
+pub(super) async fn fill(patch: &mut Patch<'_>, borders: &Borders<'_>) -> u32 {
     let mut cutter = Cutter::default();
     for round in 0..ROUNDS {
         let mut resisting = Vec::new();
@@ -39,6 +40,7 @@ pub(super) fn fill(patch: &mut Patch, borders: &Borders) -> u32 {
             if borders.is_border(patch, &hole) {
                 continue;
             }
+            pause().await;
             if !cutter.cut(patch, &hole, faces_as_corners) && !cutter.cut(patch, &hole, faces_as_mean) {
                 resisting.push(hole);
             }

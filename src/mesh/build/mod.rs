@@ -23,11 +23,15 @@ mod stars;
 
 use super::topology::Topology;
 use crate::math::Bounds;
+use crate::slices::{self, pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::Vec3;
 use holes::Borders;
 use patch::Patch;
 use stars::Stars;
+
+/// Points that are looked at in one slice of work, where that takes some 10 ns each.
+const SLICE: usize = 2048;
 
 /// How points are joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,15 +81,20 @@ pub struct Triangulation {
 /// If the slices differ in length, or there are 2³¹ points or more.
 #[must_use]
 pub fn triangulate(position: &[Vec3], normal: &[Vec3], options: &Options) -> Triangulation {
+    slices::complete(in_slices(position, normal, options))
+}
+
+/// [`triangulate`] in slices of work. The last few look at all points and triangles, for some 50 ns each.
+pub(crate) async fn in_slices(position: &[Vec3], normal: &[Vec3], options: &Options<'_>) -> Triangulation {
     assert_eq!(position.len(), normal.len(), "every point has a normal");
     assert!(position.len() < 1 << 31, "indices of points have 31 bits");
     let is_usable = |i: usize| position[i].is_finite() && normal[i].try_normalize().is_some();
     let mut usable: Vec<bool> = (0..position.len()).map(is_usable).collect();
     loop {
-        let points = Points::new(position, normal, &usable);
-        let stars = Stars::new(&points.tree, &points.normal);
+        let points = Points::new(position, normal, &usable).await;
+        let stars = Stars::new(&points.tree, &points.normal).await;
         if stars.twins.is_empty() {
-            return points.triangulate(&stars, position.len(), options);
+            return points.triangulate(&stars, position.len(), options).await;
         }
         // They would be neighbours of everything that the first one is a neighbour of.
         for &twin in &stars.twins {
@@ -102,32 +111,39 @@ struct Points {
 }
 
 impl Points {
-    fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool]) -> Self {
+    async fn new(position: &[Vec3], normal: &[Vec3], usable: &[bool]) -> Self {
         let points: Vec<(Vec3, u32)> =
             position.iter().copied().zip(0..).filter(|&(_, i)| usable[i as usize]).collect();
-        let tree = Tree::of(points);
+        let tree = Tree::in_slices(points).await;
         let normal = tree.origin.iter().map(|&i| normal[i as usize].normalize_or_zero()).collect();
         Self { tree, normal }
     }
 
-    fn triangulate(&self, stars: &Stars, point_count: usize, options: &Options) -> Triangulation {
-        let mut patch = Patch::new(&self.tree.position, &self.normal, stars);
+    async fn triangulate(&self, stars: &Stars, point_count: usize, options: &Options<'_>) -> Triangulation {
+        let mut patch = Patch::new(&self.tree.position, &self.normal, stars).await;
         let agreed = patch.len();
         let borders = Borders { largest_hole: options.largest_hole, bounds: options.bounds };
-        settle::settle(&mut patch);
-        let rounds = holes::fill(&mut patch, &borders);
+        settle::settle(&mut patch).await;
+        let rounds = holes::fill(&mut patch, &borders).await;
         let mut keys = Vec::new();
-        for v in 0..self.tree.len() as u32 {
-            if patch.around(v).next().is_none() {
-                insert::insert(&mut patch, &self.tree, v, &mut keys);
+        for range in ranges(self.tree.len(), SLICE) {
+            for v in range.start as u32..range.end as u32 {
+                if patch.around(v).next().is_none() {
+                    insert::insert(&mut patch, &self.tree, v, &mut keys);
+                    pause().await;
+                }
             }
+            pause().await;
         }
         holes::unpinch(&mut patch);
+        pause().await;
 
         let origin = &self.tree.origin;
         let triangles: Vec<[u32; 3]> =
             patch.triangles().map(|triangle| triangle.map(|v| origin[v as usize])).collect();
+        pause().await;
         let topology = Topology::new(&triangles, point_count);
+        pause().await;
         let mut place = vec![u32::MAX; point_count];
         for (k, &i) in origin.iter().enumerate() {
             place[i as usize] = k as u32;

@@ -1,7 +1,9 @@
 //! The triangles on which stars agree, and changes to them in a few places.
 
+use super::SLICE;
 use super::stars::Stars;
 use crate::math::tangent_frame;
+use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
 
 /// No triangle, no list.
@@ -38,7 +40,7 @@ pub(super) struct Gap {
 impl<'a> Patch<'a> {
     /// The triangles that all their three corners see. No directed edge belongs to two of them, and each is counter-clockwise
     /// in the tangent planes of its corners.
-    pub(super) fn new(position: &'a [Vec3], normal: &'a [Vec3], stars: &'a Stars) -> Self {
+    pub(super) async fn new(position: &'a [Vec3], normal: &'a [Vec3], stars: &'a Stars) -> Self {
         let mut patch = Self {
             position,
             normal,
@@ -49,29 +51,41 @@ impl<'a> Patch<'a> {
             lists: Vec::new(),
             changed: Vec::new(),
         };
-        for i in 0..stars.len() as u32 {
-            let range = stars.range(i as usize);
-            for entry in range.clone() {
-                let a = stars.neighbour(entry);
-                if i < a
-                    && let Some(b) = stars.next(&range, entry).filter(|&b| i < b)
-                    && let Some(at_a) = stars.entry(a, b, i)
-                    && let Some(at_b) = stars.entry(b, i, a)
-                {
-                    let id = patch.triangles.len() as u32;
-                    patch.triangles.push([i, a, b]);
-                    for entry in [entry, at_a, at_b] {
-                        patch.of_entry[entry] = id;
-                    }
+        for range in ranges(stars.len(), SLICE / 4) {
+            for i in range.start as u32..range.end as u32 {
+                patch.add_agreed(i);
+            }
+            pause().await;
+        }
+        for range in ranges(stars.len(), SLICE) {
+            for i in range {
+                if patch.of_entry[stars.range(i)].contains(&NONE) {
+                    patch.list(i as u32);
+                }
+            }
+            pause().await;
+        }
+        patch
+    }
+
+    /// Adds the triangles of `i` with later vertices that all three see.
+    fn add_agreed(&mut self, i: u32) {
+        let stars = self.stars;
+        let range = stars.range(i as usize);
+        for entry in range.clone() {
+            let a = stars.neighbour(entry);
+            if i < a
+                && let Some(b) = stars.next(&range, entry).filter(|&b| i < b)
+                && let Some(at_a) = stars.entry(a, b, i)
+                && let Some(at_b) = stars.entry(b, i, a)
+            {
+                let id = self.triangles.len() as u32;
+                self.triangles.push([i, a, b]);
+                for entry in [entry, at_a, at_b] {
+                    self.of_entry[entry] = id;
                 }
             }
         }
-        for i in 0..stars.len() {
-            if patch.of_entry[stars.range(i)].contains(&NONE) {
-                patch.list(i as u32);
-            }
-        }
-        patch
     }
 
     /// Number of triangles.

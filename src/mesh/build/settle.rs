@@ -1,13 +1,17 @@
 //! Triangles on which only some of the stars agree: four points near a circle may each prefer another diagonal, since each sees
 //! the others in its own tangent plane. On a lattice they do so everywhere.
 
-use super::holes;
 use super::patch::Patch;
+use super::{SLICE, holes};
+use crate::slices::pause;
 
 /// Adds the triangles that fewer than three corners see, where their directed edges are free: those that two corners see before
 /// those that one sees, the ones with short edges first.
-pub(super) fn settle(patch: &mut Patch) {
-    for (_, _, [a, b, c]) in disputed(patch) {
+pub(super) async fn settle(patch: &mut Patch<'_>) {
+    for (k, (_, _, [a, b, c])) in disputed(patch).await.into_iter().enumerate() {
+        if k % SLICE == SLICE - 1 {
+            pause().await;
+        }
         let is_free = [(a, b), (b, c), (c, a)].iter().all(|&(a, b)| patch.with_side(a, b).is_none());
         if is_free && patch.agreement([a, b, c]).1 > 0.0 {
             patch.add([a, b, c]);
@@ -18,10 +22,13 @@ pub(super) fn settle(patch: &mut Patch) {
 
 /// Triangles that one corner sees or two, in the order in which they are tried: whether it is only one, the square of the
 /// longest side, the corners.
-fn disputed(patch: &Patch) -> Vec<(bool, f32, [u32; 3])> {
+async fn disputed(patch: &Patch<'_>) -> Vec<(bool, f32, [u32; 3])> {
     let stars = patch.stars;
     let mut triangles = Vec::new();
-    for &i in patch.changed() {
+    for (k, &i) in patch.changed().iter().enumerate() {
+        if k % SLICE == SLICE - 1 {
+            pause().await;
+        }
         let range = stars.range(i as usize);
         for entry in range.clone() {
             let a = stars.neighbour(entry);

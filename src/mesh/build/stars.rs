@@ -6,6 +6,7 @@
 
 use super::ball::{Ball, Surroundings};
 use crate::math::sort_few;
+use crate::slices::pause;
 use crate::spatial::tree::Tree;
 use core::ops::Range;
 use glam::Vec3;
@@ -19,6 +20,8 @@ const MOST_NEIGHBOURS: usize = 32;
 pub(super) const WIDEST: f32 = 2.0;
 /// Points nearer than this share of the ball's radius are one point.
 const TWIN: f32 = 1e-5;
+/// Points whose stars are made in one slice of work, at some 0.2 µs each.
+const SLICE: usize = 128;
 /// Marks, in [`Stars::entry`], that the triangle with this neighbour and the next one is narrow enough to be one of the mesh.
 const WEDGE: u32 = 1 << 31;
 
@@ -57,7 +60,7 @@ struct Star {
 
 impl Stars {
     /// The stars of the points of `tree` with the unit `normal`s (in tree order).
-    pub(super) fn new(tree: &Tree, normal: &[Vec3]) -> Self {
+    pub(super) async fn new(tree: &Tree, normal: &[Vec3]) -> Self {
         let n = tree.len();
         let mut stars = Self {
             start: Vec::with_capacity(n + 1),
@@ -66,8 +69,13 @@ impl Stars {
             twins: Vec::new(),
         };
         stars.start.push(0);
-        let mut scratch = Scratch::default();
+        let mut scratch = Box::<Scratch>::default();
+        let mut pause_at = SLICE;
         for (range, lo, hi) in tree.leaves() {
+            if range.start >= pause_at {
+                pause_at = range.start + SLICE;
+                pause().await;
+            }
             if lo == hi && range.len() > 1 {
                 stars.add_twins(range);
                 continue;
