@@ -1,32 +1,5 @@
 // Draws the twelve edges of the clip box as quads of constant width on the screen.
 
-// Copy of `Frame` in src/render/layout.rs, which documents the fields. A test compares the two.
-struct Frame {
-    clip_from_world: mat4x4<f32>,
-    eye: vec3<f32>,
-    perspective: f32,
-    forward: vec3<f32>,
-    disc_scale: f32,
-    key_light: vec3<f32>,
-    dim_backfaces: f32,
-    sky: vec3<f32>,
-    dim: f32,
-    background: vec4<f32>,
-    viewport: vec2<f32>,
-    pixel_ratio: f32,
-    time: f32,
-    box_min: vec3<f32>,
-    fade: f32,
-    box_max: vec3<f32>,
-    light_ground: f32,
-    box_colour: vec4<f32>,
-    level: f32,
-    mute: f32,
-    unused: vec2<f32>,
-}
-
-@group(0) @binding(0) var<uniform> frame: Frame;
-
 // Width of an edge in page pixels.
 const WIDTH = 1.25;
 // Smallest distance from the eye's plane at which an edge is drawn, as a share of the distance of its farther end.
@@ -50,15 +23,15 @@ fn edge_end(edge: u32, end: f32) -> vec3<f32> {
     } else if axis == 2u {
         s = vec3<f32>(a, b, end);
     }
-    return mix(frame.box_min, frame.box_max, s);
+    return mix(frame.clip_box.lo.xyz, frame.clip_box.hi.xyz, s);
 }
 
 @vertex
 fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32) -> Edge {
     var out: Edge;
-    out.clip = vec4<f32>(0.0, 0.0, 2.0, 1.0);
-    var start = frame.clip_from_world * vec4<f32>(edge_end(edge, 0.0), 1.0);
-    var to = frame.clip_from_world * vec4<f32>(edge_end(edge, 1.0), 1.0);
+    out.clip = hidden();
+    var start = frame.camera.clip_from_world * vec4<f32>(edge_end(edge, 0.0), 1.0);
+    var to = frame.camera.clip_from_world * vec4<f32>(edge_end(edge, 1.0), 1.0);
     // Clip the part of the edge that is behind the eye.
     let near = NEAR * max(start.w, to.w);
     if near <= 0.0 {
@@ -69,20 +42,20 @@ fn vs_box(@builtin(vertex_index) vertex: u32, @builtin(instance_index) edge: u32
     } else if to.w < near {
         to = mix(to, start, (near - to.w) / (start.w - to.w));
     }
-    let along_px = 0.5 * frame.viewport * (to.xy / to.w - start.xy / start.w);
+    let along_px = 0.5 * frame.camera.viewport * (to.xy / to.w - start.xy / start.w);
     let length_px = length(along_px);
     if length_px < 1e-3 {
         return out;
     }
     let along = along_px / length_px;
     let side = f32(vertex & 1u) * 2.0 - 1.0;
-    let half_px = 0.5 * WIDTH * frame.pixel_ratio;
+    let half_px = 0.5 * WIDTH * frame.camera.pixel_ratio;
     let reach_px = half_px + 1.0;
     let at = select(start, to, vertex > 1u);
     let outwards = select(-along, along, vertex > 1u);
     // Extend the edge by half its width past the corner, so that three edges meet without a notch.
     let shift_px = side * reach_px * vec2<f32>(-along.y, along.x) + half_px * outwards;
-    out.clip = at + vec4<f32>(shift_px * 2.0 / frame.viewport * at.w, 0.0, 0.0);
+    out.clip = at + vec4<f32>(shift_px * 2.0 / frame.camera.viewport * at.w, 0.0, 0.0);
     out.across_px = side * reach_px * at.w;
     out.half_px = half_px;
     return out;
@@ -93,9 +66,9 @@ fn fs_box(edge: Edge) -> @location(0) vec4<f32> {
     // Perspective interpolation of a value times w gives w times the value interpolated linearly on the screen. In the
     // fragment stage, clip.w is 1/w.
     let distance = abs(edge.across_px * edge.clip.w);
-    let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * frame.box_colour.a;
-    if alpha < 0.002 {
+    let alpha = clamp(edge.half_px + 0.5 - distance, 0.0, 1.0) * frame.clip_box.colour.a;
+    if alpha < NOTHING {
         discard;
     }
-    return vec4<f32>(frame.box_colour.rgb * alpha, alpha);
+    return vec4<f32>(frame.clip_box.colour.rgb * alpha, alpha);
 }

@@ -1,32 +1,5 @@
 // Draws particles as discs in their tangent planes, and a ring around one of them. See src/render/mod.rs.
 
-// Copy of `Frame` in src/render/layout.rs, which documents the fields. A test compares the two.
-struct Frame {
-    clip_from_world: mat4x4<f32>,
-    eye: vec3<f32>,
-    perspective: f32,
-    forward: vec3<f32>,
-    disc_scale: f32,
-    key_light: vec3<f32>,
-    dim_backfaces: f32,
-    sky: vec3<f32>,
-    dim: f32,
-    background: vec4<f32>,
-    viewport: vec2<f32>,
-    pixel_ratio: f32,
-    time: f32,
-    box_min: vec3<f32>,
-    fade: f32,
-    box_max: vec3<f32>,
-    light_ground: f32,
-    box_colour: vec4<f32>,
-    level: f32,
-    mute: f32,
-    unused: vec2<f32>,
-}
-
-@group(0) @binding(0) var<uniform> frame: Frame;
-
 // A particle, as RECORD_ATTRIBUTES and COLOUR_ATTRIBUTES in src/render/layout.rs describe it.
 struct Particle {
     @location(0) position: vec3<f32>,
@@ -75,18 +48,6 @@ const POINT_DEPTH = 2.0;
 const WIDE_PX = vec2<f32>(0.7, 1.7);
 // Coverage from which a pixel belongs to the core: of a point, of a narrow disc, of a wide disc.
 const CORE = vec3<f32>(0.15, 0.5, 0.96);
-// Coverage below which a pixel is discarded: half a step of an 8-bit channel.
-const NOTHING = 0.002;
-
-fn oct_decode(e: vec2<f32>) -> vec3<f32> {
-    let z = 1.0 - abs(e.x) - abs(e.y);
-    let fold = max(-z, 0.0);
-    return normalize(vec3<f32>(e.x + select(fold, -fold, e.x >= 0.0), e.y + select(fold, -fold, e.y >= 0.0), z));
-}
-
-fn linear_from_srgb(c: vec3<f32>) -> vec3<f32> {
-    return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
-}
 
 // Unit vector perpendicular to n and to the line of sight v: the axis of the disc that is not foreshortened.
 fn facing_axis(n: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
@@ -100,23 +61,18 @@ fn facing_axis(n: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
 
 // World direction d in clip coordinates.
 fn clip_direction(d: vec3<f32>) -> vec4<f32> {
-    let m = frame.clip_from_world;
+    let m = frame.camera.clip_from_world;
     return d.x * m[0] + d.y * m[1] + d.z * m[2];
 }
 
 // Derivative of the projection of `centre` on the screen, in pixels, along `direction` (both in clip coordinates).
 fn moved_px(centre: vec4<f32>, direction: vec4<f32>) -> vec2<f32> {
-    return 0.5 * frame.viewport * (direction.xy - centre.xy * (direction.w / centre.w)) / centre.w;
+    return 0.5 * frame.camera.viewport * (direction.xy - centre.xy * (direction.w / centre.w)) / centre.w;
 }
 
 // 1 for a point, 0 for a disc, by the larger semi-axis.
 fn pointness(axes: vec2<f32>) -> f32 {
     return 1.0 - smoothstep(SWELL_PX.x, SWELL_PX.y, axes.x);
-}
-
-// Position outside of the view volume, which culls the quad.
-fn hidden() -> vec4<f32> {
-    return vec4<f32>(0.0, 0.0, 2.0, 1.0);
 }
 
 fn quad_corner(vertex: u32) -> vec2<f32> {
@@ -143,16 +99,16 @@ fn vs_rim_front(@builtin(vertex_index) vertex: u32, particle: Particle) -> Disc 
 fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> Disc {
     var out: Disc;
     out.clip = hidden();
-    let age = select(1.0, clamp((frame.time - particle.birth) / max(frame.fade, 1e-6), 0.0, 1.0), frame.fade > 0.0);
+    let age = select(1.0, clamp((frame.growth.time - particle.birth) / max(frame.growth.fade, 1e-6), 0.0, 1.0), frame.growth.fade > 0.0);
     let appear = age * age * (3.0 - 2.0 * age);
     let opacity = appear * particle.colour.a;
-    let centre = frame.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || particle.level > frame.level || opacity <= NOTHING || centre.w <= 0.0 {
+    let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
+    if particle.radius <= 0.0 || particle.level > frame.growth.level || opacity <= NOTHING || centre.w <= 0.0 {
         return out;
     }
 
     let outward = oct_decode(particle.normal_oct);
-    let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
+    let v = toward_eye(particle.position);
     let behind = dot(outward, v) < 0.0;
     if side * select(1.0, -1.0, behind) < 0.0 {
         return out;
@@ -162,7 +118,7 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let b = cross(n, t);
     let clip_t = clip_direction(t);
     let clip_b = clip_direction(b);
-    let plain_r = particle.radius * frame.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
+    let plain_r = particle.radius * frame.look.disc_scale * mix(BIRTH_SIZE, 1.0, appear);
     let plain_px = plain_r * moved_px(centre, clip_t);
     let swell = mix(CLOSED, 1.0, smoothstep(SWELL_PX.x, SWELL_PX.y, length(plain_px)));
     let r = swell * plain_r;
@@ -178,18 +134,17 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let in_plane = corner * min(reach, vec2<f32>(MAX_REACH));
     let on_screen = corner * (reach - min(reach, vec2<f32>(MAX_REACH))) * axes;
     out.clip = centre + r * (in_plane.x * clip_t + in_plane.y * clip_b);
-    out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.viewport * out.clip.w, 0.0, 0.0);
+    out.clip += vec4<f32>((on_screen.x * a_dir + on_screen.y * b_dir) * 2.0 / frame.camera.viewport * out.clip.w, 0.0, 0.0);
     let deeper = out.clip - point_depth * pointness(axes) * r * clip_direction(v);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
 
     out.uv = corner * reach;
     out.colour = vec4<f32>(linear_from_srgb(particle.colour.rgb), opacity);
-    out.key = vec4<f32>(dot(frame.key_light, t), dot(frame.key_light, b), dot(frame.key_light, n), select(0.0, 1.0, behind));
+    out.key = vec4<f32>(dot(frame.light.key, t), dot(frame.light.key, b), dot(frame.light.key, n), select(0.0, 1.0, behind));
     let edge_on = 1.0 - dot(n, v);
-    out.sky = vec4<f32>(dot(frame.sky, t), dot(frame.sky, b), dot(frame.sky, n), edge_on);
+    out.sky = vec4<f32>(dot(frame.light.sky, t), dot(frame.light.sky, b), dot(frame.light.sky, n), edge_on);
     out.axes_px = axes;
-    let older = particle.level >= 0.0 && particle.level < frame.level;
-    out.faded = max(frame.dim, select(0.0, frame.mute, older));
+    out.faded = faded(particle.level);
     return out;
 }
 
@@ -206,12 +161,6 @@ fn coverage(disc: Disc) -> f32 {
     return clamp(min(0.5 + inside_px, widest), 0.0, 1.0);
 }
 
-// Mixes linear colours in steps that look even: the square root is close to the transfer function of sRGB.
-fn fade_to(colour: vec3<f32>, other: vec3<f32>, share: f32) -> vec3<f32> {
-    let root = mix(sqrt(colour), sqrt(other), share);
-    return root * root;
-}
-
 fn shade(disc: Disc) -> vec3<f32> {
     let full = smoothstep(1.5, 6.0, min(disc.axes_px.x, disc.axes_px.y));
     let rho = min(length(disc.uv), 1.0);
@@ -220,16 +169,12 @@ fn shade(disc: Disc) -> vec3<f32> {
     let scale = inverseSqrt(1.0 + dot(lean, lean));
     let toward_key = (dot(lean, disc.key.xy) + disc.key.z) * scale;
     let toward_sky = (dot(lean, disc.sky.xy) + disc.sky.z) * scale;
-    let hemisphere = mix(0.46, 0.66, 0.5 + 0.5 * toward_sky);
-    // Wrapped diffuse light reaches a little past the terminator, like light from a large source.
-    let key = max((toward_key + 0.25) / 1.25, 0.0);
-    var light = hemisphere + 0.52 * key * key;
-    // Rim and silhouette are darker, so that discs stand out from each other.
+    var light = brightness(toward_key, toward_sky, disc.sky.w);
+    // The rim is darker, so that discs stand out from each other.
     light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
-    light *= 1.0 - 0.30 * disc.sky.w * disc.sky.w * disc.sky.w;
     let front = disc.colour.rgb * light;
-    let seen = fade_to(front, frame.background.rgb, disc.key.w * frame.dim_backfaces);
-    return fade_to(seen, frame.background.rgb, disc.faded);
+    let seen = fade_to(front, frame.light.background.rgb, disc.key.w * frame.light.dim_backfaces);
+    return fade_to(seen, frame.light.background.rgb, disc.faded);
 }
 
 // Degree from 0 to 1 to which a disc is wide enough to cover pixels completely.
@@ -281,23 +226,23 @@ const RING_SQUASH = 0.35;
 fn vs_ring(@builtin(vertex_index) vertex: u32, particle: Particle) -> Ring {
     var out: Ring;
     out.clip = hidden();
-    let centre = frame.clip_from_world * vec4<f32>(particle.position, 1.0);
+    let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
     if particle.radius <= 0.0 || centre.w <= 0.0 {
         return out;
     }
     let n = oct_decode(particle.normal_oct);
-    let v = select(-frame.forward, normalize(frame.eye - particle.position), frame.perspective > 0.5);
+    let v = toward_eye(particle.position);
     let t = facing_axis(n, v);
-    let r = particle.radius * frame.disc_scale;
+    let r = particle.radius * frame.look.disc_scale;
     let a_px = r * moved_px(centre, clip_direction(t));
     let a = max(length(a_px), 1e-4);
     let squash = max(abs(dot(n, v)), RING_SQUASH);
-    let grow = (RING_GAP + 0.5 * RING_WIDTH) * frame.pixel_ratio;
-    out.axes_px = max(vec2<f32>(a, a * squash), vec2<f32>(RING_MIN * frame.pixel_ratio)) + grow;
-    out.offset_px = quad_corner(vertex) * (out.axes_px + 2.0 * RING_WIDTH * frame.pixel_ratio);
+    let grow = (RING_GAP + 0.5 * RING_WIDTH) * frame.camera.pixel_ratio;
+    out.axes_px = max(vec2<f32>(a, a * squash), vec2<f32>(RING_MIN * frame.camera.pixel_ratio)) + grow;
+    out.offset_px = quad_corner(vertex) * (out.axes_px + 2.0 * RING_WIDTH * frame.camera.pixel_ratio);
     let a_dir = a_px / a;
     let screen = out.offset_px.x * a_dir + out.offset_px.y * vec2<f32>(-a_dir.y, a_dir.x);
-    out.clip = centre + vec4<f32>(screen * 2.0 / frame.viewport * centre.w, 0.0, 0.0);
+    out.clip = centre + vec4<f32>(screen * 2.0 / frame.camera.viewport * centre.w, 0.0, 0.0);
     return out;
 }
 
@@ -307,11 +252,11 @@ fn fs_ring(ring: Ring) -> @location(0) vec4<f32> {
     let p = ring.offset_px / ring.axes_px;
     let rho = max(length(p), 1e-4);
     let distance = abs((rho - 1.0) * rho / max(length(p / ring.axes_px), 1e-6));
-    let half = 0.5 * RING_WIDTH * frame.pixel_ratio;
+    let half = 0.5 * RING_WIDTH * frame.camera.pixel_ratio;
     // A line that contrasts with the background has a thin casing like the background, so it is visible on any colour.
     let line = clamp(half + 0.5 - distance, 0.0, 1.0);
-    let casing = 0.8 * clamp(half + 0.75 * frame.pixel_ratio + 0.5 - distance, 0.0, 1.0);
-    let ink = vec3<f32>(mix(1.0, 0.01, frame.light_ground));
+    let casing = 0.8 * clamp(half + 0.75 * frame.camera.pixel_ratio + 0.5 - distance, 0.0, 1.0);
+    let ink = vec3<f32>(mix(1.0, 0.01, frame.look.light_ground));
     let ground = vec3<f32>(1.0) - ink;
     let alpha = max(line, casing);
     if alpha < NOTHING {

@@ -1,6 +1,6 @@
-//! Layout of the GPU data: one instance record per particle and one uniform block per picture.
+//! Layout of the instance records, one per particle and one per face of a mesh.
 //!
-//! The pipelines are built from the tables of attributes and fields, and a test compares the tables with the WGSL.
+//! The pipelines are built from the tables of attributes, and a test compares the tables with the WGSL.
 
 use bytemuck::{Pod, Zeroable};
 use core::mem::offset_of;
@@ -45,6 +45,42 @@ impl Record {
     }
 }
 
+/// Instance record of a triangle without its colours: 64 bytes. It repeats what it needs of its corners, because WebGL2 cannot
+/// look particles up by index, and a shader that has all three knows where in the triangle it is.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FaceRecord {
+    /// World position and repulsion radius of each corner, counter-clockwise seen from outside. A face with a radius 0 is not
+    /// drawn.
+    pub corners: [[f32; 4]; 3],
+    /// Normals of the corners, as in [`Record`].
+    pub normals: [[i16; 2]; 3],
+    /// Newest generation level among the corners, or −1 where none has a level.
+    pub level: f32,
+}
+
+/// Colours of a triangle's corners, and of the marks on them, which are opaque where there is one: 24 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FaceTint {
+    /// sRGB red, green, blue and opacity of 8 bits each.
+    pub colours: [u32; 3],
+    /// The same for the marks.
+    pub marks: [u32; 3],
+}
+
+impl FaceRecord {
+    /// Packs a triangle of three particles.
+    #[must_use]
+    pub fn new(corners: [Record; 3]) -> Self {
+        Self {
+            corners: corners.map(|Record { position: [x, y, z], radius, .. }| [x, y, z, radius]),
+            normals: corners.map(|corner| corner.normal),
+            level: corners.iter().map(|corner| corner.level).fold(-1.0, f32::max),
+        }
+    }
+}
+
 /// Octahedral encoding of a direction, as two signed normalised 16-bit integers (Q. Meyer et al., "On Floating-Point
 /// Normal Vectors", 2010; Z. H. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
 /// JCGT 3(2), 2014).
@@ -77,69 +113,6 @@ pub fn oct_decode(e: [i16; 2]) -> [f32; 3] {
     v.map(|c| c / length)
 }
 
-/// Uniform block `Frame` of all shaders: camera, light and style of a picture.
-///
-/// The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. [`Frame::FIELDS`]
-/// lists them for a test.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Frame {
-    /// Matrix from world to clip coordinates, column-major, with depth from 0 to 1.
-    pub clip_from_world: [[f32; 4]; 4],
-    /// Position of the eye in world coordinates, for a perspective camera.
-    pub eye: [f32; 3],
-    /// 1 for a perspective camera, 0 for an orthographic one.
-    pub perspective: f32,
-    /// Unit viewing direction in world coordinates.
-    pub forward: [f32; 3],
-    /// Radius of a disc in repulsion radii.
-    pub disc_scale: f32,
-    /// Unit direction to the key light, in world coordinates.
-    pub key_light: [f32; 3],
-    /// Fraction by which discs seen from behind fade to the background, 0 to 1.
-    pub dim_backfaces: f32,
-    /// Unit direction to the sky of the hemispherical light, in world coordinates.
-    pub sky: [f32; 3],
-    /// Fraction by which the whole picture fades to the background, 0 to 1.
-    pub dim: f32,
-    /// Background colour, linear, not premultiplied by its opacity.
-    pub background: [f32; 4],
-    /// Width and height of the target in pixels.
-    pub viewport: [f32; 2],
-    /// Target pixels per page pixel, the unit of line widths.
-    pub pixel_ratio: f32,
-    /// Current time in seconds on the renderer's clock.
-    pub time: f32,
-    /// Smallest corner of the clip box.
-    pub box_min: [f32; 3],
-    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
-    pub fade: f32,
-    /// Largest corner of the clip box.
-    pub box_max: [f32; 3],
-    /// 1 for a light background, 0 for a dark one.
-    pub light_ground: f32,
-    /// Colour of the edges of the box, linear, not premultiplied by its opacity.
-    pub box_colour: [f32; 4],
-    /// Newest generation level that is drawn. Larger than every level if all are drawn.
-    pub level: f32,
-    /// Fraction by which levels before the newest fade to the background, 0 to 1.
-    pub mute: f32,
-    /// Padding: the size of a uniform block is a multiple of 16 bytes.
-    pub unused: [f32; 2],
-}
-
-macro_rules! offsets {
-    ($type:ty: $($field:ident),+ $(,)?) => { &[$((stringify!($field), offset_of!($type, $field))),+] };
-}
-
-impl Frame {
-    /// Name and byte offset of each field, in order.
-    pub const FIELDS: &'static [(&'static str, usize)] = offsets!(Frame:
-        clip_from_world, eye, perspective, forward, disc_scale, key_light, dim_backfaces, sky, dim,
-        background, viewport, pixel_ratio, time, box_min, fade, box_max, light_ground, box_colour, level, mute, unused,
-    );
-}
-
 /// Format of a vertex attribute, with its WebGPU name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -147,6 +120,8 @@ pub enum Format {
     Float32,
     /// Three single-precision numbers.
     Float32x3,
+    /// Four single-precision numbers.
+    Float32x4,
     /// Two signed normalised 16-bit integers.
     Snorm16x2,
     /// Four unsigned normalised bytes.
@@ -161,7 +136,7 @@ impl Format {
             Self::Float32 => 1,
             Self::Snorm16x2 => 2,
             Self::Float32x3 => 3,
-            Self::Unorm8x4 => 4,
+            Self::Float32x4 | Self::Unorm8x4 => 4,
         }
     }
 
@@ -170,6 +145,7 @@ impl Format {
     pub const fn size(self) -> usize {
         match self {
             Self::Float32x3 => 12,
+            Self::Float32x4 => 16,
             Self::Float32 | Self::Snorm16x2 | Self::Unorm8x4 => 4,
         }
     }
@@ -198,6 +174,27 @@ pub const RECORD_ATTRIBUTES: [Attribute; 5] = [
 /// Vertex attribute of the colour buffer.
 pub const COLOUR_ATTRIBUTES: [Attribute; 1] =
     [Attribute { location: 5, offset: 0, format: Format::Unorm8x4 }];
+
+/// Vertex attributes of a [`FaceRecord`].
+pub const FACE_ATTRIBUTES: [Attribute; 7] = [
+    Attribute { location: 0, offset: 0, format: Format::Float32x4 },
+    Attribute { location: 1, offset: 16, format: Format::Float32x4 },
+    Attribute { location: 2, offset: 32, format: Format::Float32x4 },
+    Attribute { location: 3, offset: offset_of!(FaceRecord, normals), format: Format::Snorm16x2 },
+    Attribute { location: 4, offset: offset_of!(FaceRecord, normals) + 4, format: Format::Snorm16x2 },
+    Attribute { location: 5, offset: offset_of!(FaceRecord, normals) + 8, format: Format::Snorm16x2 },
+    Attribute { location: 6, offset: offset_of!(FaceRecord, level), format: Format::Float32 },
+];
+
+/// Vertex attributes of a [`FaceTint`].
+pub const TINT_ATTRIBUTES: [Attribute; 6] = [
+    Attribute { location: 7, offset: 0, format: Format::Unorm8x4 },
+    Attribute { location: 8, offset: 4, format: Format::Unorm8x4 },
+    Attribute { location: 9, offset: 8, format: Format::Unorm8x4 },
+    Attribute { location: 10, offset: offset_of!(FaceTint, marks), format: Format::Unorm8x4 },
+    Attribute { location: 11, offset: offset_of!(FaceTint, marks) + 4, format: Format::Unorm8x4 },
+    Attribute { location: 12, offset: offset_of!(FaceTint, marks) + 8, format: Format::Unorm8x4 },
+];
 
 #[cfg(test)]
 #[allow(clippy::disallowed_methods, reason = "the tests go round circles; nothing depends on the last bits")]
@@ -250,13 +247,30 @@ mod tests {
     }
 
     #[test]
-    fn attributes_tile_the_record_without_gap_or_overlap() {
-        let mut at = 0;
-        for attribute in RECORD_ATTRIBUTES {
-            assert_eq!(attribute.offset, at, "location {}", attribute.location);
-            at += attribute.format.size();
+    fn a_face_has_the_newest_level_of_its_corners() {
+        let corner = |level| Record::new([1.0, 2.0, 3.0], [0.0, 0.0, 1.0], 0.5, 0.0, level);
+        let face = FaceRecord::new([corner(4), corner(7), corner(5)]);
+        assert_eq!((face.level, face.corners[1], face.normals[2]), (7.0, [1.0, 2.0, 3.0, 0.5], [0, 0]));
+        assert_eq!(FaceRecord::new([corner(u32::MAX); 3]).level, -1.0);
+        let lost = Record::new([f32::NAN, 0.0, 0.0], [0.0; 3], 0.5, 0.0, 0);
+        assert_eq!(FaceRecord::new([corner(0), lost, corner(0)]).corners[1][3], 0.0);
+    }
+
+    #[test]
+    fn attributes_tile_their_records_without_gap_or_overlap() {
+        let tables: [(&[Attribute], usize); 4] = [
+            (&RECORD_ATTRIBUTES, size_of::<Record>()),
+            (&COLOUR_ATTRIBUTES, COLOUR_STRIDE),
+            (&FACE_ATTRIBUTES, size_of::<FaceRecord>()),
+            (&TINT_ATTRIBUTES, size_of::<FaceTint>()),
+        ];
+        for (table, size) in tables {
+            let mut at = 0;
+            for attribute in table {
+                assert_eq!(attribute.offset, at, "location {}", attribute.location);
+                at += attribute.format.size();
+            }
+            assert_eq!(at, size);
         }
-        assert_eq!(at, size_of::<Record>());
-        assert_eq!(COLOUR_ATTRIBUTES[0].format.size(), COLOUR_STRIDE);
     }
 }

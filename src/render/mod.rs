@@ -1,4 +1,4 @@
-//! Renderer of particles as discs, on WebGPU and WebGL2 through wgpu.
+//! Renderer of particles, as discs or as the faces between them, on WebGPU and WebGL2 through wgpu.
 //!
 //! The renderer takes columns of numbers and a camera matrix; it knows no field and no sampler.
 //!
@@ -20,10 +20,25 @@
 //!   enlarged until they touch. The core pass accepts pixels with little coverage and writes a slightly larger depth;
 //!   the rim passes then blend all points of the nearest sheet. A pixel shows the average of the points in it, and
 //!   coverage decreases with the size of a point, so that the picture is steady under motion.
-//! * **Colour.** Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
+//!
+//! # How a mesh is drawn
+//!
+//! * **Geometry.** Each face is an instanced triangle whose record repeats the three corners. A fragment then knows its
+//!   barycentric coordinates and all corners, which indexed triangles could not tell it without storage buffers.
+//! * **Edges** lie in the faces: a fragment's distance from a side in pixels is its barycentric coordinate over the slope of
+//!   that. Each of two neighbours draws half of the line, which is as wide on the screen everywhere. Where faces are so
+//!   small that lines would fill them, lines fade.
+//! * **Marks** are dots around corners, in the faces as well. They lie on the surface and are cut off by it.
+//! * **Silhouettes** are antialiased by four samples per pixel, for which the pipelines are compiled when the first faces are
+//!   drawn.
+//!
+//! # Colour
+//!
+//! Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
 //! The modules for layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.
 
+pub mod frame;
 pub mod layout;
 pub mod pixels;
 pub mod shaders;
@@ -31,13 +46,19 @@ pub mod style;
 pub mod view;
 
 #[cfg(feature = "render")]
+mod gpu;
+#[cfg(feature = "render")]
 mod painter;
 #[cfg(feature = "render")]
 mod pipelines;
 #[cfg(feature = "render")]
 mod renderer;
 #[cfg(feature = "render")]
+mod screen;
+#[cfg(feature = "render")]
 mod store;
 
 #[cfg(feature = "render")]
-pub use renderer::{Callbacks, CreateError, OnError, OnLost, Outcome, Picture, Renderer};
+pub use gpu::{Callbacks, CreateError, OnError, OnLost};
+#[cfg(feature = "render")]
+pub use renderer::{Columns, Outcome, Picture, Renderer};

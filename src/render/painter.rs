@@ -1,21 +1,40 @@
 //! Encoder of the render pass of a picture.
 
-use super::layout::Frame;
-use super::pipelines::{DEPTH_FORMAT, Pipelines};
+use super::frame::Frame;
+use super::pipelines::{DEPTH_FORMAT, FrameBinding, Pipelines, TargetKind};
 use super::store::Store;
+
+/// Samples per pixel of a picture with faces. The silhouette of a mesh has no rim that a shader could antialias. All devices of
+/// WebGPU and WebGL2 have targets with four samples, and not all with another number.
+const FACE_SAMPLES: u32 = 4;
 
 /// Draws pictures into targets.
 pub(super) struct Painter {
-    pipelines: Pipelines,
-    /// Depth buffer of the canvas, kept between pictures.
-    depth: Option<wgpu::Texture>,
+    format: wgpu::TextureFormat,
+    frame: FrameBinding,
+    /// For pictures of discs alone.
+    discs: Pipelines,
+    /// For pictures with faces, from the first one on.
+    faces: Option<Pipelines>,
+    /// Buffers of the canvas, kept between pictures.
+    buffers: Option<Buffers>,
+}
+
+/// The textures that a picture is drawn with, besides its target.
+#[derive(Clone)]
+struct Buffers {
+    depth: wgpu::Texture,
+    /// What is resolved to the target, where a pixel has several samples.
+    samples: Option<wgpu::Texture>,
 }
 
 /// Contents of a picture.
 pub(super) struct Scene<'a> {
-    pub(super) store: &'a Store,
-    /// Particles `0..count` are drawn.
+    pub(super) particles: &'a Store,
+    /// Particles `0..count` are there.
     pub(super) count: u32,
+    /// Faces, their number, and the number of particles that they stand for: only those after them are drawn as discs.
+    pub(super) faces: Option<(&'a Store, u32, u32)>,
     /// Index of a particle that is marked by a ring.
     pub(super) outline: Option<u32>,
     /// Whether the edges of the clip box are drawn.
@@ -25,49 +44,65 @@ pub(super) struct Scene<'a> {
     pub(super) transparent: bool,
 }
 
+/// Where a picture is drawn.
+pub(super) struct Canvas<'a> {
+    pub(super) view: &'a wgpu::TextureView,
+    pub(super) size: [u32; 2],
+    /// Whether the buffers are kept for the next target of the same size.
+    pub(super) keep: bool,
+}
+
 impl Painter {
+    /// Compiles the pipelines for targets of `format`, which must be an sRGB format so that blending is linear.
     pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        Self { pipelines: Pipelines::new(device, format), depth: None }
+        let frame = FrameBinding::new(device);
+        let discs = Pipelines::new(device, &frame, TargetKind { format, samples: 1 });
+        Self { format, frame, discs, faces: None, buffers: None }
     }
 
-    /// Drops the depth buffer, since the size of the target has changed.
-    pub(super) fn forget_depth(&mut self) {
-        self.depth = None;
+    /// Drops the buffers, since the size of the target has changed.
+    pub(super) fn forget_buffers(&mut self) {
+        self.buffers = None;
     }
 
-    /// Encodes and submits a picture. If `keep` is set, the depth buffer is kept for the next target of the same size.
+    /// Encodes and submits a picture.
     pub(super) fn paint(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        target: &wgpu::TextureView,
-        size: [u32; 2],
-        keep: bool,
+        canvas: &Canvas<'_>,
         scene: &Scene<'_>,
     ) {
-        queue.write_buffer(&self.pipelines.frame, 0, bytemuck::bytes_of(&scene.frame));
-        let depth = match &self.depth {
-            Some(depth) if [depth.width(), depth.height()] == size => depth.clone(),
-            _ => depth_texture(device, size),
+        queue.write_buffer(&self.frame.buffer, 0, bytemuck::bytes_of(&scene.frame));
+        let samples = if scene.faces.is_some() { FACE_SAMPLES } else { 1 };
+        let target = TargetKind { format: self.format, samples };
+        let buffers = match &self.buffers {
+            Some(buffers) if buffers.fit(canvas.size, target) => buffers.clone(),
+            _ => Buffers::new(device, canvas.size, target),
         };
-        if keep {
-            self.depth = Some(depth.clone());
+        if canvas.keep {
+            self.buffers = Some(buffers.clone());
         }
-        let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
-        let [r, g, b, _] = scene.frame.background.map(f64::from);
-        let clear =
-            if scene.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
+        let pipelines = if scene.faces.is_some() {
+            self.faces.get_or_insert_with(|| Pipelines::new(device, &self.frame, target))
+        } else {
+            &self.discs
+        };
+        let sampled = buffers.samples.as_ref().map(view_of);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
+                view: sampled.as_ref().unwrap_or(canvas.view),
                 depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+                resolve_target: sampled.as_ref().map(|_| canvas.view),
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(scene.clear_colour()),
+                    store: if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
+                },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth_view,
+                view: &view_of(&buffers.depth),
                 depth_ops: Some(wgpu::Operations {
                     load: wgpu::LoadOp::Clear(1.0),
                     store: wgpu::StoreOp::Discard,
@@ -76,43 +111,83 @@ impl Painter {
             }),
             ..wgpu::RenderPassDescriptor::default()
         });
-        pass.set_bind_group(0, &self.pipelines.bind_group, &[]);
-        let [behind, front] = &self.pipelines.rims;
-        for pipeline in [&self.pipelines.core, behind, front] {
-            pass.set_pipeline(pipeline);
-            draw_particles(&mut pass, scene.store, 0..scene.count);
-        }
-        if scene.clip_box {
-            pass.set_pipeline(&self.pipelines.clip_box);
-            pass.draw(0..4, 0..12);
-        }
-        if let Some(index) = scene.outline.filter(|&index| index < scene.count) {
-            pass.set_pipeline(&self.pipelines.ring);
-            draw_particles(&mut pass, scene.store, index..index + 1);
-        }
+        pass.set_bind_group(0, &self.frame.group, &[]);
+        scene.draw(&mut pass, pipelines);
         drop(pass);
         queue.submit([encoder.finish()]);
     }
 }
 
-/// Draws a quad per particle. The buffer slices begin at the first particle drawn, because WebGL2 has no base instance.
-fn draw_particles(pass: &mut wgpu::RenderPass<'_>, store: &Store, range: core::ops::Range<u32>) {
-    for run in store.runs(range) {
-        pass.set_vertex_buffer(0, run.records);
-        pass.set_vertex_buffer(1, run.colours);
-        pass.draw(0..4, 0..run.count);
+impl Scene<'_> {
+    fn clear_colour(&self) -> wgpu::Color {
+        let [r, g, b, _] = self.frame.light.background.map(f64::from);
+        if self.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipelines: &Pipelines) {
+        let mut first_disc = 0;
+        if let Some((faces, count, particles)) = self.faces {
+            pass.set_pipeline(&pipelines.faces);
+            draw_instances(pass, faces, 3, 0..count);
+            first_disc = particles;
+        }
+        let [behind, front] = &pipelines.rims;
+        for pipeline in [&pipelines.core, behind, front] {
+            pass.set_pipeline(pipeline);
+            draw_instances(pass, self.particles, 4, first_disc..self.count);
+        }
+        if self.clip_box {
+            pass.set_pipeline(&pipelines.clip_box);
+            pass.draw(0..4, 0..12);
+        }
+        if let Some(index) = self.outline.filter(|&index| index < self.count) {
+            pass.set_pipeline(&pipelines.ring);
+            draw_instances(pass, self.particles, 4, index..index + 1);
+        }
     }
 }
 
-fn depth_texture(device: &wgpu::Device, size: [u32; 2]) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("depth"),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: DEPTH_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-        view_formats: &[],
-    })
+/// Draws a strip of so many vertices per record. The buffer slices begin at the first record drawn, because WebGL2 has no base
+/// instance.
+fn draw_instances(
+    pass: &mut wgpu::RenderPass<'_>,
+    store: &Store,
+    vertices: u32,
+    range: core::ops::Range<u32>,
+) {
+    for run in store.runs(range) {
+        for (slot, buffer) in run.buffers.into_iter().enumerate() {
+            pass.set_vertex_buffer(slot as u32, buffer);
+        }
+        pass.draw(0..vertices, 0..run.count);
+    }
+}
+
+impl Buffers {
+    fn new(device: &wgpu::Device, [width, height]: [u32; 2], target: TargetKind) -> Self {
+        let texture = |label, format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: target.samples,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        Self {
+            depth: texture("depth", DEPTH_FORMAT),
+            samples: (target.samples > 1).then(|| texture("samples", target.format)),
+        }
+    }
+
+    fn fit(&self, size: [u32; 2], target: TargetKind) -> bool {
+        [self.depth.width(), self.depth.height()] == size && self.depth.sample_count() == target.samples
+    }
+}
+
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -1,26 +1,44 @@
 //! Render pipelines and the uniform buffer that they share.
 
-use super::layout::{Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, Format, Frame, RECORD_ATTRIBUTES, Record};
-use super::shaders::{BOX, DISCS};
+use super::frame::Frame;
+use super::layout::{
+    Attribute, COLOUR_ATTRIBUTES, COLOUR_STRIDE, FACE_ATTRIBUTES, FaceRecord, FaceTint, Format,
+    RECORD_ATTRIBUTES, Record, TINT_ATTRIBUTES,
+};
+use super::shaders::{BOX, DISCS, FACES};
 
 /// Format of the depth buffers.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Pipelines for a colour format.
+/// The uniform buffer for a [`Frame`], which all pipelines of a device share.
+pub(super) struct FrameBinding {
+    pub(super) buffer: wgpu::Buffer,
+    pub(super) group: wgpu::BindGroup,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// Pipelines for a target.
 pub(super) struct Pipelines {
     /// Draws fully covered pixels of discs, with depth test and depth writes.
     pub(super) core: wgpu::RenderPipeline,
     /// Blend partly covered pixels of discs seen from behind and of discs seen from the front, with depth test, without
     /// depth writes.
     pub(super) rims: [wgpu::RenderPipeline; 2],
+    /// Draws faces, with depth test and depth writes.
+    pub(super) faces: wgpu::RenderPipeline,
     /// Blends a ring around a particle over everything.
     pub(super) ring: wgpu::RenderPipeline,
     /// Blends the edges of the clip box, with depth test, without depth writes.
     pub(super) clip_box: wgpu::RenderPipeline,
-    /// Uniform buffer for a [`Frame`].
-    pub(super) frame: wgpu::Buffer,
-    /// Bind group of [`Pipelines::frame`].
-    pub(super) bind_group: wgpu::BindGroup,
+}
+
+/// What pipelines draw into.
+#[derive(Clone, Copy)]
+pub(super) struct TargetKind {
+    /// An sRGB format, so that blending is linear.
+    pub(super) format: wgpu::TextureFormat,
+    /// Samples per pixel.
+    pub(super) samples: u32,
 }
 
 /// Blending of colours that are premultiplied by their opacity.
@@ -38,23 +56,24 @@ struct Recipe<'a> {
 }
 
 impl Pipelines {
-    /// Compiles the pipelines for targets of `format`, which must be an sRGB format so that blending is linear.
-    pub(super) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let [discs, edges] = [DISCS, BOX].map(|shader| {
+    /// Compiles the pipelines for a target.
+    pub(super) fn new(device: &wgpu::Device, frame: &FrameBinding, target: TargetKind) -> Self {
+        let [discs, faces, edges] = [DISCS, FACES, BOX].map(|shader| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(shader.name),
                 source: wgpu::ShaderSource::Wgsl(shader.lean.into()),
             })
         });
-        let (frame, bind_layout, bind_group) = frame_binding(device);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("frame"),
-            bind_group_layouts: &[Some(&bind_layout)],
+            bind_group_layouts: &[Some(&frame.layout)],
             immediate_size: 0,
         });
 
         let record = RECORD_ATTRIBUTES.map(vertex_attribute);
         let colour = COLOUR_ATTRIBUTES.map(vertex_attribute);
+        let face = FACE_ATTRIBUTES.map(vertex_attribute);
+        let tint = TINT_ATTRIBUTES.map(vertex_attribute);
         let instance = |stride: usize| wgpu::VertexBufferLayout {
             array_stride: stride as u64,
             step_mode: wgpu::VertexStepMode::Instance,
@@ -63,6 +82,10 @@ impl Pipelines {
         let particles = [
             Some(wgpu::VertexBufferLayout { attributes: &record, ..instance(size_of::<Record>()) }),
             Some(wgpu::VertexBufferLayout { attributes: &colour, ..instance(COLOUR_STRIDE) }),
+        ];
+        let triangles = [
+            Some(wgpu::VertexBufferLayout { attributes: &face, ..instance(size_of::<FaceRecord>()) }),
+            Some(wgpu::VertexBufferLayout { attributes: &tint, ..instance(size_of::<FaceTint>()) }),
         ];
         let disc = Recipe {
             label: "disc core",
@@ -73,10 +96,18 @@ impl Pipelines {
             depth_write: true,
             depth_compare: wgpu::CompareFunction::LessEqual,
         };
-        let make = |recipe: Recipe<'_>| pipeline(device, &layout, format, &recipe);
+        let make = |recipe: Recipe<'_>| pipeline(device, &layout, target, &recipe);
         Self {
             rims: ["vs_rim_behind", "vs_rim_front"].map(|vertex| {
                 make(Recipe { label: "disc rim", vertex, fragment: "fs_rim", depth_write: false, ..disc })
+            }),
+            faces: make(Recipe {
+                label: "face",
+                shader: &faces,
+                vertex: "vs_face",
+                fragment: "fs_face",
+                buffers: &triangles,
+                ..disc
             }),
             ring: make(Recipe {
                 label: "ring",
@@ -96,46 +127,45 @@ impl Pipelines {
                 ..disc
             }),
             core: make(disc),
-            frame,
-            bind_group,
         }
     }
 }
 
-/// Uniform buffer for a [`Frame`], with its bind group and the layout of that.
-fn frame_binding(device: &wgpu::Device) -> (wgpu::Buffer, wgpu::BindGroupLayout, wgpu::BindGroup) {
-    let label = Some("frame");
-    let frame = device.create_buffer(&wgpu::BufferDescriptor {
-        label,
-        size: size_of::<Frame>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label,
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: wgpu::BufferSize::new(size_of::<Frame>() as u64),
-            },
-            count: None,
-        }],
-    });
-    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label,
-        layout: &layout,
-        entries: &[wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() }],
-    });
-    (frame, layout, bind_group)
+impl FrameBinding {
+    pub(super) fn new(device: &wgpu::Device) -> Self {
+        let label = Some("frame");
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label,
+            size: size_of::<Frame>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label,
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: wgpu::BufferSize::new(size_of::<Frame>() as u64),
+                },
+                count: None,
+            }],
+        });
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label,
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+        });
+        Self { buffer, group, layout }
+    }
 }
 
 fn pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
-    format: wgpu::TextureFormat,
+    target: TargetKind,
     recipe: &Recipe<'_>,
 ) -> wgpu::RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -158,13 +188,13 @@ fn pipeline(
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState::default(),
+        multisample: wgpu::MultisampleState { count: target.samples, ..wgpu::MultisampleState::default() },
         fragment: Some(wgpu::FragmentState {
             module: recipe.shader,
             entry_point: Some(recipe.fragment),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
-                format,
+                format: target.format,
                 blend: Some(BLEND),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
@@ -179,6 +209,7 @@ fn vertex_attribute(attribute: Attribute) -> wgpu::VertexAttribute {
         format: match attribute.format {
             Format::Float32 => wgpu::VertexFormat::Float32,
             Format::Float32x3 => wgpu::VertexFormat::Float32x3,
+            Format::Float32x4 => wgpu::VertexFormat::Float32x4,
             Format::Snorm16x2 => wgpu::VertexFormat::Snorm16x2,
             Format::Unorm8x4 => wgpu::VertexFormat::Unorm8x4,
         },

@@ -1,11 +1,11 @@
 //! Sources of the shaders.
 
-/// A shader.
+/// A shader: the text common to all, and its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
     /// File name in `shaders/`.
     pub name: &'static str,
-    /// Text of the file.
+    /// The common text and that of the file.
     pub source: &'static str,
     /// Text without comments and indentation, which is what the device gets and what the bundle contains.
     pub lean: &'static str,
@@ -13,7 +13,10 @@ pub struct Shader {
 
 macro_rules! shader {
     ($name:literal) => {{
-        const SOURCE: &str = include_str!(concat!("../../shaders/", $name));
+        const SOURCE: &str = concat!(
+            include_str!("../../shaders/common.wgsl"),
+            include_str!(concat!("../../shaders/", $name))
+        );
         const LEAN: [u8; strip(SOURCE, &mut [])] = {
             let mut bytes = [0; strip(SOURCE, &mut [])];
             strip(SOURCE, &mut bytes);
@@ -26,11 +29,16 @@ macro_rules! shader {
         Shader { name: $name, source: SOURCE, lean: TEXT }
     }};
 }
+/// File name in `shaders/` of the text that every shader begins with.
+pub const COMMON: &str = "common.wgsl";
+
 /// All shaders. A test checks that they are the files in `shaders/`.
-pub const SHADERS: [Shader; 2] = [DISCS, BOX];
+pub const SHADERS: [Shader; 3] = [DISCS, FACES, BOX];
 
 /// Draws particles as discs, and a ring around one of them.
 pub const DISCS: Shader = shader!("discs.wgsl");
+/// Draws the triangles of a mesh.
+pub const FACES: Shader = shader!("faces.wgsl");
 /// Draws the edges of the clip box.
 pub const BOX: Shader = shader!("box.wgsl");
 

@@ -1,119 +1,83 @@
-//! Particles on the GPU, in chunks of instance buffers that grow and keep their content.
+//! Records on the GPU, in chunks of instance buffers that grow and keep their content.
 
-use super::layout::{COLOUR_STRIDE, Record};
 use core::ops::Range;
 
-/// Particles per chunk: 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and
-/// takes only 4 draw calls per pass for a million particles.
+/// Records per chunk: for particles 7 MiB of records and 1 MiB of colours. That is far below the buffer limit of any device and
+/// takes only 4 draw calls per pass for a million of them.
 const CHUNK: u32 = 1 << 18;
 /// Initial capacity of the first chunk.
 const FIRST: u32 = 1 << 12;
 
-/// Instance buffers of all particles.
-#[derive(Default)]
+/// What the two buffers of a chunk hold: the geometry of each record and, apart from it, its colours, which change more often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Records,
+    Colours,
+}
+
+/// Instance buffers of records of one kind.
 pub(super) struct Store {
+    /// Bytes of a record and of its colours.
+    strides: [u64; 2],
     chunks: Vec<Chunk>,
-    scratch: Vec<Record>,
 }
 
 struct Chunk {
-    records: wgpu::Buffer,
-    colours: wgpu::Buffer,
+    buffers: [wgpu::Buffer; 2],
     capacity: u32,
 }
 
-/// Consecutive particles in one chunk, as slices of its vertex buffers.
+/// Consecutive records in one chunk, as slices of its vertex buffers.
 pub(super) struct Run<'a> {
-    pub(super) records: wgpu::BufferSlice<'a>,
-    pub(super) colours: wgpu::BufferSlice<'a>,
+    pub(super) buffers: [wgpu::BufferSlice<'a>; 2],
     pub(super) count: u32,
 }
 
-/// Columns of particles to write, with one entry per particle, or three for vectors.
-#[derive(Clone, Copy)]
-pub(super) struct Columns<'a> {
-    pub(super) positions: &'a [f32],
-    pub(super) normals: &'a [f32],
-    pub(super) radii: &'a [f32],
-    pub(super) levels: &'a [u32],
-    pub(super) colours: &'a [u32],
-    pub(super) birth: f32,
-}
-
 impl Store {
-    /// Maximum number of particles, which take 128 MiB on the GPU.
+    /// Maximum number of records.
     pub(super) const MAX: u32 = 1 << 22;
 
-    /// Packs and uploads particles from `first` on. Buffers grow as needed.
-    ///
-    /// # Panics
-    ///
-    /// If the columns differ in length or end beyond [`Store::MAX`].
-    pub(super) fn write(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        first: u32,
-        columns: Columns<'_>,
-    ) {
-        let count = columns.radii.len();
-        assert!(
-            columns.positions.len() == 3 * count
-                && columns.normals.len() == 3 * count
-                && columns.levels.len() == count,
-            "columns of {count} radii, {} positions, {} normals, {} levels",
-            columns.positions.len() / 3,
-            columns.normals.len() / 3,
-            columns.levels.len()
-        );
-        self.reserve(device, queue, first + count as u32);
-        let positions = columns.positions.as_chunks::<3>().0;
-        let normals = columns.normals.as_chunks::<3>().0;
-        for (chunk, local, span) in split_at_chunks(first, count as u32) {
-            self.scratch.clear();
-            self.scratch.extend(span.clone().map(|i| {
-                Record::new(positions[i], normals[i], columns.radii[i], columns.birth, columns.levels[i])
-            }));
-            let offset = u64::from(local) * size_of::<Record>() as u64;
-            queue.write_buffer(&self.chunks[chunk].records, offset, bytemuck::cast_slice(&self.scratch));
-        }
-        self.write_colours(queue, first, columns.colours);
+    /// A store of records that take `record` bytes, and `colours` bytes of colours.
+    pub(super) fn new(record: usize, colours: usize) -> Self {
+        Self { strides: [record as u64, colours as u64], chunks: Vec::new() }
     }
 
-    /// Uploads the colours of particles from `first` on. Those beyond the capacity of the buffers are dropped.
-    pub(super) fn write_colours(&mut self, queue: &wgpu::Queue, first: u32, colours: &[u32]) {
-        for (chunk, local, span) in split_at_chunks(first, colours.len() as u32) {
+    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the capacity of the buffers are dropped.
+    pub(super) fn write(&self, queue: &wgpu::Queue, part: Part, first: u32, bytes: &[u8]) {
+        let stride = self.strides[part as usize];
+        let count = (bytes.len() as u64 / stride) as u32;
+        for (chunk, local, span) in split_at_chunks(first, count) {
             let Some(chunk) = self.chunks.get(chunk) else { break };
             let room = chunk.capacity.saturating_sub(local) as usize;
-            let colours = &colours[span];
-            let colours = &colours[..colours.len().min(room)];
-            let offset = u64::from(local) * COLOUR_STRIDE as u64;
-            queue.write_buffer(&chunk.colours, offset, bytemuck::cast_slice(colours));
+            let span = span.start..span.end.min(span.start + room);
+            let bytes = &bytes[span.start * stride as usize..span.end * stride as usize];
+            queue.write_buffer(&chunk.buffers[part as usize], u64::from(local) * stride, bytes);
         }
     }
 
-    /// Slices of the vertex buffers for the particles `range`, in order.
+    /// Slices of the vertex buffers for the records `range`, in order.
     pub(super) fn runs(&self, range: Range<u32>) -> impl Iterator<Item = Run<'_>> {
         split_at_chunks(range.start, range.end.saturating_sub(range.start)).filter_map(
             |(chunk, local, span)| {
                 let chunk = self.chunks.get(chunk)?;
                 let count = (span.len() as u32).min(chunk.capacity.saturating_sub(local));
-                let bytes = |stride: usize| {
-                    let stride = stride as u64;
-                    u64::from(local) * stride..u64::from(local + count) * stride
+                let slice = |part: Part| {
+                    let stride = self.strides[part as usize];
+                    let bytes = u64::from(local) * stride..u64::from(local + count) * stride;
+                    chunk.buffers[part as usize].slice(bytes)
                 };
-                (count > 0).then(|| Run {
-                    records: chunk.records.slice(bytes(size_of::<Record>())),
-                    colours: chunk.colours.slice(bytes(COLOUR_STRIDE)),
-                    count,
-                })
+                (count > 0).then(|| Run { buffers: [slice(Part::Records), slice(Part::Colours)], count })
             },
         )
     }
 
-    /// Grows the buffers to a capacity of at least `count` particles.
-    fn reserve(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, count: u32) {
-        assert!(count <= Self::MAX, "{count} particles asked for, at most {} are drawn", Self::MAX);
+    /// Grows the buffers to a capacity of at least `count` records.
+    ///
+    /// # Panics
+    ///
+    /// If that is more than [`Store::MAX`].
+    pub(super) fn reserve(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, count: u32) {
+        assert!(count <= Self::MAX, "{count} records asked for, at most {} are drawn", Self::MAX);
         for index in 0..count.div_ceil(CHUNK) {
             let wanted = (count - index * CHUNK).min(CHUNK);
             let present = self.chunks.get(index as usize).map_or(0, |chunk| chunk.capacity);
@@ -121,11 +85,12 @@ impl Store {
                 continue;
             }
             let floor = if index == 0 { FIRST } else { CHUNK };
-            let grown = Chunk::new(device, wanted.next_power_of_two().max(floor));
+            let grown = self.chunk(device, wanted.next_power_of_two().max(floor));
             if let Some(old) = self.chunks.get_mut(index as usize) {
                 let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                encoder.copy_buffer_to_buffer(&old.records, 0, &grown.records, 0, old.records.size());
-                encoder.copy_buffer_to_buffer(&old.colours, 0, &grown.colours, 0, old.colours.size());
+                for (old, grown) in old.buffers.iter().zip(&grown.buffers) {
+                    encoder.copy_buffer_to_buffer(old, 0, grown, 0, old.size());
+                }
                 queue.submit([encoder.finish()]);
                 *old = grown;
             } else {
@@ -133,29 +98,28 @@ impl Store {
             }
         }
     }
-}
 
-impl Chunk {
-    fn new(device: &wgpu::Device, capacity: u32) -> Self {
-        let buffer = |label, stride: usize| {
+    /// Gives the buffers back.
+    pub(super) fn release(&mut self) {
+        self.chunks.clear();
+    }
+
+    fn chunk(&self, device: &wgpu::Device, capacity: u32) -> Chunk {
+        let buffers = self.strides.map(|stride| {
             device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: u64::from(capacity) * stride as u64,
+                label: Some("instances"),
+                size: u64::from(capacity) * stride,
                 usage: wgpu::BufferUsages::VERTEX
                     | wgpu::BufferUsages::COPY_DST
                     | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             })
-        };
-        Self {
-            records: buffer("records", size_of::<Record>()),
-            colours: buffer("colours", COLOUR_STRIDE),
-            capacity,
-        }
+        });
+        Chunk { buffers, capacity }
     }
 }
 
-/// Splits particles `first..first + count` at chunk borders. Each item is a chunk, the first particle within it, and
+/// Splits records `first..first + count` at chunk borders. Each item is a chunk, the first record within it, and
 /// the range relative to `first`.
 fn split_at_chunks(first: u32, count: u32) -> impl Iterator<Item = (usize, u32, Range<usize>)> {
     let end = first + count;
@@ -175,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_cover_the_particles_and_stay_within_chunks() {
+    fn ranges_cover_the_records_and_stay_within_chunks() {
         for (first, count) in [(0, 0), (0, 1), (5, CHUNK), (CHUNK - 1, 2), (3 * CHUNK, CHUNK), (7, 3 * CHUNK)]
         {
             let mut next = 0;

@@ -1,6 +1,6 @@
 //! Style of a picture, and the uniform block that follows from style and camera.
 
-use super::layout::Frame;
+use super::frame::{self, Camera, Frame, Growth, Light, Look};
 use super::view::View;
 
 /// Style of a picture. Colours are sRGB with components from 0 to 1, opacity last.
@@ -10,6 +10,8 @@ use super::view::View;
 pub struct Style {
     /// Background colour. The canvas is opaque, so the opacity has no effect there.
     pub background: [f32; 4],
+    /// How particles are drawn.
+    pub drawing: Drawing,
     /// Radius of a disc in repulsion radii. At 1 the discs of a hexagonal packing touch; the default leaves gaps that
     /// make the order visible.
     pub disc_scale: f32,
@@ -17,7 +19,7 @@ pub struct Style {
     pub key_light_view: [f32; 3],
     /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// Fraction by which discs seen from behind fade to the background, 0 to 1.
+    /// Fraction by which discs and faces seen from behind fade to the background, 0 to 1.
     pub dim_backfaces: f32,
     /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
     pub fade_s: f32,
@@ -32,6 +34,21 @@ pub struct Style {
     pub clip_box: Option<ClipBox>,
     /// Canvas pixels per page pixel, the unit of line widths.
     pub pixel_ratio: f32,
+}
+
+/// How particles are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Drawing {
+    /// As discs.
+    #[default]
+    Discs,
+    /// As the faces between them, as far as there are any.
+    Faces {
+        /// Whether each face has one normal and one colour.
+        flat: bool,
+        /// Width of the edges in page pixels; 0 for none.
+        edge_px: f32,
+    },
 }
 
 /// A box whose edges are drawn. The default is invisible.
@@ -49,6 +66,7 @@ impl Default for Style {
     fn default() -> Self {
         Self {
             background: [0.98, 0.98, 0.98, 1.0],
+            drawing: Drawing::Discs,
             disc_scale: 0.92,
             key_light_view: [-0.45, 0.65, 0.62],
             dim: 0.0,
@@ -83,28 +101,45 @@ impl Style {
         let background = linear(self.background);
         let clip_box = self.clip_box.unwrap_or_default();
         let scale = target.size[1].max(1) as f32 / target.canvas[1].max(1) as f32;
+        let (flat, edge_px) = match self.drawing {
+            Drawing::Discs => (false, 0.0),
+            Drawing::Faces { flat, edge_px } => (flat, edge_px),
+        };
+        let corner = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
         Frame {
-            clip_from_world: view.clip_from_world_for(target.canvas, target.size),
-            eye: view.eye,
-            perspective: if view.is_perspective() { 1.0 } else { 0.0 },
-            forward: view.direction,
-            disc_scale: clamp(self.disc_scale, 0.01, 4.0),
-            key_light: view.world_from_view(self.key_light_view),
-            dim_backfaces: share(self.dim_backfaces),
-            sky: view.world_from_view([0.0, 1.0, 0.35]),
-            dim: share(self.dim),
-            background,
-            viewport: target.size.map(|n| n.max(1) as f32),
-            pixel_ratio: clamp(self.pixel_ratio, 0.25, 8.0) * scale,
-            time: target.time,
-            box_min: clip_box.min,
-            fade: clamp(self.fade_s, 0.0, 10.0),
-            box_max: clip_box.max,
-            light_ground: if luminance(background) > LIGHT_GROUND { 1.0 } else { 0.0 },
-            box_colour: linear(clip_box.colour),
-            level: self.level.map_or(ALL_LEVELS, |level| level as f32),
-            mute: if self.level.is_some() { share(self.mute) } else { 0.0 },
-            unused: [0.0; 2],
+            camera: Camera {
+                clip_from_world: view.clip_from_world_for(target.canvas, target.size),
+                eye: view.eye,
+                perspective: if view.is_perspective() { 1.0 } else { 0.0 },
+                forward: view.direction,
+                pixel_ratio: clamp(self.pixel_ratio, 0.25, 8.0) * scale,
+                viewport: target.size.map(|n| n.max(1) as f32),
+                padding: [0.0; 2],
+            },
+            light: Light {
+                key: view.world_from_view(self.key_light_view),
+                dim: share(self.dim),
+                sky: view.world_from_view([0.0, 1.0, 0.35]),
+                dim_backfaces: share(self.dim_backfaces),
+                background,
+            },
+            growth: Growth {
+                time: target.time,
+                fade: clamp(self.fade_s, 0.0, 10.0),
+                level: self.level.map_or(ALL_LEVELS, |level| level as f32),
+                mute: if self.level.is_some() { share(self.mute) } else { 0.0 },
+            },
+            look: Look {
+                disc_scale: clamp(self.disc_scale, 0.01, 4.0),
+                flat_faces: if flat { 1.0 } else { 0.0 },
+                edge_px: clamp(edge_px, 0.0, 8.0),
+                light_ground: if luminance(background) > LIGHT_GROUND { 1.0 } else { 0.0 },
+            },
+            clip_box: frame::ClipBox {
+                lo: corner(clip_box.min),
+                hi: corner(clip_box.max),
+                colour: linear(clip_box.colour),
+            },
         }
     }
 }
@@ -137,6 +172,7 @@ mod tests {
         let nan = f32::NAN;
         let style = Style {
             background: [nan, -1.0, 2.0, nan],
+            drawing: Drawing::Faces { flat: true, edge_px: nan },
             disc_scale: nan,
             key_light_view: [nan; 3],
             dim: nan,
@@ -151,8 +187,8 @@ mod tests {
         let target = Target { canvas: [0, 0], size: [0, 0], time: 0.0 };
         let frame = style.frame(&View::default(), target);
         assert!(bytemuck::cast_slice::<Frame, f32>(&[frame]).iter().all(|c| c.is_finite()), "{frame:?}");
-        assert_eq!((frame.dim, frame.dim_backfaces, frame.mute), (0.0, 0.0, 0.0));
-        assert!(frame.disc_scale > 0.0);
+        assert_eq!((frame.light.dim, frame.light.dim_backfaces, frame.growth.mute), (0.0, 0.0, 0.0));
+        assert!(frame.look.disc_scale > 0.0 && frame.look.edge_px == 0.0);
     }
 
     #[test]
@@ -160,15 +196,15 @@ mod tests {
         let (style, view) = (Style::default(), View::default());
         let screen = style.frame(&view, Target { canvas: [640, 480], size: [640, 480], time: 0.0 });
         let print = style.frame(&view, Target { canvas: [640, 480], size: [1280, 960], time: 0.0 });
-        assert_eq!(print.pixel_ratio, 2.0 * screen.pixel_ratio);
-        assert_eq!(print.clip_from_world, screen.clip_from_world);
+        assert_eq!(print.camera.pixel_ratio, 2.0 * screen.camera.pixel_ratio);
+        assert_eq!(print.camera.clip_from_world, screen.camera.clip_from_world);
     }
 
     #[test]
     fn without_a_level_no_particle_is_hidden_or_muted() {
         let frame = |level| {
             let style = Style { level, ..Style::default() };
-            style.frame(&View::default(), Target { canvas: [1, 1], size: [1, 1], time: 0.0 })
+            style.frame(&View::default(), Target { canvas: [1, 1], size: [1, 1], time: 0.0 }).growth
         };
         let (all, seventh) = (frame(None), frame(Some(7)));
         assert!(all.level > u32::MAX as f32 && all.mute == 0.0, "{all:?}");
@@ -180,7 +216,7 @@ mod tests {
         let target = Target { canvas: [1, 1], size: [1, 1], time: 0.0 };
         for (grey, light) in [(0.0, 0.0), (0.3, 0.0), (0.5, 1.0), (1.0, 1.0)] {
             let style = Style { background: [grey, grey, grey, 1.0], ..Style::default() };
-            assert_eq!(style.frame(&View::default(), target).light_ground, light, "grey {grey}");
+            assert_eq!(style.frame(&View::default(), target).look.light_ground, light, "grey {grey}");
         }
     }
 }

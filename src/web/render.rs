@@ -3,9 +3,9 @@
 //! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
 //! picture may be on its way while the next frame is drawn.
 
-use crate::render::style::{ClipBox, Style};
+use crate::render::style::{ClipBox, Drawing, Style};
 use crate::render::view::View;
-use crate::render::{Callbacks, Outcome, Renderer as Inner};
+use crate::render::{Callbacks, Columns, Outcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -42,6 +42,14 @@ struct Scratch {
     radii: Vec<f32>,
     levels: Vec<u32>,
     colours: Vec<u32>,
+    marks: Vec<u32>,
+}
+
+impl Scratch {
+    fn columns(&self) -> Columns<'_> {
+        let Self { positions, normals, radii, levels, colours, .. } = self;
+        Columns { positions, normals, radii, levels, colours }
+    }
 }
 
 #[wasm_bindgen]
@@ -127,31 +135,18 @@ impl Renderer {
         birth_s: f64,
     ) -> Result<(), JsError> {
         let count = radii.length();
-        if positions.length() != 3 * count
-            || normals.length() != 3 * count
-            || levels.length() != count
-            || colours.length() != count
-        {
-            return Err(JsError::new(&format!(
-                "columns disagree: {} numbers of positions, {} of normals, {count} radii, {} levels, {} colours",
-                positions.length(),
-                normals.length(),
-                levels.length(),
-                colours.length()
-            )));
-        }
+        check_columns(count, positions, normals, levels, colours)?;
         check_end(first, count)?;
         let mut inner = self.inner.borrow_mut();
         let mut scratch = self.scratch.borrow_mut();
-        let Scratch { positions: p, normals: n, radii: r, levels: l, colours: c } = &mut *scratch;
         for from in (0..count).step_by(SLICE as usize) {
             let to = count.min(from + SLICE);
-            copy(&positions.subarray(3 * from, 3 * to), p);
-            copy(&normals.subarray(3 * from, 3 * to), n);
-            copy(&radii.subarray(from, to), r);
-            copy_words(&levels.subarray(from, to), l);
-            copy_words(&colours.subarray(from, to), c);
-            inner.write(first + from, p, n, r, l, c, birth_s);
+            copy(&positions.subarray(3 * from, 3 * to), &mut scratch.positions);
+            copy(&normals.subarray(3 * from, 3 * to), &mut scratch.normals);
+            copy(&radii.subarray(from, to), &mut scratch.radii);
+            copy_words(&levels.subarray(from, to), &mut scratch.levels);
+            copy_words(&colours.subarray(from, to), &mut scratch.colours);
+            inner.write(first + from, scratch.columns(), birth_s);
         }
         Ok(())
     }
@@ -179,6 +174,62 @@ impl Renderer {
         self.inner.borrow_mut().set_count(count);
     }
 
+    /// Largest number of faces that `write_faces` takes.
+    pub fn max_faces(&self) -> u32 {
+        Inner::MAX_FACES
+    }
+
+    /// Writes faces from `first` on: of each corner what `write` takes of a particle, three corners a face, counter-clockwise
+    /// seen from outside. `marks` are the colours of marks on the corners, 0 for none. Hand over some ten thousand at a time.
+    ///
+    /// # Errors
+    ///
+    /// Throws where the columns disagree in length or there are more faces than `max_faces()`.
+    #[allow(clippy::too_many_arguments, reason = "JavaScript hands over one typed array for each column")]
+    pub fn write_faces(
+        &self,
+        first: u32,
+        positions: &Float32Array,
+        normals: &Float32Array,
+        radii: &Float32Array,
+        levels: &Uint32Array,
+        colours: &Uint32Array,
+        marks: &Uint32Array,
+    ) -> Result<(), JsError> {
+        let count = radii.length();
+        check_columns(count, positions, normals, levels, colours)?;
+        check_corners(first, count, marks)?;
+        let mut scratch = self.scratch.borrow_mut();
+        copy(positions, &mut scratch.positions);
+        copy(normals, &mut scratch.normals);
+        copy(radii, &mut scratch.radii);
+        copy_words(levels, &mut scratch.levels);
+        copy_words(colours, &mut scratch.colours);
+        copy_words(marks, &mut scratch.marks);
+        self.inner.borrow_mut().write_faces(first, scratch.columns(), &scratch.marks);
+        Ok(())
+    }
+
+    /// Changes the colours of faces from `first` on, and those of their marks, three each.
+    ///
+    /// # Errors
+    ///
+    /// As `write_faces`.
+    pub fn tint_faces(&self, first: u32, colours: &Uint32Array, marks: &Uint32Array) -> Result<(), JsError> {
+        check_corners(first, colours.length(), marks)?;
+        let mut scratch = self.scratch.borrow_mut();
+        copy_words(colours, &mut scratch.colours);
+        copy_words(marks, &mut scratch.marks);
+        self.inner.borrow_mut().tint_faces(first, &scratch.colours, &scratch.marks);
+        Ok(())
+    }
+
+    /// Draws the first `count` faces from now on, where the style asks for faces, in the place of the first `particles` particles.
+    /// Without faces there are discs.
+    pub fn set_faces(&self, count: u32, particles: u32) {
+        self.inner.borrow_mut().set_faces(count, particles);
+    }
+
     /// Sets the camera: clip from world (16, column-major, depth 0 to 1), eye (3) and viewing direction (3) in world
     /// coordinates. Further numbers are ignored; whether the camera is orthographic follows from the matrix.
     ///
@@ -192,7 +243,7 @@ impl Renderer {
 
     /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
     ///
-    /// `background` [r, g, b, a] · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
+    /// `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
     /// `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
     /// `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
     ///
@@ -297,6 +348,34 @@ fn lose_context(canvas: &HtmlCanvasElement) {
     let _ = lose();
 }
 
+fn check_columns(
+    count: u32,
+    positions: &Float32Array,
+    normals: &Float32Array,
+    levels: &Uint32Array,
+    colours: &Uint32Array,
+) -> Result<(), JsError> {
+    let lengths = [positions.length(), normals.length(), levels.length(), colours.length()];
+    if lengths == [3 * count, 3 * count, count, count] {
+        return Ok(());
+    }
+    let [positions, normals, levels, colours] = lengths;
+    Err(JsError::new(&format!(
+        "columns disagree: {positions} numbers of positions, {normals} of normals, {count} radii, {levels} levels, {colours} colours"
+    )))
+}
+
+fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), JsError> {
+    if corners % 3 != 0 || marks.length() != corners {
+        return Err(JsError::new(&format!("{corners} corners and {} marks are no faces", marks.length())));
+    }
+    let end = u64::from(first) + u64::from(corners / 3);
+    if end > u64::from(Inner::MAX_FACES) {
+        return Err(JsError::new(&format!("{end} faces, at most {} are drawn", Inner::MAX_FACES)));
+    }
+    Ok(())
+}
+
 fn check_end(first: u32, count: u32) -> Result<(), JsError> {
     let end = u64::from(first) + u64::from(count);
     if end > u64::from(Inner::MAX_PARTICLES) {
@@ -326,6 +405,12 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     read(&value, "dim_backfaces", core::array::from_mut(&mut style.dim_backfaces))?;
     read(&value, "fade_s", core::array::from_mut(&mut style.fade_s))?;
     read(&value, "pixel_ratio", core::array::from_mut(&mut style.pixel_ratio))?;
+    let faces = get(&value, "faces")?;
+    if faces.is_object() {
+        let mut edge_px = 0.0;
+        read(&faces, "edge_px", core::array::from_mut(&mut edge_px))?;
+        style.drawing = Drawing::Faces { flat: get(&faces, "flat")?.is_truthy(), edge_px };
+    }
     style.level = get(&value, "level")?.as_f64().map(|level| level as u32);
     if let Some(index) = get(&value, "outline")?.as_f64() {
         style.outline = (index >= 0.0).then_some(index as u32);

@@ -1,8 +1,11 @@
 //! Tests of the shaders without a GPU: each is valid WGSL, translates to GLSL ES 3.00 as in wgpu's WebGL2 back end, and
 //! has the layout of the data that the Rust side writes.
 
-use marching_particles::render::layout::{COLOUR_ATTRIBUTES, Frame, RECORD_ATTRIBUTES};
-use marching_particles::render::shaders::{SHADERS, Shader};
+use marching_particles::render::frame::Frame;
+use marching_particles::render::layout::{
+    Attribute, COLOUR_ATTRIBUTES, FACE_ATTRIBUTES, RECORD_ATTRIBUTES, TINT_ATTRIBUTES,
+};
+use marching_particles::render::shaders::{COMMON, SHADERS, Shader};
 use naga::back::glsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ScalarKind, ShaderStage, TypeInner, VectorSize};
@@ -55,7 +58,8 @@ fn every_shader_file_is_known_and_used() {
         .map(|entry| entry.expect("an entry of shaders/").file_name().into_string().expect("a UTF-8 name"))
         .collect();
     files.sort();
-    let mut known = SHADERS.map(|shader| shader.name.to_owned()).to_vec();
+    let mut known: Vec<String> =
+        SHADERS.iter().map(|shader| shader.name).chain([COMMON]).map(str::to_owned).collect();
     known.sort();
     assert_eq!(files, known);
     assert!(!files.is_empty());
@@ -114,28 +118,47 @@ fn uniform_blocks_have_the_layout_of_the_rust_structs() {
             .map(|(_, variable)| &module.types[variable.ty])
             .unwrap_or_else(|| panic!("{name}: no uniform block"));
         assert_eq!(frame.name.as_deref(), Some("Frame"), "{name}");
-        let TypeInner::Struct { members, span } = &frame.inner else { panic!("{name}: Frame is no struct") };
-        let fields: Vec<(&str, usize)> = members
-            .iter()
-            .map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize))
-            .collect();
-        assert_eq!(fields, Frame::FIELDS, "{name}");
-        assert_eq!(*span as usize, size_of::<Frame>(), "{name}");
+        assert_eq!(span(&frame.inner), size_of::<Frame>(), "{name}");
+        for (struct_name, fields) in Frame::STRUCTS {
+            let found = module
+                .types
+                .iter()
+                .find(|(_, found)| found.name.as_deref() == Some(*struct_name))
+                .map(|(_, found)| &found.inner)
+                .unwrap_or_else(|| panic!("{name}: no struct {struct_name}"));
+            let TypeInner::Struct { members, .. } = found else {
+                panic!("{name}: {struct_name} is no struct")
+            };
+            let members: Vec<(&str, usize)> = members
+                .iter()
+                .map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize))
+                .collect();
+            assert_eq!(members, *fields, "{name}, {struct_name}");
+        }
     }
 }
 
-/// The disc shader declares the attributes that the pipeline provides.
+fn span(inner: &TypeInner) -> usize {
+    let TypeInner::Struct { span, .. } = inner else { panic!("no struct: {inner:?}") };
+    *span as usize
+}
+
+/// The shaders declare the attributes that the pipelines provide.
 #[test]
 fn vertex_inputs_match_the_attribute_tables() {
     let mut checked = 0;
     for (name, module, _) in shaders() {
         for entry in module.entry_points.iter().filter(|entry| entry.stage == ShaderStage::Vertex) {
+            let mut is_face = false;
             let inputs: Vec<(u32, usize)> = entry
                 .function
                 .arguments
                 .iter()
                 .filter_map(|argument| match &module.types[argument.ty].inner {
-                    TypeInner::Struct { members, .. } => Some(members),
+                    TypeInner::Struct { members, .. } => {
+                        is_face |= module.types[argument.ty].name.as_deref() == Some("Face");
+                        Some(members)
+                    }
                     _ => None,
                 })
                 .flatten()
@@ -149,16 +172,21 @@ fn vertex_inputs_match_the_attribute_tables() {
             if inputs.is_empty() {
                 continue;
             }
-            let table: Vec<(u32, usize)> = RECORD_ATTRIBUTES
+            let [records, colours]: [&[Attribute]; 2] = if is_face {
+                [&FACE_ATTRIBUTES, &TINT_ATTRIBUTES]
+            } else {
+                [&RECORD_ATTRIBUTES, &COLOUR_ATTRIBUTES]
+            };
+            let table: Vec<(u32, usize)> = records
                 .iter()
-                .chain(&COLOUR_ATTRIBUTES)
+                .chain(colours)
                 .map(|attribute| (attribute.location, attribute.format.components()))
                 .collect();
             assert_eq!(inputs, table, "{name}, {}", entry.name);
             checked += 1;
         }
     }
-    assert!(checked >= 2, "{checked} vertex stages read particles");
+    assert!(checked >= 3, "{checked} vertex stages read particles or faces");
 }
 
 /// Number of `f32` components.

@@ -1,0 +1,121 @@
+//! The uniform block `Frame` of all shaders.
+//!
+//! The offsets follow the layout rules of WGSL for uniforms, which agree with std140 for these types. The tables of fields are
+//! for a test, which compares them with the shaders.
+
+use bytemuck::{Pod, Zeroable};
+use core::mem::offset_of;
+
+/// Name and byte offset of each field of a struct, in order.
+pub type Fields = &'static [(&'static str, usize)];
+
+macro_rules! fields {
+    ($type:ty: $($field:ident),+ $(,)?) => { &[$((stringify!($field), offset_of!($type, $field))),+] };
+}
+
+/// What all pipelines of a picture share.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Frame {
+    /// Where the picture is seen from.
+    pub camera: Camera,
+    /// Light and background.
+    pub light: Light,
+    /// What appears, and which levels are shown.
+    pub growth: Growth,
+    /// How particles and faces look.
+    pub look: Look,
+    /// The clip box, drawn where a picture has one.
+    pub clip_box: ClipBox,
+}
+
+/// Where the picture is seen from, and its size.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Camera {
+    /// Matrix from world to clip coordinates, column-major, with depth from 0 to 1.
+    pub clip_from_world: [[f32; 4]; 4],
+    /// Position of the eye in world coordinates, for a perspective camera.
+    pub eye: [f32; 3],
+    /// 1 for a perspective camera, 0 for an orthographic one.
+    pub perspective: f32,
+    /// Unit viewing direction in world coordinates.
+    pub forward: [f32; 3],
+    /// Target pixels per page pixel, the unit of line widths.
+    pub pixel_ratio: f32,
+    /// Width and height of the target in pixels.
+    pub viewport: [f32; 2],
+    /// The size of a struct in a uniform block is a multiple of 16 bytes.
+    pub padding: [f32; 2],
+}
+
+/// Light and background.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Light {
+    /// Unit direction to the key light, in world coordinates.
+    pub key: [f32; 3],
+    /// Fraction by which the whole picture fades to the background, 0 to 1.
+    pub dim: f32,
+    /// Unit direction to the sky of the hemispherical light, in world coordinates.
+    pub sky: [f32; 3],
+    /// Fraction by which what is seen from behind fades to the background, 0 to 1.
+    pub dim_backfaces: f32,
+    /// Background colour, linear, not premultiplied by its opacity.
+    pub background: [f32; 4],
+}
+
+/// How new particles appear, and which generation levels are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Growth {
+    /// Current time in seconds on the renderer's clock.
+    pub time: f32,
+    /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
+    pub fade: f32,
+    /// Newest generation level that is drawn. Larger than every level if all are drawn.
+    pub level: f32,
+    /// Fraction by which levels before the newest fade to the background, 0 to 1.
+    pub mute: f32,
+}
+
+/// How particles and faces look.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Look {
+    /// Radius of a disc in repulsion radii.
+    pub disc_scale: f32,
+    /// 1 for flat faces, 0 for smooth ones.
+    pub flat_faces: f32,
+    /// Width of the edges of faces in page pixels; 0 for none.
+    pub edge_px: f32,
+    /// 1 for a light background, 0 for a dark one.
+    pub light_ground: f32,
+}
+
+/// The clip box.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ClipBox {
+    /// Smallest corner, and a number that is not used.
+    pub lo: [f32; 4],
+    /// Largest corner, and a number that is not used.
+    pub hi: [f32; 4],
+    /// Colour of the edges, linear, not premultiplied by its opacity.
+    pub colour: [f32; 4],
+}
+
+impl Frame {
+    /// Every struct of the block with its fields, `Frame` first.
+    pub const STRUCTS: &'static [(&'static str, Fields)] = &[
+        ("Frame", fields!(Self: camera, light, growth, look, clip_box)),
+        (
+            "Camera",
+            fields!(Camera: clip_from_world, eye, perspective, forward, pixel_ratio, viewport, padding),
+        ),
+        ("Light", fields!(Light: key, dim, sky, dim_backfaces, background)),
+        ("Growth", fields!(Growth: time, fade, level, mute)),
+        ("Look", fields!(Look: disc_scale, flat_faces, edge_px, light_ground)),
+        ("ClipBox", fields!(ClipBox: lo, hi, colour)),
+    ];
+}
