@@ -45,10 +45,12 @@ const EDGE_FADE_PX = vec2<f32>(2.5, 9.0);
 // Radius of a mark: in repulsion radii, at least in page pixels, and at most in repulsion radii, so that marks on neighbours
 // do not meet.
 const MARK_RADIUS = 0.36;
-const MARK_LEAST_PX = 2.5;
+const MARK_LEAST_PX = 2.0;
 const MARK_MOST = 0.9;
-// Width in page pixels of the casing around a mark, which has the colour of the background.
+// Width in page pixels of the casing around a mark, which has the colour of the background, and radii of marks in page pixels
+// up to which there is none and from which there is all of it. Where marks are small, their casings would be all that is seen.
 const MARK_CASING_PX = 1.0;
+const MARK_CASED_PX = vec2<f32>(2.5, 4.5);
 
 @vertex
 fn vs_face(@builtin(vertex_index) vertex: u32, face: Face) -> Point {
@@ -105,16 +107,18 @@ fn corner_distances_sq(w: vec3<f32>, sides_sq: vec3<f32>) -> vec3<f32> {
     return next * next * side_last + last * last * side_next + next * last * (side_next + side_last - sides_sq);
 }
 
-// `under`, with a mark on it whose rim is at `radius` from its corner, which is at `distance`; in world units, of which a
-// pixel has `per_px`.
-fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px: f32, light: f32) -> vec3<f32> {
+// `under`, with the mark of a corner on it, if it has one. The corner's repulsion radius and its distance are in world units, of
+// which a pixel has `per_px`. The face is turned to the eye by the cosine `facing`.
+fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px: f32, facing: f32, light: f32) -> vec3<f32> {
     if mark.a < 0.5 {
         return under;
     }
     let ratio = frame.camera.pixel_ratio;
-    let rim = max(MARK_RADIUS * radius, min(MARK_LEAST_PX * ratio * per_px, MARK_MOST * radius));
+    // Across a face seen from the side a pixel is long, along it is not: `facing` keeps the least size that of a circle.
+    let rim = max(MARK_RADIUS * radius, min(MARK_LEAST_PX * ratio * per_px * facing, MARK_MOST * radius));
     let inside_px = (rim - distance) / per_px;
-    let casing = clamp(inside_px + MARK_CASING_PX * ratio + 0.5, 0.0, 1.0);
+    let cased = smoothstep(MARK_CASED_PX.x, MARK_CASED_PX.y, rim / (per_px * ratio));
+    let casing = clamp(inside_px + MARK_CASING_PX * ratio + 0.5, 0.0, 1.0) * cased;
     let dot_shade = mark.rgb * mix(1.0, light, 0.6);
     return mix(mix(under, frame.light.background.rgb, casing), dot_shade, clamp(inside_px + 0.5, 0.0, 1.0));
 }
@@ -132,7 +136,8 @@ fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec
 
     let n = normalize(select(-point.normal, point.normal, front));
     let v = normalize(point.to_eye);
-    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - clamp(dot(n, v), 0.0, 1.0));
+    let facing = clamp(dot(n, v), 0.0, 1.0);
+    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing);
     var colour = point.colour * light;
 
     // Distances from the sides in pixels, and the heights over them.
@@ -142,9 +147,9 @@ fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec
     let line = max(lines.x, max(lines.y, lines.z)) * min(frame.look.edge_px, 1.0);
     colour = fade_to(colour, colour * 0.08, EDGE_INK * line);
 
-    colour = marked(colour, point.mark_a, point.radii.x, distances.x, per_px.x, light);
-    colour = marked(colour, point.mark_b, point.radii.y, distances.y, per_px.y, light);
-    colour = marked(colour, point.mark_c, point.radii.z, distances.z, per_px.z, light);
+    colour = marked(colour, point.mark_a, point.radii.x, distances.x, per_px.x, facing, light);
+    colour = marked(colour, point.mark_b, point.radii.y, distances.y, per_px.y, facing, light);
+    colour = marked(colour, point.mark_c, point.radii.z, distances.z, per_px.z, facing, light);
 
     let ground = frame.light.background.rgb;
     let seen = fade_to(colour, ground, select(frame.light.dim_backfaces, 0.0, front));
