@@ -33,6 +33,10 @@ pub struct Progress {
     pub particles: usize,
     /// Generation level under way.
     pub level: u32,
+    /// Level of the refinement under way, 1 the coarse one; 0 in every other phase.
+    pub refine_level: u32,
+    /// Levels that the refinement under way has.
+    pub refine_levels: u32,
     /// Relaxation steps done.
     pub relax_step: u32,
     /// Relaxation steps asked for.
@@ -84,10 +88,16 @@ impl Sampler {
             PhaseState::Generation(_) | PhaseState::Filling => self.front.active().level().settled,
             _ => self.particles.len(),
         };
+        let (refine_level, refine_levels) = match &self.phase {
+            PhaseState::Refinement(refinement) => refinement.levels(),
+            _ => (0, 0),
+        };
         Progress {
             phase: self.phase.name(),
             particles,
             level: self.particles.level[..particles].last().copied().unwrap_or(0),
+            refine_level,
+            refine_levels,
             relax_step: self.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
             evaluations: self.projector.evaluations,

@@ -6,7 +6,7 @@ use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self, Figures};
-use marching_particles::sampler::{Method, Refusal, Sampler, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
 
 fn refined(count: u32, seed: u64) -> Settings {
     Settings { method: Method::Refined, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
@@ -167,4 +167,48 @@ fn a_small_component_does_not_vanish() {
         let share = small / sampler.particles().len() as f64;
         assert!((0.010..0.018).contains(&share), "{count}: {small} particles on the small sphere");
     }
+}
+
+#[test]
+fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_last() {
+    let surface = gallery::find("torus").expect("a surface of the gallery");
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    let settings = refined(6_000, 1);
+    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    let (mut told, mut shown) = (Vec::new(), Vec::new());
+    loop {
+        let progress = sampler.step(&mut field, 500);
+        if progress.phase == Phase::Refinement {
+            told.push((progress.refine_level, progress.refine_levels));
+            if progress.moved {
+                shown.push(progress.particles);
+            }
+        } else {
+            assert_eq!((progress.refine_level, progress.refine_levels), (0, 0), "{:?}", progress.phase);
+        }
+        if progress.stop_reason.is_some() {
+            break;
+        }
+    }
+    told.dedup();
+    let levels = sampler.counts().refined_levels.expect("a refined run") + 1;
+    assert!(levels > 1);
+    assert_eq!(told, (1..=levels).map(|level| (level, levels)).collect::<Vec<_>>());
+    // The last level ends the phase.
+    assert_eq!(shown.len() as u32, levels - 1, "{shown:?}");
+
+    sampler.start_again(&mut field, &settings).expect("valid settings");
+    let first = loop {
+        let progress = sampler.step(&mut field, 500);
+        if progress.phase == Phase::Refinement && progress.moved {
+            break progress.particles;
+        }
+    };
+    assert_eq!(first, shown[0]);
+    sampler.cancel();
+    sampler.step(&mut field, 0);
+    assert_eq!(sampler.particles().len(), first);
+    let f = figures(&mut field, &surface.bounds, sampler.particles());
+    assert!(f.ang_min > 20.0, "the coarse level is in order: {}°", f.ang_min);
 }

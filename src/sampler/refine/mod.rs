@@ -160,6 +160,11 @@ impl Refinement {
         matches!(self.work, Work::Done)
     }
 
+    /// The level under way, counted from 1, and how many there are.
+    pub(crate) fn levels(&self) -> (u32, u32) {
+        (self.target.levels - self.to_come + 1, self.target.levels + 1)
+    }
+
     /// Estimated share of the work that is done, that of the coarse front included.
     pub(crate) fn fraction(&self) -> f64 {
         let at = match self.work {
@@ -186,7 +191,7 @@ impl Refinement {
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let work = core::mem::replace(&mut self.work, Work::Done);
-            has_changed |= matches!(work, Work::Show(_));
+            let was_shown = matches!(work, Work::Show(_));
             let (next, units) = match work {
                 Work::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
                 Work::Show(rings) => self.show(rings, particles),
@@ -194,6 +199,7 @@ impl Refinement {
                 Work::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
                 Work::Done => (Work::Done, 0),
             };
+            has_changed |= was_shown && !matches!(next, Work::Show(_));
             self.work = next;
             done += units;
         }

@@ -24,6 +24,8 @@ pub(super) struct Rings {
     /// Vertices below this one have been met.
     root: u32,
     is_walked: bool,
+    /// The particles in that order, as far as they are there.
+    ready: Particles,
 }
 
 impl Rings {
@@ -38,25 +40,25 @@ impl Rings {
             next: 0,
             root: 0,
             is_walked: false,
+            ready: Particles::default(),
         }
     }
 
     /// Goes on for a slice. Returns whether all is done; `particles` then has the particles of the layer, with this radius
-    /// where their size is 1.
+    /// where their size is 1. Until then it stays as it is, so that a run that is cancelled has a whole level.
     pub(super) fn step(&mut self, layer: &Layer, radius: f32, particles: &mut Particles) -> bool {
         if !self.is_walked {
             self.is_walked = !(0..SLICE).all(|_| self.walk(layer));
             if self.is_walked {
-                particles.clear();
-                particles.reserve(self.order.len());
+                self.ready.reserve(self.order.len());
             }
             return false;
         }
-        let start = particles.len();
+        let start = self.ready.len();
         let end = self.order.len().min(start + SLICE);
         for k in start..end {
             let v = self.order[k] as usize;
-            particles.push(
+            self.ready.push(
                 layer.position[v],
                 layer.normal[v],
                 radius * layer.size_of(v as u32),
@@ -65,7 +67,11 @@ impl Rings {
                 layer.slots[v],
             );
         }
-        end == self.order.len()
+        let is_done = end == self.order.len();
+        if is_done {
+            core::mem::swap(particles, &mut self.ready);
+        }
+        is_done
     }
 
     /// Visits the neighbours of the next vertex; false if there is none.

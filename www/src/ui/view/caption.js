@@ -19,7 +19,9 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
     case 'generation':
       return busy ? `Level ${formatCount(progress.level)} · ${particles}` : resting();
     case 'refinement':
-      return busy ? `Refining · ${particles}` : resting();
+      return busy
+        ? `Refining, level ${formatCount(progress.refine_level)} of ${formatCount(progress.refine_levels)} · ${particles}`
+        : resting();
     case 'search':
       return busy ? `Looking for further components · ${particles}` : resting();
     case 'relaxation':
