@@ -3,7 +3,7 @@
 use crate::field::model::SolvedModel;
 use crate::pointcloud::job;
 use crate::sampler::{Progress, Start};
-use crate::session::{Description, Fault, FieldAnswer, FieldRequest, Report};
+use crate::session::{Description, Fault, FieldAnswer, FieldRequest, MeshAnswer, Report};
 use std::collections::BTreeMap;
 use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
@@ -74,6 +74,7 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<Start>();
     declarations.add::<Progress>();
     declarations.add::<Report>();
+    declarations.add::<MeshAnswer>();
     declarations.add::<SolvedModel>();
     declarations.add::<job::Progress>();
     declarations.add::<job::Fault>();

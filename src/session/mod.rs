@@ -3,10 +3,12 @@
 
 mod describe;
 mod fault;
+mod mesh;
 mod warnings;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Fault, FaultKind};
+pub use mesh::{MeshAnswer, MeshComponent};
 
 use crate::differential::{self, Curvature};
 use crate::field::Field;
@@ -23,6 +25,7 @@ use crate::sampler::{
 };
 use crate::slices::{self, Work};
 use glam::Vec3;
+use mesh::Mesh;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -133,14 +136,16 @@ pub struct Report {
     pub evaluations_per_particle: f64,
     /// What became of the children.
     pub fates: FateCounts,
+    /// Times that a coarse front was refined; none where it was not, or the front stands.
+    pub refined_levels: Option<u32>,
     /// Why the run ended.
     pub stop_reason: Option<StopReason>,
     /// Things the user should know, in words.
     pub warnings: Vec<String>,
     /// Particles per generation level.
     pub level_counts: Vec<u32>,
-    /// Energy per particle before the first relaxation step and after each.
-    pub energy: Vec<f64>,
+    /// Energy per particle before the first relaxation step and after each; none where nothing was relaxed.
+    pub energy: Option<Vec<f64>>,
     /// Digest of the particles, 16 hexadecimal digits.
     pub digest: String,
     /// Quality now.
@@ -192,6 +197,7 @@ pub struct Session {
     /// The measurement under way.
     measuring: Option<Work<Measured>>,
     measured: quality::Report,
+    mesh: Mesh,
 }
 
 /// What is kept of particles for a later look at them.
@@ -250,6 +256,7 @@ impl Session {
             front_figures: None,
             measuring: None,
             measured: quality::Report::default(),
+            mesh: Mesh::None,
         }
     }
 
@@ -438,6 +445,7 @@ impl Session {
         self.front_figures = None;
         self.measuring = None;
         self.measured = quality::Report::default();
+        self.mesh = Mesh::None;
         Ok(start)
     }
 
@@ -477,6 +485,7 @@ impl Session {
 
     fn remember(&mut self, progress: Progress) -> Progress {
         self.measuring = None;
+        self.mesh = Mesh::None;
         self.last = Some(progress.clone());
         progress
     }
@@ -566,10 +575,11 @@ impl Session {
             evaluations,
             evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,
             fates: counts.fates,
+            refined_levels: counts.refined_levels,
             stop_reason,
             warnings,
             level_counts,
-            energy: self.sampler.energy().to_vec(),
+            energy: Some(self.sampler.energy()).filter(|energy| !energy.is_empty()).map(<[f64]>::to_vec),
             digest: format!("{:016x}", particles.digest()),
             quality: (count > 0).then_some(self.measured.figures),
             quality_before: self.front_figures,

@@ -1,6 +1,7 @@
 //! The core bundle: a [`Session`] behind plain objects and copies of the particle columns.
 
 use super::values::{answer, to_js};
+use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
@@ -141,6 +142,21 @@ impl Core {
     /// Principal curvatures of particles from `from` on, two each, worked out now.
     pub fn curvature(&mut self, from: usize) -> Vec<f32> {
         self.session.curvatures(from).into_flattened()
+    }
+
+    /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
+    pub fn join(&mut self, budget: u32) -> Option<JsValue> {
+        self.session.join(budget).map(|answer| to_js(&answer))
+    }
+
+    /// The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
+    pub fn triangles(&self) -> Vec<u32> {
+        self.session.triangles().as_flattened().to_vec()
+    }
+
+    /// The mesh as a file, by the extension of its format; nothing for another extension or if it is too large.
+    pub fn mesh_file(&self, extension: &str) -> Option<Vec<u8>> {
+        self.session.mesh_file(MeshFormat::of_extension(extension)?).ok()
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

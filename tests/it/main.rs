@@ -17,6 +17,7 @@ mod graded;
 mod half_edge;
 mod mesh;
 mod mesh_export;
+mod mesh_parity;
 #[cfg(feature = "points")]
 mod models;
 #[cfg(feature = "points")]

@@ -1,5 +1,5 @@
-// Holds the core as WebAssembly to the digests that the native core is held to by tests/it/parity.rs, and to an answer in
-// words where the memory is used up.
+// Holds the core as WebAssembly to the digests that the native core is held to by tests/it/parity.rs and mesh_parity.rs, and to
+// an answer in words where the memory is used up.
 //
 // Usage: node tests/wasm/parity.mjs, after `cargo xtask wasm core points`.
 import { readFile } from 'node:fs/promises';
@@ -55,6 +55,29 @@ for (const run of [...runs, ...models]) {
   console.log(
     `${same ? 'same' : 'DIFFERENT'}  ${run.name}: ${count} particles ${digest}${same ? '' : `, natively ${run.count} ${run.digest}`}`,
   );
+}
+
+/** FNV-1a, 64 bits. @param {Uint8Array} bytes */
+function digestOf(bytes) {
+  let hash = 0xcbf29ce484222325n;
+  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
+  return hash.toString(16).padStart(16, '0');
+}
+
+const { runs: meshed } = JSON.parse(await readFile(new URL('tests/golden/meshes.json', root), 'utf8'));
+for (const { name, field, settings, files } of meshed) {
+  const core = new Core();
+  accepted(core.set_field(field), `${name}: set_field`);
+  accepted(core.start(settings), `${name}: start`);
+  while (core.step(BUDGET).stop_reason === null);
+  while (core.measure(BUDGET) === undefined);
+  while (core.join(BUDGET) === undefined);
+  for (const [extension, expected] of Object.entries(files)) {
+    const found = digestOf(core.mesh_file(extension));
+    failures += found === expected ? 0 : 1;
+    console.log(`${found === expected ? 'same' : 'DIFFERENT'}  mesh of ${name} as ${extension}: ${found}`);
+  }
+  core.free();
 }
 
 // With no memory left, a run that needs more is refused in words, and the instance goes on working.

@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
             method: "marching_particles",
             count: report.count,
             radius: report.radius,
-            steps: report.energy.len().saturating_sub(1) as u32,
+            steps: report.energy.map_or(0, |energy| energy.len().saturating_sub(1)) as u32,
             evaluations: report.evaluations,
             seconds,
             stop_reason: report.stop_reason,

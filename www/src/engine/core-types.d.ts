@@ -314,6 +314,28 @@ export type MathNode = {
 /** Element of MathML Core with text. */
 export type MathToken = "mi" | "mn" | "mo";
 
+/** What a mesh adds up to. */
+export type MeshAnswer = {
+  /** Triangles. */
+  triangles: number,
+  /** Connected components, in the order of their first particles. */
+  components: Array<MeshComponent>,
+  /** Border loops where no manifold could be had, other than those where the surface ends. */
+  unfilled: number,
+  /** Particles in no triangle. */
+  left_out: number,
+};
+
+/** A connected part of a mesh. */
+export type MeshComponent = {
+  /** Triangles. */
+  triangles: number,
+  /** Vertices − edges + triangles: 2 − 2g for a closed surface of genus g. */
+  euler: number,
+  /** Edges with one triangle. */
+  open_edges: number,
+};
+
 /** A built-in model. */
 export type Model = {
   /** Identifier: lower case, words joined by hyphens. No gallery surface has the same one. */
@@ -402,6 +424,10 @@ export type Progress = {
   particles: number,
   /** Generation level under way. */
   level: number,
+  /** Level of the refinement under way, 1 the coarse one; 0 in every other phase. */
+  refine_level: number,
+  /** Levels that the refinement under way has. */
+  refine_levels: number,
   /** Relaxation steps done. */
   relax_step: number,
   /** Relaxation steps asked for. */
@@ -450,14 +476,16 @@ export type Report = {
   evaluations_per_particle: number,
   /** What became of the children. */
   fates: FateCounts,
+  /** Times that a coarse front was refined; none where it was not, or the front stands. */
+  refined_levels: number | null,
   /** Why the run ended. */
   stop_reason: StopReason | null,
   /** Things the user should know, in words. */
   warnings: Array<string>,
   /** Particles per generation level. */
   level_counts: Array<number>,
-  /** Energy per particle before the first relaxation step and after each. */
-  energy: Array<number>,
+  /** Energy per particle before the first relaxation step and after each; none where nothing was relaxed. */
+  energy: Array<number> | null,
   /** Digest of the particles, 16 hexadecimal digits. */
   digest: string,
   /** Quality now. */

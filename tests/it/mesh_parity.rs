@@ -1,0 +1,127 @@
+//! Test that the same run gives the same mesh files on every platform. It compares what the native core writes with the digests in
+//! `tests/golden/meshes.json`; `tests/wasm/parity.mjs` compares the WebAssembly core, and a browser test what the page
+//! downloads, with the same file.
+//!
+//! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
+
+use marching_particles::export::MeshFormat;
+use marching_particles::sampler::Settings;
+use marching_particles::session::{FieldRequest, MeshAnswer, Session};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Contents of the golden file.
+#[derive(Serialize, Deserialize)]
+struct Golden {
+    runs: Vec<Run>,
+}
+
+/// A run with the digests of its files, by extension.
+#[derive(Serialize, Deserialize)]
+struct Run {
+    name: String,
+    field: serde_json::Value,
+    settings: serde_json::Value,
+    files: BTreeMap<String, String>,
+}
+
+/// A finished session and its mesh, joined with `budget` slices a call.
+fn joined(case: &Run, budget: u32) -> (Session, MeshAnswer) {
+    let mut session = Session::new();
+    let field: FieldRequest = serde_json::from_value(case.field.clone()).expect("a field request");
+    session.set_field(&field).expect("a field");
+    let settings: Settings = serde_json::from_value(case.settings.clone()).expect("settings");
+    session.start(&settings).expect("valid settings");
+    while session.step(100_000).stop_reason.is_none() {}
+    session.report();
+    loop {
+        if let Some(answer) = session.join(budget) {
+            return (session, answer);
+        }
+    }
+}
+
+/// FNV-1a, 64 bits.
+fn digest(bytes: &[u8]) -> String {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+fn path() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/meshes.json")
+}
+
+fn golden() -> Golden {
+    let text = std::fs::read_to_string(path()).expect("the golden file can be read");
+    serde_json::from_str(&text).expect("the golden file is well formed")
+}
+
+#[test]
+fn mesh_files_have_the_digests_that_other_platforms_give() {
+    let mut golden = golden();
+    assert!(golden.runs.len() >= 2);
+    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    for case in &mut golden.runs {
+        let (session, _) = joined(case, u32::MAX);
+        let files: BTreeMap<String, String> = MeshFormat::ALL
+            .iter()
+            .map(|&(extension, format)| {
+                let bytes = session.mesh_file(format).expect("a file of less than 4 GiB");
+                assert!(bytes.len() > 10_000, "{}, {extension}: {} bytes", case.name, bytes.len());
+                (extension.to_owned(), digest(&bytes))
+            })
+            .collect();
+        if update {
+            case.files = files;
+        } else {
+            assert_eq!(files, case.files, "{}", case.name);
+        }
+    }
+    if update {
+        let text =
+            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
+        std::fs::write(path(), text).expect("the golden file can be written");
+    }
+}
+
+#[test]
+fn a_mesh_joined_slice_by_slice_is_the_one_joined_at_once() {
+    for case in golden().runs {
+        let ((whole, told), (sliced, same)) = (joined(&case, u32::MAX), joined(&case, 1));
+        assert_eq!(told, same, "{}", case.name);
+        assert_eq!(whole.triangles(), sliced.triangles(), "{}", case.name);
+        assert_eq!(told.triangles, whole.triangles().len());
+    }
+}
+
+#[test]
+fn a_mesh_tells_its_topology_and_where_it_is_open() {
+    let [ellipsoid, gyroid] = &golden().runs[..] else { panic!("two runs") };
+    let (_, answer) = joined(ellipsoid, u32::MAX);
+    let [sphere] = answer.components[..] else { panic!("{answer:?}") };
+    assert_eq!((sphere.euler, sphere.open_edges, answer.unfilled, answer.left_out), (2, 0, 0, 0));
+    let (_, answer) = joined(gyroid, u32::MAX);
+    assert!(answer.components.iter().any(|component| component.open_edges > 100), "{answer:?}");
+}
+
+#[test]
+fn a_mesh_is_dropped_when_the_particles_change() {
+    let case = &golden().runs[0];
+    let (mut session, _) = joined(case, u32::MAX);
+    assert!(!session.triangles().is_empty());
+    session.relax(1);
+    assert!(session.triangles().is_empty());
+    while session.step(1_000).stop_reason.is_none() {}
+    assert!(session.join(1).is_none(), "one slice is not all of it");
+    // A step comes between: the work is given up and begun anew.
+    session.step(1);
+    assert!(session.join(u32::MAX).is_some());
+    let settings: Settings = serde_json::from_value(case.settings.clone()).expect("settings");
+    session.start(&settings).expect("valid settings");
+    assert!(session.triangles().is_empty());
+    let nothing = session.join(u32::MAX).expect("of no particles");
+    assert_eq!((nothing.triangles, nothing.components.len()), (0, 0));
+}
