@@ -29,6 +29,9 @@ declare module '*/wasm/core/core.js' {
     valence(): Uint8Array<ArrayBuffer>;
     nearest(): Float32Array<ArrayBuffer>;
     residual(): Float32Array<ArrayBuffer>;
+    join(budget: number): import('./engine/types.js').MeshAnswer | undefined;
+    triangles(): Uint32Array<ArrayBuffer>;
+    mesh_file(format: string): Uint8Array<ArrayBuffer> | undefined;
     component(): Uint32Array<ArrayBuffer>;
     curvature(from: number): Float32Array<ArrayBuffer>;
     digest(): string;
@@ -82,6 +85,18 @@ declare module '*/render.js' {
     ): void;
     write_colours(first: number, colours: Uint32Array): void;
     set_count(n: number): void;
+    max_faces(): number;
+    write_faces(
+      first: number,
+      positions: Float32Array,
+      normals: Float32Array,
+      radii: Float32Array,
+      levels: Uint32Array,
+      colours: Uint32Array,
+      marks: Uint32Array,
+    ): void;
+    tint_faces(first: number, colours: Uint32Array, marks: Uint32Array): void;
+    set_faces(count: number, particles: number): void;
     set_view(view: Float32Array): void;
     set_style(json: string): void;
     draw(timeS: number): string;

@@ -57,6 +57,8 @@ export class Columns {
      */
     this.curvature = new Float32Array(0);
     this.curved = 0;
+    /** The mesh over the particles, while it is drawn. @type {import('./types.js').Mesh | null} */
+    this.mesh = null;
   }
 
   /** Removes all particles, for a new run. @param {boolean} [adaptive] */
@@ -69,12 +71,13 @@ export class Columns {
     this.forget();
   }
 
-  /** Drops the figures of the report, which no longer describe the particles. */
+  /** Drops the figures of the report and the mesh, which no longer describe the particles. */
   forget() {
     this.valence = null;
     this.nearest = null;
     this.residual = null;
     this.component = null;
+    this.mesh = null;
   }
 
   /** Grows the columns to hold at least `n` particles and keeps their contents. @param {number} n */

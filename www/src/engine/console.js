@@ -124,6 +124,7 @@ const statusOf = (engine, viewer) => ({
   model: engine.model.value,
   timing: engine.timing.value,
   lastDrag: engine.lastDrag.value,
+  mesh: engine.mesh.value,
   notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },
 });
 

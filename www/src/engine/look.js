@@ -26,6 +26,10 @@ export class Look {
         if (field) viewer.setBounds(field.bounds);
         if (store.empty.value || field) queueMicrotask(this.show);
       }),
+      // Whether there can be a mesh depends on the back end.
+      effect(() => {
+        if (store.backend.value !== 'starting') queueMicrotask(this.show);
+      }),
       effect(() => {
         viewer.growing = store.busy.value;
       }),
@@ -42,12 +46,20 @@ export class Look {
     viewer.set({
       colour: view.colour,
       size: view.size,
+      draw: view.draw,
+      faces: view.faces,
+      edges: view.edges,
+      marks: view.marks,
       theme,
       box: view.box || store.empty.value ? box : null,
       points: this.points(),
       level: view.level,
     });
-    this.runs.sampling.showCurvature(view.colour === 'curvature');
+    const { sampling } = this.runs;
+    sampling.showCurvature(view.colour === 'curvature');
+    // Without a graphics device there are discs.
+    const { value: backend } = store.backend;
+    sampling.showMesh(view.draw === 'mesh' && (backend === 'webgpu' || backend === 'webgl2'));
   }
 
   /** Returns the points of the model on the page, or null if they are not drawn. */

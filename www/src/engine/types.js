@@ -38,6 +38,8 @@
 /** @typedef {CoreProgress['stop_reason']} StopReason  null while the run goes on */
 /** The figures of a finished run. @typedef {import('./core-types.js').Report} CoreReport */
 /** @typedef {import('./core-types.js').Figures} Quality */
+/** What a mesh adds up to. @typedef {import('./core-types.js').MeshAnswer} MeshAnswer */
+/** A mesh over all particles on the page, three indices a triangle. @typedef {{triangles: Uint32Array, about: MeshAnswer}} Mesh */
 
 /**
  * @template T
@@ -77,6 +79,10 @@
  * @typedef {object} ViewState
  * @property {ColourMode} colour
  * @property {number} size  disc radius as a share of the repulsion radius, 0.2 … 1.5; 0.92 by default
+ * @property {'discs' | 'mesh'} draw  how the particles are drawn
+ * @property {'smooth' | 'flat'} faces  how the faces of a mesh are lit and coloured
+ * @property {boolean} edges  whether the edges of a mesh are drawn
+ * @property {boolean} marks  whether vertices of a mesh without six neighbours are marked
  * @property {'auto' | 'light' | 'dark'} theme
  * @property {boolean} box  whether the clip box is drawn
  * @property {boolean} points  whether the points that a model interpolates are drawn
@@ -193,6 +199,7 @@
  * @property {ReadonlySignal<BackendName>} backend
  * @property {ReadonlySignal<string>} adapter  name of the graphics adapter, may be empty
  * @property {ReadonlySignal<Notice | null>} notice
+ * @property {ReadonlySignal<MeshAnswer | null>} mesh  of the mesh drawn; null while there is none
  * @property {ReadonlySignal<Hover | null>} hover
  * @property {ReadonlySignal<Legend | null>} legend
  * @property {ReadonlySignal<number>} revision  increases whenever the particles, their fates or their figures change
@@ -238,11 +245,13 @@
  * @property {(hash: string) => Promise<void>} loadUrl
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
  * @property {(format: 'ply' | 'csv') => Promise<Blob>} exportFile
+ * @property {(format: MeshFormat) => Promise<Blob>} exportMesh  once no run is left
  * @property {() => void} dismissNotice
  * @property {(x: number, y: number) => number | null} pick  returns the index of the particle under a point of the
  *   canvas host
  * @property {() => void} destroy
  */
+/** File formats for a mesh. @typedef {'glb' | 'obj' | 'stl' | 'ply'} MeshFormat */
 /** @typedef {EngineSignals & EngineCommands} Engine */
 
 /** Value of `State.surface` for a surface from a file. */

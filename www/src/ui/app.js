@@ -75,6 +75,12 @@ export function mountInterface(engine) {
     { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
     { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
     { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
+    {
+      keys: ['m', 'M'],
+      shown: 'M',
+      label: 'Discs or mesh',
+      act: () => engine.setView({ draw: engine.state.peek().view.draw === 'mesh' ? 'discs' : 'mesh' }),
+    },
     { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
     {
       keys: ['t', 'T'],

@@ -33,7 +33,20 @@ export async function savePicture(engine, toast) {
 }
 
 /** @param {Engine} engine @param {Toast} toast @param {'ply' | 'csv'} format */
-export async function exportFile(engine, toast, format) {
+export const exportFile = (engine, toast, format) =>
+  exported(engine, toast, 'particles', () => engine.exportFile(format), `${stem(engine)}.${format}`);
+
+/** @param {Engine} engine @param {Toast} toast @param {import('../engine/types.js').MeshFormat} format */
+export const exportMesh = (engine, toast, format) =>
+  exported(engine, toast, 'mesh', () => engine.exportMesh(format), `${stem(engine)}-mesh.${format}`);
+
+/**
+ * @param {Engine} engine @param {Toast} toast
+ * @param {string} what  in words
+ * @param {() => Promise<Blob>} make
+ * @param {string} name  of the file
+ */
+async function exported(engine, toast, what, make, name) {
   if (engine.empty.peek()) {
     toast({
       id: 'save',
@@ -43,9 +56,13 @@ export async function exportFile(engine, toast, format) {
     return;
   }
   try {
-    download(await engine.exportFile(format), `${stem(engine)}.${format}`);
+    download(await make(), name);
   } catch {
-    toast({ id: 'save', kind: 'error', text: 'The particles could not be exported.' });
+    toast({
+      id: 'save',
+      kind: 'error',
+      text: `The ${what} could not be exported. Run the sampler again, then export.`,
+    });
   }
 }
 

@@ -19,6 +19,8 @@ export const progress = (/** @type {number} */ particles, /** @type {any} */ mor
   phase: 'generation',
   particles,
   level: 1,
+  refine_level: 0,
+  refine_levels: 0,
   relax_step: 0,
   relax_steps: 10,
   evaluations: 0,
@@ -52,6 +54,7 @@ export const columnsMessage = (/** @type {number} */ id, /** @type {number} */ n
   slots: new Uint32Array(n),
   curvatureFrom: 0,
   curvature: new Float32Array(0),
+  mesh: null,
   progress: progress(n),
 });
 export const done = (
@@ -94,6 +97,7 @@ export function page() {
         told.push(`changed ${first}..${last}`);
         drawn();
       },
+      meshed: () => told.push('mesh'),
       recolour: () => {},
       fit: () => told.push('fit'),
       dim: (dim) => told.push(dim ? 'dim' : 'clear'),

@@ -70,6 +70,40 @@ test('the curvature is asked for while it is shown, of a new worker again', () =
   expect(askedFor()).toEqual([true, false]);
 });
 
+test('the mesh is asked for while it is drawn, of a new worker again, and shown until the particles change', () => {
+  const { client, store, columns, say, accept } = page();
+  client.showMesh(true);
+  client.showMesh(true);
+  client.sample(request('x'));
+  accept(1);
+  const about = { triangles: 1, components: [{ triangles: 1, euler: 1, open_edges: 3 }], unfilled: 0, left_out: 0 };
+  const mesh = { triangles: Uint32Array.of(0, 1, 2), about };
+  say({ ...columnsMessage(1, 3), mesh });
+  expect([columns.mesh, store.mesh.value]).toEqual([mesh, about]);
+  expect(told.slice(-2)).toEqual(['mesh', 'changed 0..3']);
+  say(columnsMessage(1, 3));
+  expect([columns.mesh, store.mesh.value]).toEqual([null, null]);
+  const askedFor = () => workers.at(-1).posted.filter((/** @type {any} */ m) => m.type === 'mesh').length;
+  expect(askedFor()).toBe(1);
+  say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
+  say({ type: 'ready', description });
+  expect(askedFor()).toBe(1);
+});
+
+test('a mesh is exported by the worker that holds it, and not by a new one', async () => {
+  const { client, say } = page();
+  const [glb, stl] = [client.meshFile('glb'), client.meshFile('stl')];
+  const [first, second] = workers.at(-1).posted.slice(-2);
+  expect([first.format, second.format]).toEqual(['glb', 'stl']);
+  say({ type: 'file', request: second.request, bytes: Uint8Array.of(2) });
+  say({ type: 'file', request: first.request, bytes: null });
+  await expect(glb).rejects.toThrow();
+  expect(await stl).toEqual(Uint8Array.of(2));
+  const lost = client.meshFile('obj');
+  say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
+  await expect(lost).rejects.toThrow();
+});
+
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
     const { client, store, columns, say, jobs, accept } = page();

@@ -18,6 +18,10 @@ const elaborate = () => ({
   view: {
     colour: 'valence',
     size: 0.8,
+    draw: 'mesh',
+    faces: 'flat',
+    edges: false,
+    marks: false,
     theme: 'dark',
     box: true,
     points: false,

@@ -10,8 +10,16 @@
  * @param {number} [options.usPerUnit]
  * @param {number} [options.slices]  of a measurement
  * @param {number} [options.usPerSlice]
+ * @param {number} [options.refined_levels]  of a refinement after the front, of which each level has four times as many particles
  */
-export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, slices = 1000, usPerSlice = 50 } = {}) {
+export function fakeCore({
+  particles = 1000,
+  relax_steps = 2,
+  usPerUnit = 10,
+  slices = 1000,
+  usPerSlice = 50,
+  refined_levels = 0,
+} = {}) {
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -22,11 +30,15 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, sl
   let stop = null;
   let moves = 0;
   let measured = 0;
+  let joined = 0;
+  let refined = 0;
   /** @returns {import('../../src/engine/types.js').CoreProgress} */
   const progress = (moved = false) => ({
-    phase: stop ? 'done' : count < target ? 'generation' : 'relaxation',
+    phase: stop ? 'done' : count < target ? 'generation' : refined_levels ? 'refinement' : 'relaxation',
     particles: count,
     level: Math.floor(Math.sqrt(count)),
+    refine_level: refined,
+    refine_levels: refined_levels,
     relax_step: step,
     relax_steps: steps,
     evaluations: 2 * count,
@@ -95,6 +107,8 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, sl
       step = 0;
       stop = null;
       measured = 0;
+      joined = 0;
+      refined = 0;
       return { ok: true, radius: 0.01, predicted_count: target, area: 1, warnings: [] };
     },
     /** @param {number} budget */
@@ -107,8 +121,15 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, sl
         if (count === target && steps === 0) stop = 'complete';
         return progress();
       }
-      step += 1;
+      joined = 0;
       moves += 1;
+      if (refined_levels) {
+        if (refined > 0) target = count *= 4;
+        if (refined === refined_levels) stop = 'complete';
+        refined += 1;
+        return progress(true);
+      }
+      step += 1;
       clock.ms += (count * usPerUnit) / 1000;
       if (step >= steps) stop = 'complete';
       return progress(true);
@@ -144,6 +165,21 @@ export function fakeCore({ particles = 1000, relax_steps = 2, usPerUnit = 10, sl
       if (measured < slices) return undefined;
       return /** @type {import('../../src/engine/types.js').CoreReport} */ ({ count, digest: 'd' });
     },
+    /** @param {number} budget @returns {import('../../src/engine/types.js').MeshAnswer | undefined} */
+    join(budget) {
+      calls.push('join');
+      const n = Math.min(budget, slices - joined);
+      joined += n;
+      clock.ms += (n * usPerSlice) / 1000;
+      if (joined < slices) return undefined;
+      return {
+        triangles: 1,
+        components: [{ triangles: 1, euler: 1, open_edges: 3 }],
+        unfilled: 0,
+        left_out: count - 3,
+      };
+    },
+    triangles: () => Uint32Array.of(0, 1, 2),
     valence: () => new Uint8Array(count).fill(6),
     nearest: () => new Float32Array(count),
     residual: () => new Float32Array(count),

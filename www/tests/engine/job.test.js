@@ -16,6 +16,7 @@ const sampleJob = (part = {}) => ({
   settings: {},
   grow: true,
   live: false,
+  coarse: false,
   askAbove: Infinity,
   ...part,
 });
@@ -24,12 +25,18 @@ const sampleJob = (part = {}) => ({
  * Runs a job on a scripted core, and returns what it posted.
  * @param {ReturnType<typeof fakeCore>} core
  * @param {import('../../src/engine/sampling/protocol.js').Job} job
- * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, memory?: {held: number}}} [options]
+ * @param {{interrupt?: (posted: FromWorker[]) => 'stop' | 'replace' | null, room?: (posted: FromWorker[]) => boolean, curvature?: (posted: FromWorker[]) => boolean, mesh?: boolean, memory?: import('../../src/engine/sampling/job.js').Memory}} [options]
  */
 async function run(
   core,
   job,
-  { interrupt = () => null, room = () => true, curvature = () => false, memory = { held: 0 } } = {},
+  {
+    interrupt = () => null,
+    room = () => true,
+    curvature = () => false,
+    mesh = false,
+    memory = { held: 0, meshed: 0 },
+  } = {},
 ) {
   /** @type {FromWorker[]} */
   const posted = [];
@@ -45,6 +52,7 @@ async function run(
       interrupt: () => interrupt(posted),
       room: () => room(posted),
       curvature: () => curvature(posted),
+      mesh: () => mesh,
     },
     memory,
   );
@@ -237,6 +245,73 @@ describe('a job', () => {
     expect(posted.at(-2)).toMatchObject({ type: 'columns', first: 500, total: 500, curvatureFrom: 0, progress: null });
   });
 
+  test('makes no mesh unless one is drawn, and then sends it with the last columns', async () => {
+    const core = fakeCore({ particles: 5000, relax_steps: 2 });
+    const plain = await run(core, sampleJob());
+    expect(core.calls).not.toContain('join');
+    expect(of(plain.posted, 'columns').every(({ mesh }) => mesh === null)).toBe(true);
+    const { posted, memory } = await run(core, sampleJob(), { mesh: true });
+    const ranges = of(posted, 'columns');
+    expect(ranges.filter(({ mesh }) => mesh).map(({ mesh }) => mesh?.triangles)).toEqual([Uint32Array.of(0, 1, 2)]);
+    expect(ranges.findIndex(({ mesh }) => mesh)).toBe(ranges.length - 1);
+    expect(ranges.length).toBeGreaterThan(2);
+    expect(memory).toEqual({ held: 7, meshed: 7 });
+    // The mesh does not wait for the figures.
+    expect(posted.map(({ type }) => type).slice(-3)).toEqual(['columns', 'done', 'report']);
+  });
+
+  test('leaves a mesh on the page until the next one is there, unless it is to be seen growing', async () => {
+    for (const job of [sampleJob({ grow: false }), sampleJob({ grow: false, live: true })]) {
+      const { posted } = await run(fakeCore({ particles: 20_000, relax_steps: 4 }), job, { mesh: true });
+      const [first, ...more] = of(posted, 'columns').filter(({ radii }) => radii.length > 0);
+      expect(first).toMatchObject({ first: 0, total: 20_000 });
+      expect(first.mesh).not.toBe(null);
+      expect(more).toEqual([]);
+    }
+    const core = fakeCore({ particles: 3000, relax_steps: 1 });
+    const { memory } = await run(core, sampleJob());
+    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 4, live: false, grow: true });
+    const relaxed = await run(core, relax, { mesh: true, memory });
+    expect(of(relaxed.posted, 'columns').filter(({ radii }) => radii.length > 0)).toHaveLength(1);
+  });
+
+  test('that is replaced while its particles are joined sends no mesh, and holds nothing', async () => {
+    const core = fakeCore({ particles: 500, slices: 100_000 });
+    const { posted, memory } = await run(core, sampleJob({ grow: false }), {
+      mesh: true,
+      interrupt: () => (core.calls.includes('join') ? 'replace' : null),
+    });
+    expect(posted.map(({ type }) => type)).not.toContain('done');
+    expect(memory.held).toBe(0);
+  });
+
+  test('joins in steps that leave room for a stop', async () => {
+    const core = fakeCore({ particles: 500, slices: 20_000, usPerSlice: 50 });
+    let longest = 0;
+    const join = core.join.bind(core);
+    core.join = (budget) => {
+      const before = core.clock.ms;
+      const out = join(budget);
+      longest = Math.max(longest, core.clock.ms - before);
+      return out;
+    };
+    await run(core, sampleJob(), { mesh: true });
+    expect(longest).toBeLessThan(50);
+  });
+
+  test('shows the levels of a refinement as they come, and of a drag the coarse one, whole', async () => {
+    const refined = await run(fakeCore({ particles: 100, refined_levels: 2 }), sampleJob({ grow: false }));
+    expect(of(refined.posted, 'columns').at(-1)?.total).toBe(1600);
+    for (const coarse of [true, false]) {
+      const core = fakeCore({ particles: 100, refined_levels: 2 });
+      const { posted } = await run(core, sampleJob({ grow: false, live: true, coarse }));
+      expect(of(posted, 'columns').at(-1)?.total).toBe(coarse ? 100 : 1600);
+      expect(of(posted, 'done')).toMatchObject([
+        { outcome: 'complete', progress: { stop_reason: 'complete' }, reportFollows: false },
+      ]);
+    }
+  });
+
   test('relaxing goes on from the particles at hand, and only from those', async () => {
     const core = fakeCore({ particles: 3000, relax_steps: 1 });
     const { memory } = await run(core, sampleJob());
@@ -247,7 +322,7 @@ describe('a job', () => {
     const lost = await run(
       core,
       { kind: 'relax', id: 9, of: 7, steps: 1, live: false, grow: true },
-      { memory: { held: 0 } },
+      { memory: { held: 0, meshed: 0 } },
     );
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
   });
@@ -264,7 +339,7 @@ async function work(core, first, meanwhile = () => {}) {
   const posted = [];
   const post = (/** @type {FromWorker} */ message) => void posted.push(structuredClone(message));
   const jobs = new Jobs(post);
-  const memory = { held: 0 };
+  const memory = { held: 0, meshed: 0 };
   jobs.add(first);
   for (let job = jobs.take(core); job; job = jobs.take(core)) {
     await runJob(
@@ -280,6 +355,7 @@ async function work(core, first, meanwhile = () => {}) {
         interrupt: () => jobs.interrupt(core),
         room: () => true,
         curvature: () => false,
+        mesh: () => false,
       },
       memory,
     );

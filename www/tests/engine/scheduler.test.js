@@ -103,6 +103,16 @@ describe('coarse to fine', () => {
     expect(cost.expected(plan.settings, diagonal)).toBeLessThan(60_000);
   });
 
+  test('a refined run keeps its settings and ends at its coarse level while it is dragged', () => {
+    const refined = { ...settings, method: 'refined' };
+    const cost = new CostModel();
+    cost.record({ seconds: seconds(100_000), particles: 100_000, relax_steps: 10, size: radius });
+    expect(planLive(refined, diagonal, cost)).toEqual({ settings: refined, coarse: true });
+    const fast = new CostModel();
+    fast.record({ seconds: seconds(2000), particles: 2000, relax_steps: 10, size: radius });
+    expect(planLive(refined, diagonal, fast)).toEqual({ settings: refined, coarse: false });
+  });
+
   test('before the first run nothing is assumed', () => {
     expect(planLive(settings, diagonal, new CostModel())).toEqual({ settings, coarse: false });
   });
@@ -192,8 +202,9 @@ describe('coarse to fine', () => {
         costKey({ points: 'bunny' }, settings),
         costKey({ formula: 'x' }, adaptive),
         costKey({ points: 'bunny' }, adaptive),
+        costKey({ formula: 'x' }, { ...settings, method: 'refined' }),
       ];
-      expect(new Set(keys).size).toBe(4);
+      expect(new Set(keys).size).toBe(5);
     });
   });
 });

@@ -1,7 +1,16 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, overDiameters, trim } from '../../src/ui/report/bins.js';
-import { compare, figuresOf, groupRows, isTold, valueAt, writeFigure, writeRange } from '../../src/ui/report/rows.js';
+import {
+  compare,
+  figuresOf,
+  groupRows,
+  headingsOf,
+  isTold,
+  valueAt,
+  writeFigure,
+  writeRange,
+} from '../../src/ui/report/rows.js';
 import { wantsSlider } from '../../src/ui/scale.js';
 import { captionOf, loadingOf } from '../../src/ui/view/caption.js';
 
@@ -42,11 +51,20 @@ describe('the report', () => {
   });
 
   it('gives the figures of a run without relaxation to the front', () => {
-    for (const energy of [[], [0.2]]) {
+    for (const energy of [null, [0.2]]) {
       const report = /** @type {any} */ ({ energy, quality: { six: 0.93 }, quality_before: null });
       expect(figuresOf(report, 'quality.six')).toEqual({ paired: true, now: undefined, before: 0.93 });
       expect(isTold(report, row())).toBe(true);
     }
+  });
+
+  it('heads the figures of a refined run by what it is', () => {
+    const headings = (/** @type {number | null} */ levels) =>
+      headingsOf(/** @type {any} */ ({ refined_levels: levels, energy: null }));
+    expect(headings(3)).toEqual(['Refined', 'Relaxed']);
+    expect(headings(0)).toEqual(['Refined', 'Relaxed']);
+    expect(headings(null)).toEqual(['Front', 'Relaxed']);
+    expect(headingsOf(null)).toEqual(['Front', 'Relaxed']);
   });
 
   it('writes shares as per cent, whole numbers grouped, and words as they are', () => {
@@ -147,6 +165,8 @@ describe('the caption', () => {
     phase: 'generation',
     level: 12,
     particles: 1463,
+    refine_level: 2,
+    refine_levels: 4,
     relax_step: 4,
     relax_steps: 10,
     stop_reason: null,
@@ -155,7 +175,7 @@ describe('the caption', () => {
 
   it('names the phase and the count while a run is under way', () => {
     expect(captionOf(progress, facts)).toBe('Level 12 · 1,463 particles');
-    expect(captionOf({ ...progress, phase: 'refinement' }, facts)).toBe('Refining · 1,463 particles');
+    expect(captionOf({ ...progress, phase: 'refinement' }, facts)).toBe('Refining, level 2 of 4 · 1,463 particles');
     expect(captionOf({ ...progress, phase: 'relaxation' }, facts)).toBe('Relaxation 4 of 10 · 1,463 particles');
   });
 

@@ -10,7 +10,7 @@ import { FILE_SURFACE } from '../types.js';
 /** Fetches the code that writes files. The first picture does not need it, so it loads after the sampler. */
 export const fetchExports = () => import('../share/exports.js');
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'shareUrl' | 'loadUrl' | 'savePng' | 'exportFile'>} ShareCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'shareUrl' | 'loadUrl' | 'savePng' | 'exportFile' | 'exportMesh'>} ShareCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {ShareCommands} */
 export function shareCommands({ store, columns, picture: { viewer }, runs, address }) {
@@ -41,6 +41,10 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, addre
       const { csv, ply } = await fetchExports();
       const { columns: all } = description(store);
       return format === 'csv' ? csv(columns, all) : ply(columns, all, { comment: `Marching Particles, ${what}` });
+    },
+    async exportMesh(format) {
+      const bytes = await runs.sampling.meshFile(format);
+      return new Blob([bytes], { type: format === 'glb' ? 'model/gltf-binary' : 'application/octet-stream' });
     },
   };
 

@@ -58,6 +58,11 @@ export class SamplingClient {
     this.solved = solved;
     /** Whether the page shows the curvature. */
     this.curvature = false;
+    /** Whether the page draws a mesh. */
+    this.mesh = false;
+    /** Those who wait for a file, by the number of the request. @type {Map<number, (bytes: Uint8Array<ArrayBuffer> | null) => void>} */
+    this.files = new Map();
+    this.lastFile = 0;
     this.nowMs = clock ? clock.now : () => performance.now();
     this.pace = new Pace(this.nowMs);
     /** @type {Scheduler<RunRequest>} */
@@ -97,6 +102,37 @@ export class SamplingClient {
     if (on === this.curvature) return;
     this.curvature = on;
     this.supervisor.post({ type: 'curvature', on });
+  }
+
+  /** Requests the mesh while it is drawn. @param {boolean} on */
+  showMesh(on) {
+    if (on === this.mesh) return;
+    this.mesh = on;
+    this.supervisor.post({ type: 'mesh', on });
+  }
+
+  /**
+   * Returns the mesh of the particles that the worker holds, as a file.
+   * @param {import('../types.js').MeshFormat} format
+   * @returns {Promise<Uint8Array<ArrayBuffer>>}
+   * @throws if the worker does not hold the particles
+   */
+  async meshFile(format) {
+    this.lastFile += 1;
+    const request = this.lastFile;
+    const bytes = await new Promise((resolve) => {
+      this.files.set(request, resolve);
+      if (this.supervisor.worker) this.supervisor.post({ type: 'export', request, format });
+      else this.handOver(request, null);
+    });
+    if (!bytes) throw new Error('The sampler does not hold these particles any more.');
+    return bytes;
+  }
+
+  /** @param {number} request @param {Uint8Array<ArrayBuffer> | null} bytes */
+  handOver(request, bytes) {
+    this.files.get(request)?.(bytes);
+    this.files.delete(request);
   }
 
   // ---- requests -------------------------------------------------------------------------------------------------------
@@ -185,7 +221,7 @@ export class SamplingClient {
     if (request.kind === 'relax') {
       return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
     }
-    const { field, settings, grow, live } = request;
+    const { field, settings, grow, live, coarse = false } = request;
     // A run of a drag needs no confirmation: it stops at the limit.
     const unasked = request.confirmed || live || request.restoring;
     return {
@@ -195,6 +231,7 @@ export class SamplingClient {
       settings,
       grow,
       live,
+      coarse: coarse && settings.method === 'refined',
       points: (field.points !== undefined && this.solved(field.points)) || null,
       askAbove: unasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
     };
@@ -226,6 +263,8 @@ export class SamplingClient {
         return;
       case 'field':
         return this.fieldAnswered(message.id, message.answer);
+      case 'file':
+        return this.handOver(message.request, message.bytes);
       default:
     }
     const { current } = this.runs;
@@ -253,6 +292,7 @@ export class SamplingClient {
     this.store.description.value = description;
     this.attend();
     if (this.curvature) this.supervisor.post({ type: 'curvature', on: true });
+    if (this.mesh) this.supervisor.post({ type: 'mesh', on: true });
     if (first) this.onReady();
   }
 
@@ -359,6 +399,7 @@ export class SamplingClient {
    */
   forget() {
     const lost = lostRun(this.runs, this.scheduler.drop(), this.store.description.value);
+    for (const request of [...this.files.keys()]) this.handOver(request, null);
     batch(() => {
       this.happened({ type: 'lost' });
       this.presenter.idle();

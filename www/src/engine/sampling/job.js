@@ -6,6 +6,7 @@
  * @module
  */
 import { nextBudget } from '../bundle/budget.js';
+import { join } from './joining.js';
 import { BEAT_MS, PROGRESS_MS } from './protocol.js';
 
 /**
@@ -33,6 +34,9 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {(from: number) => Uint32Array} slots
  * @property {(from: number) => Float32Array} curvature  two per particle
  * @property {(budget: number) => import('../types.js').CoreReport | undefined} measure  the report once it is complete, else undefined
+ * @property {(budget: number) => import('../types.js').MeshAnswer | undefined} join  joins the particles to a mesh: what it
+ *   adds up to once it is complete, else undefined
+ * @property {() => Uint32Array} triangles  of the complete mesh, three particles each
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
@@ -45,7 +49,13 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
  * @property {() => 'stop' | 'replace' | null} interrupt
  * @property {() => boolean} curvature  whether the page shows the curvature
+ * @property {() => boolean} mesh  whether the page draws a mesh
  * @property {() => boolean} room  whether the page has drawn the columns sent so far
+ */
+
+/**
+ * What the worker holds: the id of the job whose particles the core has, 0 for none, and of the job whose mesh the page has.
+ * @typedef {{held: number, meshed: number}} Memory
  */
 
 /**
@@ -62,13 +72,27 @@ function clockOf(phase) {
   return phase === 'generation' || phase === 'refinement' || phase === 'relaxation' ? phase : 'seeding';
 }
 
-/** Returns empty columns. */
-const none = () => ({
+/**
+ * Returns a message without columns, about particles that the page already has.
+ * @param {CoreLike} core @param {number} id
+ * @returns {import('./protocol.js').ColumnsMessage}
+ */
+const bare = (core, id) => ({
+  type: 'columns',
+  id,
+  first: core.count(),
+  total: core.count(),
   positions: new Float32Array(0),
   normals: new Float32Array(0),
   radii: new Float32Array(0),
   levels: new Uint32Array(0),
   parents: new Uint32Array(0),
+  slotsFrom: core.count(),
+  slots: new Uint32Array(0),
+  curvatureFrom: 0,
+  curvature: new Float32Array(0),
+  mesh: null,
+  progress: null,
 });
 
 /**
@@ -78,30 +102,22 @@ const none = () => ({
  */
 export function curvatureColumn(core, id) {
   const curvature = core.curvature(0);
-  const total = core.count();
-  return [
-    {
-      type: 'columns',
-      id,
-      first: total,
-      total,
-      ...none(),
-      slotsFrom: total,
-      slots: new Uint32Array(0),
-      curvatureFrom: 0,
-      curvature,
-      progress: null,
-    },
-    [curvature.buffer],
-  ];
+  return [{ ...bare(core, id), curvature }, [curvature.buffer]];
 }
+
+/**
+ * Returns a message with the mesh over all particles, which the page already has.
+ * @param {CoreLike} core @param {number} id @param {import('./protocol.js').Mesh} mesh
+ * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
+ */
+export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mesh.triangles.buffer]];
 
 /**
  * Runs a job to its end, or until it is interrupted.
  * @param {CoreLike} core
  * @param {Job} job
  * @param {Surroundings} env
- * @param {{held: number}} memory  id of the job whose particles the core holds, 0 for none
+ * @param {Memory} memory
  * @returns {Promise<void>}
  */
 export async function runJob(core, job, env, memory) {
@@ -112,7 +128,10 @@ export async function runJob(core, job, env, memory) {
     memory.held = 0;
     return;
   }
-  run.complete(last);
+  if (!(await run.complete(last, memory))) {
+    memory.held = 0;
+    return;
+  }
   const stopped = last.stop_reason === 'cancelled';
   const reported = (!job.live || stopped) && core.count() > 0;
   run.done(stopped ? 'stopped' : 'complete', '', reported);
@@ -146,7 +165,7 @@ class JobRun {
 
   /**
    * Starts the sampling or the relaxation in the core.
-   * @param {{held: number}} memory
+   * @param {Memory} memory
    * @returns {boolean} false if the job has ended already
    */
   start(memory) {
@@ -207,6 +226,11 @@ class JobRun {
       budgets[phase] = nextBudget(budget, took);
       sent.stale ||= progress.moved;
       if (progress.phase === 'done') return progress;
+      // A refinement moves the particles when it hands a level on, the coarse one first.
+      if (job.kind === 'sample' && job.coarse && progress.phase === 'refinement' && progress.moved) {
+        this.progress = { ...core.cancel(), stop_reason: 'complete' };
+        return this.progress;
+      }
       phase = progress.phase;
       this.tell(progress);
       await env.pause();
@@ -226,12 +250,14 @@ class JobRun {
   isDue({ phase }) {
     const { core, job, env, sent } = this;
     if (!env.room() || env.nowMs() - sent.pictureMs < PICTURE_MS) return false;
-    if (job.live || (!job.grow && phase !== 'relaxation')) return false;
+    if (job.live || (!job.grow && phase !== 'relaxation' && phase !== 'refinement')) return false;
+    // A mesh on the page stays until the next one is there, unless the surface is to be seen growing.
+    if (env.mesh() && !(job.kind === 'sample' && job.grow)) return false;
     return sent.stale || core.count() > sent.count;
   }
 
-  /** @param {CoreProgress} progress */
-  sendColumns(progress) {
+  /** @param {CoreProgress} progress @param {import('./protocol.js').Mesh | null} [mesh] */
+  sendColumns(progress, mesh = null) {
     const { core, env, sent } = this;
     const total = core.count();
     const first = sent.stale ? 0 : Math.min(sent.count, total);
@@ -250,8 +276,8 @@ class JobRun {
       curvature,
     };
     env.post(
-      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, progress },
-      Object.values(columns).map((c) => c.buffer),
+      { type: 'columns', id: this.job.id, first, total, slotsFrom, curvatureFrom, ...columns, mesh, progress },
+      [...Object.values(columns), ...(mesh ? [mesh.triangles] : [])].map((c) => c.buffer),
     );
     // The fates of a particle's slots are decided after the particle is sent, so the next message repeats them.
     sent.slotsFrom = first;
@@ -261,31 +287,26 @@ class JobRun {
     sent.pictureMs = env.nowMs();
   }
 
-  /** Sends what the page lacks after the last step: particles, final fates of slots, curvature. @param {CoreProgress} last */
-  complete(last) {
-    const { core, env, sent } = this;
+  /**
+   * Sends what the page lacks after the last step: particles, final fates of slots, curvature, and the mesh if it is drawn.
+   * @param {CoreProgress} last @param {Memory} memory
+   * @returns {Promise<boolean>} false if another job replaces this one meanwhile
+   */
+  async complete(last, memory) {
+    const { core, env, job, sent } = this;
     if (last.relax_step > 0) sent.curved = 0;
-    if (core.count() > sent.count || sent.stale) this.sendColumns(last);
+    const wanted = env.mesh() && core.count() > 0;
+    const mesh = wanted ? await join(core, env) : null;
+    if (wanted && !mesh) return false;
+    if (mesh) memory.meshed = job.id;
+    if (core.count() > sent.count || sent.stale) this.sendColumns(last, mesh);
+    else if (mesh) env.post(...meshColumn(core, job.id, mesh));
     if (!sent.settled) {
       const slots = core.slots(0);
-      const total = core.count();
-      env.post(
-        {
-          type: 'columns',
-          id: this.job.id,
-          first: total,
-          total,
-          ...none(),
-          slotsFrom: 0,
-          slots,
-          curvatureFrom: 0,
-          curvature: new Float32Array(0),
-          progress: last,
-        },
-        [slots.buffer],
-      );
+      env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
     }
     this.sendCurvature();
+    return true;
   }
 
   /** Sends the curvature of all particles if the page shows it and lacks it. */

@@ -65,7 +65,9 @@ export class Pace {
     const { particles } = outcome;
     const { drag } = this;
     const cost = this.costOf(sampled);
-    if (request.kind === 'sample') cost.record(outcome);
+    // A run that ended at its coarse level does not tell what the whole one costs.
+    const isWhole = !(request.kind === 'sample' && request.coarse && request.settings.method === 'refined');
+    if (request.kind === 'sample' && isWhole) cost.record(outcome);
     if (!request.live || !drag) return null;
     const latency = this.nowMs() - sinceMs;
     drag.latencies.push(latency);

@@ -22,6 +22,7 @@ import { timingOf, timingOfReport } from './pace.js';
  *   new surface replaces the old one
  * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns of particles first … last are
  *   new
+ * @property {() => void} meshed  the columns have another mesh
  * @property {(from: number, last: number) => void} recolour  colours of particles first … last may have changed
  * @property {() => void} fit
  * @property {(dim: boolean) => void} dim
@@ -86,6 +87,7 @@ export class Presenter {
   first({ request, bounds }) {
     const { store } = this;
     store.report.value = null;
+    store.mesh.value = null;
     if (request.kind !== 'sample') return;
     this.columns.clear(request.settings.sampling === 'adaptive');
     this.picture.begin({ grow: request.grow, fit: request.fit, bounds });
@@ -100,6 +102,11 @@ export class Presenter {
     const { columns, picture, store } = this;
     if (!columns.write(message)) return onDrawn();
     columns.writeSlots(message.slotsFrom, message.slots);
+    if (message.mesh) {
+      columns.mesh = message.mesh;
+      picture.meshed();
+    }
+    store.mesh.value = columns.mesh?.about ?? null;
     if (message.curvature.length > 0) {
       columns.writeCurvature(message.curvatureFrom, message.curvature);
       picture.recolour(message.curvatureFrom, columns.count);

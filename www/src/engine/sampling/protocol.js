@@ -16,12 +16,14 @@
  * @typedef {import('../types.js').Report} Report
  * @typedef {import('../types.js').Seconds} Seconds
  * @typedef {import('../types.js').Description} Description
+ * @typedef {import('../types.js').Mesh} Mesh
  */
 
 /**
  * Samples the field from the start. With `grow` the columns are sent while the front grows; otherwise they are sent
  * once the front is complete, so that the present picture stays until then. A `live` job comes from a drag: its columns
- * are sent once, at the end, and it has no report unless it is stopped. A job with more than `askAbove` expected
+ * are sent once, at the end, and it has no report unless it is stopped. With `coarse` it ends where a refinement has finished
+ * its coarse level: the particles that the full run refines. A job with more than `askAbove` expected
  * particles is returned without running. `points` is the solved model that `field` names.
  * @typedef {object} SampleJob
  * @property {'sample'} kind
@@ -31,6 +33,7 @@
  * @property {Settings} settings
  * @property {boolean} grow
  * @property {boolean} live
+ * @property {boolean} coarse
  * @property {number} askAbove
  */
 /**
@@ -42,12 +45,15 @@
 /**
  * A `job` replaces the running one once the core has accepted its field. If the field is refused, the running job
  * continues. `stop` ends every job sent before it. `curvature` says whether the page shows the curvature. If so, it is
- * sent with the other columns, and at once for the particles that the worker holds. The first message is `core`, or
- * `no_core` if the core could not be loaded.
+ * sent with the other columns, and at once for the particles that the worker holds. `mesh` says whether the page draws a
+ * mesh. If so, it is made at the end of every run, and sent with the last columns. `export` asks for the mesh as a file, once
+ * no job is left. The first message is `core`, or `no_core` if the core could not be loaded.
  * @typedef {{type: 'core', module: WebAssembly.Module}
  *   | {type: 'no_core', fault: LoadFault, message: string}
  *   | {type: 'job', job: Job}
  *   | {type: 'curvature', on: boolean}
+ *   | {type: 'mesh', on: boolean}
+ *   | {type: 'export', request: number, format: import('../types.js').MeshFormat}
  *   | {type: 'stop'}
  *   | {type: 'drawn', id: number}
  *   | {type: 'provoke', fault: Fault}} ToWorker
@@ -75,6 +81,7 @@
  * @property {Uint32Array} slots
  * @property {number} curvatureFrom
  * @property {Float32Array} curvature  empty unless the page shows it
+ * @property {Mesh | null} mesh  null unless the page draws it and the run is over
  * @property {CoreProgress | null} progress  null for columns sent after the run
  */
 /**
@@ -107,6 +114,7 @@
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
  *   | ColumnsMessage | DoneMessage | ReportMessage
+ *   | {type: 'file', request: number, bytes: Uint8Array<ArrayBuffer> | null}
  *   | {type: 'crashed', id: number, message: string, stack: string}} FromWorker
  */
 

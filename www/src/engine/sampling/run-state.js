@@ -25,7 +25,7 @@ import { clampSettings } from '../share/state.js';
  * @property {boolean} fit
  * @property {boolean} [confirmed]
  * @property {boolean} [restoring]
- * @property {boolean} [coarse]
+ * @property {boolean} [coarse]  of fewer particles than the settings of the state ask for, or of the coarse level alone
  */
 /** @typedef {{kind: 'relax', of: number, steps: number, live: false, grow: true, fit: false, restoring?: false}} RelaxRequest */
 /** @typedef {SampleRequest | RelaxRequest} RunRequest */

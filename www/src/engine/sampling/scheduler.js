@@ -83,7 +83,7 @@ export class Scheduler {
 
 /**
  * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude, and so do
- * adaptive and uniform runs. Each radius law relates the number of particles to a length of its own.
+ * adaptive and uniform runs, and the two methods. Each radius law relates the number of particles to a length of its own.
  * @param {import('../types.js').FieldRequest} field @param {Settings} settings
  */
 export const costKey = (field, settings) =>
@@ -91,6 +91,7 @@ export const costKey = (field, settings) =>
     field.points === undefined ? 'formula' : 'points',
     settings.sampling,
     settings.sampling === 'adaptive' ? settings.radius_law : '',
+    settings.method === 'refined' ? 'refined' : '',
   ].join(' ');
 
 /**
@@ -169,7 +170,8 @@ export class CostModel {
 
 /**
  * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for as
- * many particles as fit. The caller limits them to their ranges.
+ * many particles as fit. The caller limits them to their ranges. A refined run keeps its settings, as it can end at its
+ * coarse level, which is what the full run refines.
  * @param {Settings} settings  complete, with the defaults filled in
  * @param {number} diagonal  of the clip box, of which the radius is a share
  * @param {CostModel} cost
@@ -181,6 +183,7 @@ export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
   const expected = cost.expected(settings, diagonal);
   if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relaxSteps) <= budgetMs)
     return { settings, coarse: false };
+  if (settings.method === 'refined') return { settings, coarse: true };
   const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
   const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
   // If seeding takes most of the budget, fewer particles do not help. They keep half of the budget.

@@ -6,8 +6,9 @@
  */
 import init, { Core } from '../../wasm/core/core.js';
 import { words } from '../bundle/load.js';
-import { curvatureColumn, runJob } from './job.js';
+import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
+import { join } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -33,8 +34,12 @@ let running = null;
 let undrawn = 0;
 /** @type {import('./protocol.js').Fault | null} */
 let provoked = null;
-/** Whether the page shows the curvature. */
+/** Whether the page shows the curvature, and whether it draws a mesh. */
 let curvature = false;
+let mesh = false;
+/** Files that the page waits for. @type {Extract<ToWorker, {type: 'export'}>[]} */
+const files = [];
+let pumping = false;
 let dead = false;
 /** The last message of the core's panic hook, which writes to the console. */
 let lastWords = '';
@@ -65,7 +70,7 @@ const pause = () =>
 let core = null;
 /** @type {import('../../wasm/core/core.js').InitOutput | null} */
 let raw = null;
-const memory = { held: 0 };
+const memory = { held: 0, meshed: 0 };
 /** Causes the fault that a test has requested: a real trap in the instance, a stack overflow or an endless loop. */
 function provoke() {
   const fault = provoked;
@@ -81,37 +86,67 @@ function provoke() {
   }
 }
 
+/** @param {Core} ours @returns {import('./job.js').Surroundings} */
+const surroundings = (ours) => ({
+  nowMs: () => performance.now(),
+  pause,
+  post: (message, transfer) => {
+    if (message.type === 'columns') undrawn += 1;
+    post(message, transfer);
+  },
+  interrupt: () => {
+    if (provoked) provoke();
+    return jobs.interrupt(ours);
+  },
+  curvature: () => curvature,
+  mesh: () => mesh,
+  room: () => undrawn < 2,
+});
+
+/** Does what there is to do, jobs first. */
 async function pump() {
+  if (pumping) return;
+  pumping = true;
   while (core && !dead) {
     const ours = core;
     try {
       running = jobs.take(ours);
-      if (!running) return;
-      undrawn = 0;
-      await runJob(
-        ours,
-        running,
-        {
-          nowMs: () => performance.now(),
-          pause,
-          post: (message, transfer) => {
-            if (message.type === 'columns') undrawn += 1;
-            post(message, transfer);
-          },
-          interrupt: () => {
-            if (provoked) provoke();
-            return jobs.interrupt(ours);
-          },
-          curvature: () => curvature,
-          room: () => undrawn < 2,
-        },
-        memory,
-      );
+      if (running) {
+        undrawn = 0;
+        await runJob(ours, running, surroundings(ours), memory);
+      } else if (!(await serve(ours))) {
+        break;
+      }
     } catch (error) {
       crashed(running?.id ?? 0, error);
     }
     running = null;
   }
+  pumping = false;
+}
+
+/**
+ * Makes the mesh or a file that the page has asked for since the last job.
+ * @param {Core} ours
+ * @returns {Promise<boolean>} whether there was anything to do
+ */
+async function serve(ours) {
+  const { held } = memory;
+  const isDrawn = mesh && held > 0 && memory.meshed !== held;
+  if (!isDrawn && files.length === 0) return false;
+  const made = held > 0 ? await join(ours, surroundings(ours)) : null;
+  // A job that has come meanwhile goes first.
+  if (held > 0 && !made) return true;
+  if (made && isDrawn) {
+    memory.meshed = held;
+    post(...meshColumn(ours, held, made));
+  }
+  const wanted = files.shift();
+  if (wanted) {
+    const bytes = /** @type {Uint8Array<ArrayBuffer> | null} */ ((made && ours.mesh_file(wanted.format)) ?? null);
+    post({ type: 'file', request: wanted.request, bytes }, bytes ? [bytes.buffer] : []);
+  }
+  return true;
 }
 
 /** @param {number} id @param {unknown} error */
@@ -132,7 +167,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'job':
       jobs.add(data.job);
-      if (!running) void pump();
+      void pump();
       break;
     case 'curvature':
       curvature = data.on;
@@ -143,6 +178,14 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
           crashed(memory.held, error);
         }
       }
+      break;
+    case 'mesh':
+      mesh = data.on;
+      void pump();
+      break;
+    case 'export':
+      files.push(data);
+      void pump();
       break;
     case 'stop':
       jobs.stop();

@@ -47,7 +47,18 @@ export function difference(state, description) {
   if (Object.keys(settings).length) out.settings = settings;
   /** @type {Record<string, unknown>} */
   const look = {};
-  for (const key of /** @type {const} */ (['colour', 'size', 'theme', 'box', 'points', 'level']))
+  for (const key of /** @type {const} */ ([
+    'colour',
+    'size',
+    'draw',
+    'faces',
+    'edges',
+    'marks',
+    'theme',
+    'box',
+    'points',
+    'level',
+  ]))
     if (view[key] !== home.view[key]) look[key] = view[key];
   const { camera } = view;
   const rounded = {

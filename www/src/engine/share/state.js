@@ -36,12 +36,23 @@ export const COLOUR_MODES = [
   'normal',
   'plain',
 ];
+/** Parts of the view that have one of several values: key, name in words, values. */
+const CHOICES = /** @type {const} */ ([
+  ['colour', 'colour', COLOUR_MODES],
+  ['theme', 'theme', ['auto', 'light', 'dark']],
+  ['draw', 'way of drawing', ['discs', 'mesh']],
+  ['faces', 'faces of the mesh', ['smooth', 'flat']],
+]);
 export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
 /** @returns {import('../types.js').ViewState} */
 const homeView = () => ({
   colour: 'level',
   size: DISC_SIZE.default,
+  draw: 'discs',
+  faces: 'smooth',
+  edges: true,
+  marks: true,
   theme: 'auto',
   box: false,
   points: true,
@@ -295,22 +306,21 @@ export function validSetting(description, name, value) {
  */
 export function validView(raw, view, reset = []) {
   const out = { ...view };
-  if (raw.colour !== undefined) {
-    if (COLOUR_MODES.includes(/** @type {any} */ (raw.colour))) out.colour = /** @type {any} */ (raw.colour);
-    else reset.push('colour');
-  }
   if (raw.size !== undefined) {
     const size = within(raw.size, DISC_SIZE.min, DISC_SIZE.max);
     if (size !== raw.size) reset.push('disc size');
     out.size = size ?? out.size;
   }
-  if (raw.theme !== undefined) {
-    if (raw.theme === 'auto' || raw.theme === 'light' || raw.theme === 'dark') out.theme = raw.theme;
-    else reset.push('theme');
+  for (const [key, name, values] of CHOICES) {
+    if (raw[key] === undefined) continue;
+    if (/** @type {readonly unknown[]} */ (values).includes(raw[key])) /** @type {any} */ (out)[key] = raw[key];
+    else reset.push(name);
   }
   for (const [key, name] of /** @type {const} */ ([
     ['box', 'box'],
     ['points', 'points of the model'],
+    ['edges', 'edges of the mesh'],
+    ['marks', 'marks on the mesh'],
   ])) {
     if (raw[key] === undefined) continue;
     if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);

@@ -8,6 +8,8 @@ import { PALETTES } from './palettes.js';
 
 /** Duration in which a new particle fades in. */
 export const FADE_S = 0.12;
+/** Width of the edges of faces, in page pixels. */
+const EDGE_PX = 1;
 /** Share by which discs seen from behind fade towards the background. */
 const DIM_BACKFACES = 0.55;
 
@@ -15,6 +17,10 @@ const DIM_BACKFACES = 0.55;
  * @typedef {object} Look
  * @property {import('../types.js').ColourMode} colour
  * @property {number} size  disc radius as a share of the particle's radius
+ * @property {'discs' | 'mesh'} draw
+ * @property {'smooth' | 'flat'} faces
+ * @property {boolean} edges  whether the edges of faces are drawn
+ * @property {boolean} marks  whether vertices without six neighbours are marked
  * @property {'light' | 'dark'} theme
  * @property {import('../types.js').Bounds | null} box  the clip box, or null if it is not drawn
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
@@ -24,9 +30,13 @@ const DIM_BACKFACES = 0.55;
  */
 
 /** @param {import('../types.js').ViewState} view @returns {Look} */
-export const firstLook = ({ colour, size }) => ({
+export const firstLook = ({ colour, size, draw, faces, edges, marks }) => ({
   colour,
   size,
+  draw,
+  faces,
+  edges,
+  marks,
   theme: 'light',
   box: null,
   points: null,
@@ -51,6 +61,7 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
   const palette = PALETTES[look.theme];
   return {
     background: [...rgbFromPacked(palette.ground), 1],
+    faces: look.draw === 'mesh' ? { flat: look.faces === 'flat', edge_px: look.edges ? EDGE_PX : 0 } : null,
     disc_scale: look.size,
     dim,
     fade_s: calm ? 0 : FADE_S,

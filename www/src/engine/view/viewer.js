@@ -7,6 +7,7 @@ import { ballOf, Camera, rayThrough, viewOf } from './camera.js';
 import { legendOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
+import { FaceUpload } from './faces.js';
 import { FrameLoop, nowS } from './frames.js';
 import { pick } from './picking.js';
 import { Reveal } from './reveal.js';
@@ -57,6 +58,7 @@ export class Viewer {
     this.growing = false;
     this.dimmer = new Dimmer();
     this.upload = new ParticleUpload(columns);
+    this.faces = new FaceUpload(columns);
     /** What has changed since the last frame. */
     this.due = { size: true, style: true, legend: true };
     this.frames = new FrameLoop((nowS, dtS) => this.frame(nowS, dtS));
@@ -115,9 +117,15 @@ export class Viewer {
     this.frames.ask();
   }
 
+  /** Handles a mesh that has come or gone without particles. */
+  meshed() {
+    this.frames.ask();
+  }
+
   /** @param {number} first @param {number} last */
   recolour(first, last) {
     this.upload.recolour(first, last);
+    this.faces.recolour();
     this.due.legend = true;
     this.frames.ask();
   }
@@ -131,8 +139,9 @@ export class Viewer {
   set(patch) {
     const before = this.look;
     this.look = { ...before, ...patch };
-    const { colour, theme, level } = this.look;
+    const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
+    if (marks !== before.marks) this.faces.recolour();
     // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
       this.endReveal();
@@ -160,6 +169,8 @@ export class Viewer {
   endReveal() {
     this.reveal.end();
     this.events.onReveal(null);
+    // A mesh is drawn from now on.
+    this.frames.ask();
   }
 
   // ---- where it is seen from ----------------------------------------------------------------------------------------------
@@ -214,6 +225,7 @@ export class Viewer {
   opened(device) {
     this.screen.drawnBy(device.kind);
     this.upload.restart();
+    this.faces.restart();
     this.restyle();
     this.events.onDevice(device);
   }
@@ -244,13 +256,17 @@ export class Viewer {
   }
 
   /** Passes the changes since the last frame to the device. @param {Device} device @param {number} nowS */
-  tell({ renderer }, nowS) {
+  tell({ kind, renderer }, nowS) {
     const { screen, due, upload, look, reveal } = this;
     if (due.size) {
       renderer.resize(screen.width, screen.height);
       due.size = false;
     }
     const count = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
+    if (kind !== 'canvas2d') {
+      const drawn = look.draw === 'mesh' && !reveal.active;
+      this.faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
+    }
     this.tellView(renderer, this.currentView(), count);
     if (due.style) {
       renderer.set_style(JSON.stringify(this.style(nowS)));

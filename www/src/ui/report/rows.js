@@ -25,7 +25,7 @@ export function valueAt(root, key) {
  * Returns whether a relaxation step was made. The energies are those before the first step and after each step.
  * @param {Report} report
  */
-const isRelaxed = ({ energy }) => energy.length > 1;
+const isRelaxed = ({ energy }) => energy !== null && energy.length > 1;
 
 /**
  * Returns a figure of the whole run or, for a quality figure, its values before and after relaxation.
@@ -53,6 +53,12 @@ export function isTold(report, { key, unless }) {
   };
   return (!report || has(key)) && !(unless && has(unless));
 }
+
+/**
+ * Returns the headings of the two columns of quality figures: of the particles as they were placed, and after relaxation.
+ * @param {Report | null} report
+ */
+export const headingsOf = (report) => [report?.refined_levels != null ? 'Refined' : 'Front', 'Relaxed'];
 
 /** Words shown for the core's values. @type {Record<string, string>} */
 const WORDS = { proven: 'proven', searched: 'by dense search' };

@@ -1,8 +1,8 @@
 /** Shows the report's rows as a table. Every label has an explanation of its figure. */
 import { effect } from '@preact/signals-core';
-import { h } from '../dom.js';
+import { bindText, h } from '../dom.js';
 import { explain } from '../explain.js';
-import { compare, figuresOf, groupRows, isTold, writeFigure, writeRange } from './rows.js';
+import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
 /** @typedef {import('../../engine/types.js').ReportRow} ReportRow */
@@ -26,8 +26,11 @@ export function createTable(report, rows) {
           'tr',
           { class: 'group' },
           h('th', { scope: 'rowgroup' }, group),
-          h('td', null, i === headed ? 'Front' : null),
-          h('td', null, i === headed ? 'Relaxed' : null),
+          [0, 1].map((column) => {
+            const heading = h('td');
+            if (i === headed) bindText(heading, () => headingsOf(report.value)[column]);
+            return heading;
+          }),
         ),
         members.map((row) => createRow(report, row)),
       );

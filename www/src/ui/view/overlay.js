@@ -2,6 +2,7 @@
 import { computed, effect } from '@preact/signals-core';
 import { bindText, fill, h } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
+import { NO_MESH, wordsOf } from './mesh-words.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
@@ -38,12 +39,15 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   // The field panel announces the loading.
   const line = h('span');
   const detail = h('span', { class: 'detail' });
-  caption.append(line, detail);
+  const joined = h('span', { class: 'detail joined' });
+  caption.append(line, detail, joined);
   bindText(line, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
+  const mesh = computed(() => (told.value ? '' : meshOf(engine)));
   bindText(detail, () => (engine.loading.value ? '' : (told.value?.text ?? '')));
+  bindText(joined, () => (engine.loading.value ? '' : mesh.value));
   announce(
     spoken,
-    computed(() => (told.value ? `${text.value}. ${told.value.text}` : text.value)),
+    computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. ')),
     computed(() => engine.busy.value || engine.reveal.value !== null),
   );
 
@@ -68,6 +72,14 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
     if (lost.value) fill(empty, ...emptyState(engine));
     else fill(empty);
   });
+}
+
+/** Returns what is said of the mesh while it is drawn. @param {Engine} engine */
+function meshOf(engine) {
+  if (engine.state.value.view.draw !== 'mesh' || engine.empty.value) return '';
+  if (engine.backend.value === 'canvas2d') return NO_MESH;
+  const mesh = engine.mesh.value;
+  return mesh && !engine.busy.value && !engine.reveal.value ? wordsOf(mesh) : '';
 }
 
 /** Title and advice of the empty state, by the reason for it. @type {Record<string, [string, string] | undefined>} */

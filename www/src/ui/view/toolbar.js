@@ -5,13 +5,20 @@ import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { icon } from '../icons.js';
 import { attachMenu } from '../menu.js';
-import { copyLink, exportFile, savePicture } from '../share.js';
+import { copyLink, exportFile, exportMesh, savePicture } from '../share.js';
 import { createSlider } from '../slider.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
 const ZOOM = 1.25;
 const TURN_RAD = Math.PI / 12;
+/** File formats for the mesh, with a note. @type {[import('../../engine/types.js').MeshFormat, string][]} */
+const MESH_FORMATS = [
+  ['glb', 'triangles, normals, levels as colours'],
+  ['obj', 'triangles and normals, as text'],
+  ['stl', 'triangles alone'],
+  ['ply', 'all columns, and triangles'],
+];
 const SIZE = { min: 0.2, max: 1.5, step: 0.01, initial: 0.92 };
 
 /**
@@ -19,8 +26,8 @@ const SIZE = { min: 0.2, max: 1.5, step: 0.01, initial: 0.92 };
  * @param {{ hide: () => void, shortcuts: () => void, toast: import('../toasts.js').Toast }} page
  */
 export function createToolbar(engine, { hide, shortcuts, toast }) {
-  const view = tool('options', 'View options', 'Turning, size of the discs, theme.');
-  const save = tool('save', 'Export', 'The particles as a file.');
+  const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');
+  const save = tool('save', 'Export', 'The particles, or the mesh over them, as a file.');
   const bar = h(
     'div',
     { class: 'toolbar', role: 'group', 'aria-label': 'View tools' },
@@ -36,14 +43,19 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('help', 'Keyboard shortcuts', 'Key ?', shortcuts),
   );
-  attachMenu(view, [turning(engine), discSize(engine), theme(engine), choice('Hide the panels', hide)], {
+  attachMenu(view, [turning(engine), ...drawing(engine), theme(engine), choice('Hide the panels', hide)], {
     label: 'View options',
   });
   attachMenu(
     save,
     [
+      heading('Particles'),
       choice('Export PLY', () => exportFile(engine, toast, 'ply'), 'position, normal, radius, level, parent, valence'),
       choice('Export CSV', () => exportFile(engine, toast, 'csv'), 'one line per particle'),
+      heading('Mesh'),
+      ...MESH_FORMATS.map(([format, note]) =>
+        choice(`Export mesh ${format.toUpperCase()}`, () => exportMesh(engine, toast, format), note),
+      ),
     ],
     { label: 'Export' },
   );
@@ -78,6 +90,9 @@ function pointsToggle(engine) {
   effect(() => button.setAttribute('aria-pressed', String(shown.value)));
   return button;
 }
+
+/** @param {string} text */
+const heading = (text) => h('p', { class: 'menu-head quiet' }, text);
 
 /** @param {string} label @param {() => void} act @param {string} [note] */
 function choice(label, act, note) {
@@ -137,27 +152,85 @@ function discSize(engine) {
   return h('div', { class: 'menu-line' }, h('span', null, 'Disc size'), slider.range);
 }
 
+/**
+ * Creates a line of buttons of which one is pressed: the value of a part of the view.
+ * @template {'draw' | 'faces' | 'theme'} K
+ * @param {Engine} engine
+ * @param {string} name
+ * @param {K} key
+ * @param {[import('../../engine/types.js').ViewState[K], string][]} values
+ */
+function choices(engine, name, key, values) {
+  const chosen = computed(() => engine.state.value.view[key]);
+  const buttons = values.map(([value, label]) => {
+    const button = press(label, () => engine.setView({ [key]: value }));
+    effect(() => button.setAttribute('aria-pressed', String(chosen.value === value)));
+    return button;
+  });
+  return line(name, buttons);
+}
+
+/**
+ * Creates a line of buttons that switch parts of the view on and off.
+ * @param {Engine} engine
+ * @param {string} name
+ * @param {['edges' | 'marks', string, string][]} parts  key, label, explanation
+ */
+function switches(engine, name, parts) {
+  const buttons = parts.map(([key, label, text]) => {
+    const on = computed(() => engine.state.value.view[key]);
+    const button = press(label, () => engine.setView({ [key]: !on.peek() }));
+    explain(button, () => ({ title: label, text }), { side: 'left' });
+    effect(() => button.setAttribute('aria-pressed', String(on.value)));
+    return button;
+  });
+  return line(name, buttons);
+}
+
+/** @param {string} label @param {() => void} act */
+const press = (label, act) => h('button', { type: 'button', class: 'button small', on: { click: act } }, label);
+
+/** @param {string} name @param {HTMLElement[]} buttons */
+const line = (name, buttons) =>
+  h(
+    'div',
+    { class: 'menu-line', role: 'group', 'aria-label': name },
+    h('span', null, name),
+    h('span', { class: 'pad' }, buttons),
+  );
+
+/** Creates the choice of the way of drawing, with what belongs to each way. @param {Engine} engine */
+function drawing(engine) {
+  const draw = computed(() => engine.state.value.view.draw);
+  const discs = discSize(engine);
+  const faces = choices(engine, 'Faces', 'faces', [
+    ['smooth', 'Smooth'],
+    ['flat', 'Flat'],
+  ]);
+  const shown = switches(engine, 'Show', [
+    ['edges', 'Edges', 'The edges of the faces.'],
+    [
+      'marks',
+      'Defects',
+      'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.',
+    ],
+  ]);
+  effect(() => {
+    discs.hidden = draw.value !== 'discs';
+    faces.hidden = draw.value !== 'mesh';
+    shown.hidden = draw.value !== 'mesh';
+  });
+  const ways = choices(engine, 'Draw', 'draw', [
+    ['discs', 'Discs'],
+    ['mesh', 'Mesh'],
+  ]);
+  return [ways, discs, faces, shown];
+}
+
 /** @param {Engine} engine */
-function theme(engine) {
-  const chosen = computed(() => engine.state.value.view.theme);
-  const themes = /** @type {const} */ ([
+const theme = (engine) =>
+  choices(engine, 'Theme', 'theme', [
     ['auto', 'System'],
     ['light', 'Light'],
     ['dark', 'Dark'],
   ]);
-  const buttons = themes.map(([id, label]) => {
-    const button = h(
-      'button',
-      { type: 'button', class: 'button small', on: { click: () => engine.setView({ theme: id }) } },
-      label,
-    );
-    effect(() => button.setAttribute('aria-pressed', String(chosen.value === id)));
-    return button;
-  });
-  return h(
-    'div',
-    { class: 'menu-line', role: 'group', 'aria-label': 'Theme' },
-    h('span', null, 'Theme'),
-    h('span', { class: 'pad' }, buttons),
-  );
-}
