@@ -97,12 +97,18 @@ impl Attempt {
         self.area * self.packing / (2.0 * SQRT_3)
     }
 
-    /// Makes this an attempt at a coarse front to be refined, on a surface with this largest curvature, if that can be. There is no
-    /// pilot run: the refinement meets the wanted count by itself.
-    pub(super) fn refine(&mut self, settings: &Settings, max_curvature: f64) {
+    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it, if
+    /// that can be. There is no pilot run: the refinement meets the wanted count by itself.
+    pub(super) fn refine(&mut self, settings: &Settings, mut curvature: Vec<f64>) {
         let count = self.predicted_count(settings);
         let radius = (self.count_times_radius_sq() / count).sqrt();
-        let levels = refine::levels(max_curvature * 2.0 * radius, count, self.sizing.is_some());
+        curvature.sort_by(f64::total_cmp);
+        let Some(&largest) = curvature.last() else { return };
+        let is_graded = self.sizing.is_some();
+        let levels_at = |curvature: f64| refine::levels(curvature * 2.0 * radius, count, is_graded);
+        // What bends too much may be a component of its own, beside which others can be refined.
+        let is_mostly_smooth = || largest.is_finite() && levels_at(curvature[curvature.len() / 2]).is_some();
+        let levels = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
         // There is no radius where there is no surface.
         if levels.is_some() && radius > 0.0 && count <= f64::from(settings.max_particles) {
             (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
@@ -129,10 +135,10 @@ impl Attempt {
         Self::first(settings, self.area, diagonal, self.graded.take().map(Sizing::unscaled))
     }
 
-    /// Ends the refinement: the particles have the radii of the radius field, if there is one. Returns how often the front was refined.
-    pub(super) fn end_refinement(&mut self) -> Option<u32> {
+    /// Ends the refinement: the particles have the radii of the radius field, if there is one.
+    pub(super) fn end_refinement(&mut self) {
         self.sizing = self.sizing.take().or(self.graded.take());
-        self.levels.take()
+        self.levels = None;
     }
 
     /// Radius of the front.

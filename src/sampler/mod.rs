@@ -45,6 +45,7 @@ use front::Front;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use projection::Projector;
+use refine::Fronts;
 use relaxation::Relaxation;
 use run::Input;
 use sizing::Sizing;
@@ -64,6 +65,8 @@ pub struct Sampler {
     projector: Projector,
     seeds: Seeds,
     front: Front,
+    /// Coarse fronts, of which a refinement takes several where the surface has several components.
+    fronts: Fronts,
     relaxation: Relaxation,
     neighbours: PackedNeighbours,
     particles: Particles,
@@ -93,6 +96,7 @@ impl Sampler {
             projector: Projector::new(),
             seeds: Seeds::default(),
             front: Front::new(),
+            fronts: Fronts::default(),
             relaxation: Relaxation::new(),
             neighbours: PackedNeighbours::default(),
             particles: Particles::default(),
@@ -212,6 +216,7 @@ impl Sampler {
         self.settings = *settings;
         self.bounds = *bounds;
         self.particles.clear();
+        self.fronts = Fronts::default();
         self.relaxation.clear();
         self.counts = Counts::default();
         self.projector.evaluations = 0;
@@ -225,8 +230,8 @@ impl Sampler {
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.factor);
-            let max_curvature = refine::max_curvature(field, &self.survey.position);
-            self.attempt.refine(settings, max_curvature);
+            let curvature = refine::largest_curvatures(field, &self.survey.position);
+            self.attempt.refine(settings, curvature);
             self.counts.refusal = self.attempt.levels.is_none().then_some(Refusal::Unsuitable);
         }
         let predicted = self.attempt.predicted_count(settings);

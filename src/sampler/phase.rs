@@ -1,6 +1,6 @@
 //! The phases of a run: their public names, and the state that each of them carries.
 
-use super::refine::Refinement;
+use super::refine::Components;
 use serde::Serialize;
 
 /// What the sampler is doing.
@@ -79,7 +79,7 @@ pub(super) enum PhaseState {
     /// Fills the gaps that the fronts have left.
     Filling,
     /// Brings a coarse front into order and refines it.
-    Refinement(Box<Refinement>),
+    Refinement(Box<Components>),
     /// Moves the particles to more even distances.
     Relaxation,
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.

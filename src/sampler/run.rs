@@ -8,7 +8,7 @@ use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
-use crate::sampler::refine::{self, Refinement, Refusal, Target};
+use crate::sampler::refine::{self, Components, Next, Refusal, Target};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
 use glam::Vec3;
@@ -54,6 +54,7 @@ impl Sampler {
                 | PhaseState::Search
                 | PhaseState::Filling => {
                     self.front.active_mut().stop(&mut self.particles);
+                    self.particles = self.fronts.end().unwrap_or(core::mem::take(&mut self.particles));
                     self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
                 }
@@ -102,16 +103,21 @@ impl Sampler {
             radii: self.attempt.radii(),
             expected,
         });
-        self.counts.seeds = 0;
-        self.counts.left_out = 0;
-        self.counts.front_evaluations = 0;
-        self.seeds.restart();
+        if self.fronts.seed().is_none() {
+            self.counts.seeds = 0;
+            self.counts.left_out = 0;
+            self.counts.front_evaluations = 0;
+            self.seeds.restart();
+        }
         let random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed).next_u64();
         PhaseState::Seeding(SurveyCursor::new(self.survey.position.len(), random))
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
     fn find_seed(&mut self, field: &mut dyn Field, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
+        if let Some((position, normal)) = self.fronts.seed() {
+            return self.begin_front(field, position, normal, None).unwrap_or(PhaseState::Search);
+        }
         while *left > 0 {
             let Some(i) = cursor.next() else { return PhaseState::Search };
             *left -= 1;
@@ -146,7 +152,7 @@ impl Sampler {
         }
         let is_started = self.with_front(field, |front, context| front.add_seed(context, position, normal));
         is_started.then(|| {
-            self.counts.seeds += 1;
+            self.counts.seeds += u32::from(self.fronts.seed().is_none());
             PhaseState::Generation(after)
         })
     }
@@ -199,7 +205,10 @@ impl Sampler {
     /// but for the gaps.
     fn search_components(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
         if self.front.is_capped() {
-            return self.end_generation();
+            return self.end_generation(field);
+        }
+        if self.fronts.seed().is_some() {
+            return self.begin_filling(field);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
@@ -213,9 +222,7 @@ impl Sampler {
             let (witness, unused) = self.seeds.next(*left);
             *left = unused;
             let Some(seed) = witness else {
-                let has_gaps =
-                    self.settings.gaps == GapPolicy::Fill && self.front.active_mut().begin_filling();
-                return if has_gaps { PhaseState::Filling } else { self.end_generation() };
+                return self.begin_filling(field);
             };
             let mut near = self.seeds.take_near();
             self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
@@ -231,15 +238,24 @@ impl Sampler {
         PhaseState::Search
     }
 
+    fn begin_filling(&mut self, field: &mut dyn Field) -> PhaseState {
+        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.front.active_mut().begin_filling();
+        if has_gaps { PhaseState::Filling } else { self.end_generation(field) }
+    }
+
     /// Fills gaps until no particle fits into any.
     fn fill(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
         self.spend_on_front(field, left, |front, context, budget| front.fill(context, budget));
         let front = self.front.active_mut();
-        if !front.is_filled() || front.begin_filling() { PhaseState::Filling } else { self.end_generation() }
+        if !front.is_filled() || front.begin_filling() {
+            PhaseState::Filling
+        } else {
+            self.end_generation(field)
+        }
     }
 
     /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
-    fn end_generation(&mut self) -> PhaseState {
+    fn end_generation(&mut self, field: &mut dyn Field) -> PhaseState {
         let count = self.particles.len();
         if count == 0 {
             return PhaseState::Marking(match self.survey.absence {
@@ -249,7 +265,7 @@ impl Sampler {
             });
         }
         if let Some(target) = self.attempt.target(&self.settings) {
-            return self.begin_refinement(target);
+            return self.begin_refinement(field, target);
         }
         if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
@@ -263,29 +279,38 @@ impl Sampler {
         }
     }
 
-    /// Begins to refine the front that has covered the surface.
-    fn begin_refinement(&mut self, target: Target) -> PhaseState {
+    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser.
+    fn begin_refinement(&mut self, field: &mut dyn Field, target: Target) -> PhaseState {
         let is_smooth = self.seeds.singular().is_empty() && !self.front.is_capped();
-        let begun = if is_smooth {
-            Refinement::new(&self.particles, &self.bounds, target)
+        let sizing = self.attempt.graded.as_ref();
+        let next = if is_smooth {
+            self.fronts.take_in(field, sizing, &mut self.particles, &self.bounds, target)
         } else {
             Err(Refusal::Unsuitable)
         };
-        match begun {
-            Ok(refinement) => {
+        match next {
+            Ok(Next::Front(levels)) => {
+                self.attempt.levels = Some(levels);
+                self.begin_attempt()
+            }
+            Ok(Next::Refine(components)) => {
                 self.front.release();
                 // They are those of the front.
                 self.neighbours.clear();
-                PhaseState::Refinement(Box::new(refinement))
+                self.moved = true;
+                PhaseState::Refinement(Box::new(components))
             }
             Err(refusal) => self.refuse(refusal),
         }
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius.
+    /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it leaves
+    /// coarser ones to other components.
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
+        let least = if self.fronts.are_several { 0 } else { 1 };
+        self.fronts.end();
         self.attempt.levels = match self.attempt.levels {
-            Some(levels) if levels > 1 && refusal.is_coarse() => Some(levels - 1),
+            Some(levels) if levels > least && refusal.is_coarse() => Some(levels - 1),
             _ => None,
         };
         if self.attempt.levels.is_none() {
@@ -299,7 +324,7 @@ impl Sampler {
         &mut self,
         field: &mut dyn Field,
         left: &mut u32,
-        mut refinement: Box<Refinement>,
+        mut refinement: Box<Components>,
     ) -> PhaseState {
         let before = refinement.evaluations();
         let step = refinement.step(field, self.attempt.graded.as_ref(), &mut self.particles, *left);
@@ -307,14 +332,18 @@ impl Sampler {
         self.projector.evaluations += evaluations;
         self.counts.generation_evaluations += evaluations;
         match step {
-            Err(refusal) => self.refuse(refusal),
+            Err(refusal) => {
+                self.attempt.levels = Some(refinement.levels()[0]);
+                self.refuse(refusal)
+            }
             Ok((units, has_changed)) => {
                 *left = left.saturating_sub(units);
                 self.moved |= has_changed;
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
                 }
-                self.counts.refined_levels = self.attempt.end_refinement();
+                self.counts.refined_levels = Some(refinement.levels()[1]);
+                self.attempt.end_refinement();
                 PhaseState::Marking(StopReason::Complete)
             }
         }

@@ -71,14 +71,12 @@ impl Refusal {
     }
 }
 
-/// Largest curvature at some points of the surface; infinite where one has none.
-pub(crate) fn max_curvature(field: &mut dyn Field, points: &[Vec3]) -> f64 {
+/// Largest curvature at each of some points of the surface; infinite where there is none.
+pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<f64> {
     let mut curvature = vec![Curvature::default(); points.len()];
     curvatures(field, points, &mut curvature);
-    let largest = |most: f64, c: &Curvature| {
-        most.max(if c.is_defined() { f64::from(c.max_abs()) } else { f64::INFINITY })
-    };
-    curvature.iter().fold(0.0, largest)
+    let largest = |c: &Curvature| if c.is_defined() { f64::from(c.max_abs()) } else { f64::INFINITY };
+    curvature.iter().map(largest).collect()
 }
 
 /// How often a front can be refined that has `count` particles in the end, where the spacing times the largest curvature is
@@ -95,11 +93,11 @@ pub(crate) fn levels(bend: f64, count: f64, is_graded: bool) -> Option<u32> {
 }
 
 /// The particles of a front joined to a closed surface, if that can be had beyond doubt. Particles in no triangle are
-/// left out.
-pub(super) fn join(particles: &Particles, bounds: &Bounds) -> Result<Layer, Refusal> {
+/// left out. The front is to be refined so many times.
+pub(super) fn join(particles: &Particles, bounds: &Bounds, levels: u32) -> Result<Layer, Refusal> {
     let options = Options { bounds: Some(bounds), ..Options::default() };
     let joined = triangulate(&particles.position, &particles.normal, &options);
-    judge_triangles(&joined, particles)?;
+    judge_triangles(&joined, particles, levels)?;
     let mesh =
         HalfEdges::from_triangles(particles.len(), &joined.triangles).map_err(|_| Refusal::Doubtful)?;
     let layer = Layer {
@@ -113,7 +111,7 @@ pub(super) fn join(particles: &Particles, bounds: &Bounds) -> Result<Layer, Refu
     Ok(layer)
 }
 
-fn judge_triangles(joined: &Triangulation, particles: &Particles) -> Result<(), Refusal> {
+fn judge_triangles(joined: &Triangulation, particles: &Particles, levels: u32) -> Result<(), Refusal> {
     let triangles = joined.triangles.len() as f64;
     let left_out = joined.left_out.len() as f64;
     // The only particle of a component, say.
@@ -130,7 +128,9 @@ fn judge_triangles(joined: &Triangulation, particles: &Particles) -> Result<(), 
     if joined.topology.components.iter().any(|component| component.border_edges > 0) {
         return Err(Refusal::Border);
     }
-    if joined.topology.components.iter().any(|component| component.vertices < LEAST_PARTICLES) {
+    // At full resolution there are no more to be had.
+    let least = if levels > 0 { LEAST_PARTICLES } else { 0 };
+    if joined.topology.components.iter().any(|component| component.vertices < least) {
         return Err(Refusal::Small);
     }
     Ok(())

@@ -18,6 +18,7 @@
 //! steps.
 
 mod coarse;
+mod components;
 mod layer;
 mod recipe;
 mod rings;
@@ -26,7 +27,8 @@ mod surgery;
 mod tally;
 
 pub use coarse::Refusal;
-pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, levels, max_curvature};
+pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, largest_curvatures, levels};
+pub(crate) use components::{Components, Fronts, Next};
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
@@ -78,9 +80,9 @@ pub(crate) enum Count {
     PerCell(f64),
 }
 
-/// A refinement under way.
+/// A refinement of one component under way, or of components that are told apart by no front.
 #[derive(Clone, Debug)]
-pub(crate) struct Refinement {
+struct Refinement {
     target: Target,
     layer: Layer,
     block: Block,
@@ -125,8 +127,8 @@ impl Refinement {
     /// # Errors
     ///
     /// Why the front is not good enough.
-    pub(crate) fn new(particles: &Particles, bounds: &Bounds, target: Target) -> Result<Self, Refusal> {
-        Ok(Self::of_layer(coarse::join(particles, bounds)?, target))
+    fn new(particles: &Particles, bounds: &Bounds, target: Target) -> Result<Self, Refusal> {
+        Ok(Self::of_layer(coarse::join(particles, bounds, target.levels)?, target))
     }
 
     fn of_layer(layer: Layer, target: Target) -> Self {
@@ -150,13 +152,28 @@ impl Refinement {
         refinement
     }
 
+    /// Area of the surface.
+    fn area(&self) -> f64 {
+        let mut tally = Tally::default();
+        tally.measure(&self.layer, 0..(self.layer.mesh.half_edge_slots() / 3) as u32);
+        tally.area()
+    }
+
+    /// The level that is finished next, by how many come after it.
+    fn pending(&self) -> u32 {
+        match self.work {
+            Work::Divide(_) | Work::Lift { .. } => self.to_come - 1,
+            Work::Pass { .. } | Work::Show(_) | Work::Done => self.to_come,
+        }
+    }
+
     /// Evaluations of the field so far.
-    pub(crate) fn evaluations(&self) -> u64 {
+    fn evaluations(&self) -> u64 {
         self.block.evaluations
     }
 
     /// Whether there is nothing left to do.
-    pub(crate) fn is_done(&self) -> bool {
+    fn is_done(&self) -> bool {
         matches!(self.work, Work::Done)
     }
 
@@ -166,7 +183,7 @@ impl Refinement {
     }
 
     /// Estimated share of the work that is done, that of the coarse front included.
-    pub(crate) fn fraction(&self) -> f64 {
+    fn fraction(&self) -> f64 {
         let at = match self.work {
             Work::Pass { pass, .. } => pass as f64 / self.recipe.passes.len() as f64,
             _ => 1.0,
@@ -181,7 +198,7 @@ impl Refinement {
     /// # Errors
     ///
     /// Why the refinement cannot go on.
-    pub(crate) fn step(
+    fn step(
         &mut self,
         field: &mut dyn Field,
         sizing: Option<&Sizing>,

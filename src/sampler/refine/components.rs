@@ -1,0 +1,331 @@
+//! The components of a surface, each of which is refined as often as its own curvature and size allow.
+//!
+//! A first front covers all of them, with the radius at which each comes out well: the one that bends most, or is smallest, decides.
+//! For each component that may be coarser another front grows from one of its particles. The components are then refined level by
+//! level, the coarsest first.
+
+use super::coarse::{Refusal, largest_curvatures, levels};
+use super::{Count, Refinement, Target};
+use crate::differential::{Curvature, curvatures};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::mesh::build::{Options, triangulate};
+use crate::particles::Particles;
+use crate::sampler::sizing::Sizing;
+use core::mem;
+use core::ops::RangeInclusive;
+use glam::Vec3;
+
+/// Area that a coarser front finds for a component, over that of the first one. Beyond, it has left something out or has crossed over
+/// to another component.
+const AREA_RATIO: RangeInclusive<f64> = 0.9..=1.1;
+/// Particles copied in one slice of work.
+const SLICE: usize = 1_024;
+
+/// A component with a front that is good enough.
+#[derive(Clone, Debug)]
+struct Component {
+    refinement: Refinement,
+    area: f64,
+    /// Particles that it should have, relative to those of the others.
+    weight: f64,
+    /// Its finished level, or its front.
+    particles: Particles,
+}
+
+/// A component for which a coarser front is to be tried.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    component: usize,
+    levels: u32,
+    /// A point of the component, and the unit normal there.
+    seed: (Vec3, Vec3),
+}
+
+/// The fronts from which a refinement begins, one after the other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Fronts {
+    components: Vec<Component>,
+    /// The next one is the last.
+    candidates: Vec<Candidate>,
+    /// The particles of the first front, once another one begins.
+    first: Particles,
+    /// Whether the surface has several components.
+    pub(crate) are_several: bool,
+}
+
+/// What comes after a front.
+pub(crate) enum Next {
+    /// A front over one component, to be refined so many times.
+    Front(u32),
+    /// The refinement.
+    Refine(Components),
+}
+
+impl Fronts {
+    /// Where the next front begins, if it covers one component only.
+    pub(crate) fn seed(&self) -> Option<(Vec3, Vec3)> {
+        self.candidates.last().map(|candidate| candidate.seed)
+    }
+
+    /// Ends it all. Returns the particles of the first front, if another one has begun.
+    pub(crate) fn end(&mut self) -> Option<Particles> {
+        self.candidates.clear();
+        let first = mem::take(&mut self.first);
+        (!first.is_empty()).then_some(first)
+    }
+
+    /// Takes in the front that has ended, with its `particles`, which is to be refined as `target` says. After the last one they are
+    /// those of the first.
+    ///
+    /// # Errors
+    ///
+    /// Why the first front is not good enough.
+    pub(crate) fn take_in(
+        &mut self,
+        field: &mut dyn Field,
+        sizing: Option<&Sizing>,
+        particles: &mut Particles,
+        bounds: &Bounds,
+        target: Target,
+    ) -> Result<Next, Refusal> {
+        match self.candidates.pop() {
+            None => self.take_first(field, sizing, particles, bounds, target)?,
+            Some(candidate) => self.take_coarser(particles, bounds, target, candidate),
+        }
+        if let Some(candidate) = self.candidates.last() {
+            return Ok(Next::Front(candidate.levels));
+        }
+        if self.components.iter().all(|component| component.refinement.target.levels == 0) {
+            return Err(Refusal::Unsuitable);
+        }
+        let components = mem::take(&mut self.components);
+        if let Some(first) = self.end() {
+            *particles = first;
+        }
+        Ok(Next::Refine(Components::new(components, target)))
+    }
+
+    fn take_first(
+        &mut self,
+        field: &mut dyn Field,
+        sizing: Option<&Sizing>,
+        particles: &Particles,
+        bounds: &Bounds,
+        target: Target,
+    ) -> Result<(), Refusal> {
+        let parts = split(particles);
+        *self = Self { are_several: parts.len() > 1, ..Self::default() };
+        if target.levels == 0 && !self.are_several {
+            return Err(Refusal::Unsuitable);
+        }
+        for part in &parts {
+            let refinement = Refinement::new(part, bounds, target)?;
+            if self.are_several {
+                let largest = largest_curvatures(field, &part.position).into_iter().fold(0.0, f64::max);
+                let bend = largest * 2.0 * f64::from(target.radius);
+                let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.levels));
+                let candidate = Candidate {
+                    component: self.components.len(),
+                    levels: levels(bend, count, sizing.is_some()).unwrap_or(0),
+                    seed: (part.position[0], part.normal[0]),
+                };
+                if candidate.levels > target.levels {
+                    self.candidates.push(candidate);
+                }
+            }
+            let area = refinement.area();
+            let weight = area * sizing.map_or(1.0, |sizing| density(field, sizing, &part.position));
+            // A lone component hands its levels on by itself.
+            let particles = if self.are_several { part.clone() } else { Particles::default() };
+            self.components.push(Component { refinement, area, weight, particles });
+        }
+        self.candidates.reverse();
+        if !self.candidates.is_empty() {
+            self.first = particles.clone();
+        }
+        Ok(())
+    }
+
+    /// Takes a coarser front of a component, or tries one that is less so.
+    fn take_coarser(&mut self, particles: &Particles, bounds: &Bounds, target: Target, tried: Candidate) {
+        let component = &mut self.components[tried.component];
+        let known = &component.refinement;
+        let is_same = |refinement: &Refinement| {
+            refinement.euler == known.euler && AREA_RATIO.contains(&(refinement.area() / component.area))
+        };
+        if let Ok(refinement) = Refinement::new(particles, bounds, target)
+            && is_same(&refinement)
+        {
+            component.refinement = refinement;
+            component.particles = particles.clone();
+        } else if tried.levels > known.target.levels + 1 {
+            self.candidates.push(Candidate { levels: tried.levels - 1, ..tried });
+        }
+    }
+}
+
+/// The particles of each component. Those of one front lie on one component, and neighbours do.
+fn split(particles: &Particles) -> Vec<Particles> {
+    let fronts = particles.parent.iter().filter(|&&parent| parent == Particles::NO_PARENT).count();
+    if fronts == 1 {
+        return vec![particles.clone()];
+    }
+    // Each particle points to one of its component with a smaller number, the first one to itself.
+    let mut first: Vec<u32> = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i)).collect();
+    let find = |first: &mut [u32], mut i: u32| {
+        while first[i as usize] != i {
+            let up = first[i as usize];
+            first[i as usize] = first[up as usize];
+            i = up;
+        }
+        i
+    };
+    let joined = triangulate(&particles.position, &particles.normal, &Options::default());
+    for [a, b, c] in joined.triangles {
+        for other in [b, c] {
+            let (i, j) = (find(&mut first, a), find(&mut first, other));
+            first[i.max(j) as usize] = i.min(j);
+        }
+    }
+    let mut part_of: Vec<usize> = Vec::with_capacity(particles.len());
+    let mut place: Vec<u32> = Vec::with_capacity(particles.len());
+    let mut parts: Vec<Particles> = Vec::new();
+    for i in 0..particles.len() {
+        let root = find(&mut first, i as u32) as usize;
+        let part = if root == i { parts.len() } else { part_of[root] };
+        if root == i {
+            parts.push(Particles::default());
+        }
+        let parent = match particles.parent[i] {
+            Particles::NO_PARENT => Particles::NO_PARENT,
+            parent => place[parent as usize],
+        };
+        let own = &mut parts[part];
+        part_of.push(part);
+        place.push(own.len() as u32);
+        let (position, normal) = (particles.position[i], particles.normal[i]);
+        own.push(position, normal, particles.radius[i], parent, particles.level[i], particles.slots[i]);
+    }
+    parts
+}
+
+/// Particles per area that the radius field asks for at these points, evenly spread over a component.
+fn density(field: &mut dyn Field, sizing: &Sizing, points: &[Vec3]) -> f64 {
+    let mut curvature = vec![Curvature::default(); points.len()];
+    curvatures(field, points, &mut curvature);
+    let cells = points.iter().zip(&curvature).map(|(&p, curvature)| {
+        let radius = f64::from(sizing.radius(p, curvature));
+        1.0 / (radius * radius)
+    });
+    cells.sum::<f64>() / points.len() as f64
+}
+
+/// The refinement of all components.
+#[derive(Clone, Debug)]
+pub(crate) struct Components {
+    components: Vec<Component>,
+    /// The level under way, by how many come after it.
+    level: u32,
+    /// Component and particle up to which the finished level has been handed on, while that is being done.
+    handed: Option<(usize, usize)>,
+}
+
+impl Components {
+    fn new(mut components: Vec<Component>, target: Target) -> Self {
+        if let Count::Total(count) = target.count
+            && components.len() > 1
+        {
+            let sum: f64 = components.iter().map(|component| component.weight).sum();
+            for component in &mut components {
+                component.refinement.target.count = Count::Total(count * component.weight / sum);
+            }
+        }
+        let level = components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
+        Self { components, level, handed: None }
+    }
+
+    /// Evaluations of the field so far.
+    pub(crate) fn evaluations(&self) -> u64 {
+        self.components.iter().map(|component| component.refinement.evaluations()).sum()
+    }
+
+    /// Whether there is nothing left to do.
+    pub(crate) fn is_done(&self) -> bool {
+        self.handed.is_none() && self.components.iter().all(|component| component.refinement.is_done())
+    }
+
+    /// Fewest and most times that a front is refined.
+    pub(crate) fn levels(&self) -> [u32; 2] {
+        let levels = self.components.iter().map(|component| component.refinement.target.levels);
+        [levels.clone().min().unwrap_or(0), levels.max().unwrap_or(0)]
+    }
+
+    /// Estimated share of the work that is done, that of the coarse fronts included.
+    pub(crate) fn fraction(&self) -> f64 {
+        let sum: f64 = self.components.iter().map(|component| component.weight).sum();
+        let done = self.components.iter().map(|component| component.weight * component.refinement.fraction());
+        done.sum::<f64>() / sum
+    }
+
+    /// Does `budget` units of work, or as many more as end a slice: [`Refinement::step`].
+    ///
+    /// # Errors
+    ///
+    /// Why the refinement cannot go on.
+    pub(crate) fn step(
+        &mut self,
+        field: &mut dyn Field,
+        sizing: Option<&Sizing>,
+        particles: &mut Particles,
+        budget: u32,
+    ) -> Result<(u32, bool), Refusal> {
+        if let [lone] = &mut self.components[..] {
+            return lone.refinement.step(field, sizing, particles, budget);
+        }
+        let (mut done, mut has_changed) = (0, false);
+        while done < budget && !self.is_done() {
+            if let Some(from) = self.handed {
+                self.handed = self.hand_on(particles, from);
+                has_changed = true;
+                done += SLICE as u32 / 16;
+                continue;
+            }
+            // Those that are coarser catch up first.
+            let pending = |component: &&mut Component| component.refinement.pending();
+            let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
+            let Some(component) = next.max_by_key(pending) else { break };
+            if component.refinement.pending() < self.level {
+                self.level -= 1;
+                self.handed = Some((0, 0));
+                continue;
+            }
+            let (units, _) = component.refinement.step(field, sizing, &mut component.particles, 1)?;
+            done += units;
+            if self.components.iter().all(|component| component.refinement.is_done()) {
+                self.handed = Some((0, 0));
+            }
+        }
+        Ok((done, has_changed))
+    }
+
+    /// Puts a slice of the finished level into `particles`. Returns where to go on.
+    fn hand_on(&self, particles: &mut Particles, (at, from): (usize, usize)) -> Option<(usize, usize)> {
+        if (at, from) == (0, 0) {
+            particles.clear();
+            particles.reserve(self.components.iter().map(|component| component.particles.len()).sum());
+        }
+        let own = &self.components[at].particles;
+        let first = (particles.len() - from) as u32;
+        let end = own.len().min(from + SLICE);
+        for i in from..end {
+            let parent = match own.parent[i] {
+                Particles::NO_PARENT => Particles::NO_PARENT,
+                parent => first + parent,
+            };
+            particles.push(own.position[i], own.normal[i], own.radius[i], parent, own.level[i], own.slots[i]);
+        }
+        let is_last = at + 1 == self.components.len();
+        if end < own.len() { Some((at, end)) } else { (!is_last).then_some((at + 1, 0)) }
+    }
+}
