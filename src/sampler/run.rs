@@ -333,7 +333,7 @@ impl Sampler {
         self.counts.generation_evaluations += evaluations;
         match step {
             Err(refusal) => {
-                self.attempt.levels = Some(refinement.levels()[0]);
+                self.attempt.levels = Some(refinement.times()[0]);
                 self.refuse(refusal)
             }
             Ok((units, has_changed)) => {
@@ -342,7 +342,7 @@ impl Sampler {
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
                 }
-                self.counts.refined_levels = Some(refinement.levels()[1]);
+                self.counts.refined_levels = Some(refinement.times()[1]);
                 self.attempt.end_refinement();
                 PhaseState::Marking(StopReason::Complete)
             }

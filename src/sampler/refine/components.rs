@@ -256,9 +256,16 @@ impl Components {
     }
 
     /// Fewest and most times that a front is refined.
-    pub(crate) fn levels(&self) -> [u32; 2] {
-        let levels = self.components.iter().map(|component| component.refinement.target.levels);
-        [levels.clone().min().unwrap_or(0), levels.max().unwrap_or(0)]
+    pub(crate) fn times(&self) -> [u32; 2] {
+        let times = self.components.iter().map(|component| component.refinement.target.levels);
+        [times.clone().min().unwrap_or(0), times.max().unwrap_or(0)]
+    }
+
+    /// The level under way, counted from 1, and how many there are.
+    pub(crate) fn levels(&self) -> (u32, u32) {
+        let to_come = self.components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
+        let [_, most] = self.times();
+        (most - to_come + 1, most + 1)
     }
 
     /// Estimated share of the work that is done, that of the coarse fronts included.

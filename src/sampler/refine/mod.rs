@@ -177,11 +177,6 @@ impl Refinement {
         matches!(self.work, Work::Done)
     }
 
-    /// The level under way, counted from 1, and how many there are.
-    pub(crate) fn levels(&self) -> (u32, u32) {
-        (self.target.levels - self.to_come + 1, self.target.levels + 1)
-    }
-
     /// Estimated share of the work that is done, that of the coarse front included.
     fn fraction(&self) -> f64 {
         let at = match self.work {
