@@ -52,6 +52,8 @@
 //! | sheet | A part of the surface near one point that is a graph over its tangent plane. Two sheets may be close in space and far along the surface. |
 //! | singular point | A point of the surface where ∇f = 0, so that there is no normal. |
 //! | clip box | The axis-aligned box outside of which nothing is sampled. |
+//! | fitted box | A clip box around all bounded components of the surface, with room for particles. |
+//! | reach | Whether the surface lies in its fitted box, goes on beyond it, or is nowhere. |
 //! | border | Where the clip box cuts the surface. |
 //! | particle | A point of the sample, with position, normal and repulsion radius. |
 //! | repulsion radius, r | Half of the wanted distance between neighbours. |
@@ -98,13 +100,14 @@
 //! ```text
 //! math ← field ← differential ← sampler ← session ← web
 //!           ↑              ↖ quality ← export ↙
-//!       pointcloud
+//!       pointcloud   ↖ extent ← session
 //! ```
 //!
 //! An arrow points at what is used; `tests/architecture.rs` names every use that is allowed and fails on any other.
 //!
 //! * [`math`]: lanes, elementary functions, symmetric matrices, boxes.
 //! * [`field`]: values, gradients and Hessians, from a formula or from the gallery.
+//! * [`extent`]: how far a surface reaches, and the box that fits it.
 //! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `slices`: long work that can be left and gone on with, as measuring is.
@@ -125,6 +128,7 @@ pub mod answer;
 pub mod baseline;
 pub mod differential;
 pub mod export;
+pub mod extent;
 pub mod field;
 pub mod math;
 pub mod mesh;

@@ -20,6 +20,8 @@ const ROOMS: [Room; 4] = [
             ("answer", &[]),
             ("field", &["math"]),
             ("differential", &["math", "field"]),
+            // A box is found before anything is sampled.
+            ("extent", &["math", "slices", "field"]),
             // From a file to a field. The core that samples is built without it.
             ("pointcloud", &["math", "field", "spatial"]),
             // Particles, meshes of them and the search among them know no field: they hold whatever made them.
@@ -40,6 +42,7 @@ const ROOMS: [Room; 4] = [
                     "slices",
                     "field",
                     "differential",
+                    "extent",
                     "spatial",
                     "particles",
                     "mesh",

@@ -27,7 +27,7 @@ pub use progress::{Counts, Progress, Start};
 pub use refine::Refusal;
 pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
 pub use settings::{
-    COUNT_ROOM, GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode,
+    BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode,
 };
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 

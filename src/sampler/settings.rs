@@ -62,6 +62,16 @@ choices! {
 }
 
 choices! {
+    /// Which box the surface of a formula is sampled in.
+    BoxMode {
+        /// One that fits it, where none is given. A surface of the gallery keeps its own.
+        Fit "fit" "Fit",
+        /// The one that is given, or that of the surface with which the formula began.
+        Fixed "fixed" "Fixed",
+    }
+}
+
+choices! {
     /// What becomes of gaps between fronts that are wide enough for a particle.
     GapPolicy {
         /// A particle is placed in the middle.
@@ -118,6 +128,13 @@ const UNIFORM: Condition = when("sampling", "uniform");
 const ADAPTIVE: Condition = when("sampling", "adaptive");
 
 settings! {
+    // It acts before a run, in `session`: a sampler has the box that it is given.
+    box_mode: BoxMode = BoxMode::Fit => {
+        label: "Box",
+        help: "Fit: around the surface of a formula, with 5 % to spare; what goes on for ever is cut. Fixed: as it is.",
+        choices: BoxMode::CHOICES,
+        option: Some("box"),
+    }
     sampling: Sampling = Sampling::Uniform => {
         label: "Sampling",
         help: "One size everywhere, or sizes that follow the curvature: small particles where the surface bends, large ones where it is flat.",

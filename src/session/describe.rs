@@ -363,6 +363,13 @@ const REPORT: &[ReportRow] = &[
         "Components of the mesh of natural neighbours. Parts that are joined only at a singular point count separately.",
     ),
     row(
+        "border",
+        "Border particles",
+        ("Surface", "", 0),
+        ("", None),
+        "Particles where the box cuts the surface: a child of theirs would have been outside.",
+    ),
+    row(
         "search",
         "All components found",
         ("Surface", "", 0),

@@ -1,7 +1,7 @@
 //! Why a command was refused, as the page shows it.
 
 use super::FieldError;
-use crate::field::formula::{FormulaError, FormulaErrorKind};
+use crate::field::formula::{FormulaError, FormulaErrorKind, Mended};
 use core::fmt;
 use serde::Serialize;
 
@@ -39,6 +39,8 @@ pub struct Fault {
     pub end: usize,
     /// Text that would mend the span, if there is a good guess.
     pub suggestion: Option<String>,
+    /// The formula with every mistake of this kind mended, if there are several.
+    pub mended: Option<Box<Mended>>,
     /// Unknown names that could become sliders.
     pub names: Vec<String>,
 }
@@ -48,7 +50,7 @@ impl Fault {
     #[must_use]
     pub fn new(kind: FaultKind, message: &impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self { kind, message, start: 0, end: 0, suggestion: None, names: Vec::new() }
+        Self { kind, message, start: 0, end: 0, suggestion: None, mended: None, names: Vec::new() }
     }
 
     /// What is wrong with the formula `text`.
@@ -61,6 +63,7 @@ impl Fault {
             start: span.start,
             end: span.end,
             suggestion: error.suggestion,
+            mended: error.mended,
             names: error.names,
         }
     }

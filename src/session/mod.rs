@@ -3,27 +3,31 @@
 
 mod describe;
 mod fault;
+mod fitting;
 mod mesh;
 mod warnings;
 
 pub use describe::{Colour, Description, Fate, Limits, ReportRow, SurfaceEntry, describe};
 pub use fault::{Fault, FaultKind};
+pub use fitting::Cut;
 pub use mesh::{MeshAnswer, MeshComponent};
 
 use crate::differential::{self, Curvature};
+use crate::extent::Reach;
 use crate::field::Field;
 use crate::field::formula::{FormulaError, FormulaErrorKind, FormulaField, MathNode, Parameter};
 use crate::field::gallery::{self, Surface};
 use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
-use crate::particles::Particles;
+use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{self, Figures, Histogram, Sizes};
 use crate::sampler::{
     BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError,
     SizeMode, Start, StopReason,
 };
 use crate::slices::{self, Work};
+use fitting::Fitting;
 use glam::Vec3;
 use mesh::Mesh;
 use serde::{Deserialize, Serialize};
@@ -36,6 +40,9 @@ const MAX_KEPT: usize = 400_000;
 /// Bytes per particle that a session takes beside the run: the particles kept after the front, and the report as measured.
 const KEPT_BYTES: usize = 28;
 const REPORT_BYTES: usize = 225;
+
+/// Slots of a particle, at most.
+const SLOTS: usize = 10;
 
 /// What a caller asks of the field; everything is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -50,7 +57,7 @@ pub struct FieldRequest {
     pub parameters: BTreeMap<String, f64>,
     /// Parameters that the formula's unknown names become.
     pub declare: Vec<Parameter>,
-    /// Clip box.
+    /// Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]).
     pub bounds: Option<Bounds>,
 }
 
@@ -81,8 +88,10 @@ pub struct FieldAnswer {
     pub parameters: Vec<Parameter>,
     /// Parameters that were not declared but found in the formula.
     pub auto: Vec<String>,
-    /// Clip box.
+    /// Clip box; before [`Session::fit`] or a start it may be that of the formula before.
     pub bounds: Bounds,
+    /// How far the surface reaches, if the box was fitted to it.
+    pub reach: Option<Reach>,
     /// The formula as MathML; none if there is no formula.
     pub mathml: Option<MathNode>,
 }
@@ -136,6 +145,10 @@ pub struct Report {
     pub evaluations_per_particle: f64,
     /// What became of the children.
     pub fates: FateCounts,
+    /// Particles with a child that fell outside of the box.
+    pub border: usize,
+    /// Why there are such particles, unless the box was chosen for the surface.
+    pub cut: Option<Cut>,
     /// Times that a coarse front was refined; none where it was not, or the front stands.
     pub refined_levels: Option<u32>,
     /// Why the run ended.
@@ -187,7 +200,10 @@ pub struct Session {
     is_surveyed: bool,
     surface: Option<&'static Surface>,
     declared: Vec<Parameter>,
+    /// The box that was given with the field, or that of its surface.
+    own: Bounds,
     bounds: Bounds,
+    fitting: Fitting,
     sampler: Sampler,
     warnings: Vec<String>,
     last: Option<Progress>,
@@ -248,7 +264,9 @@ impl Session {
             is_surveyed: false,
             surface: Some(surface),
             declared: surface.declared(),
+            own: surface.bounds,
             bounds: surface.bounds,
+            fitting: Fitting::default(),
             sampler: Sampler::new(),
             warnings: Vec::new(),
             last: None,
@@ -302,6 +320,7 @@ impl Session {
                 parameters: field.parameters().to_vec(),
                 auto: field.auto().to_vec(),
                 bounds: self.bounds,
+                reach: self.fitting.reach(),
                 mathml: Some(field.mathml()),
             },
             Source::Points { info, .. } => FieldAnswer {
@@ -312,6 +331,7 @@ impl Session {
                 parameters: Vec::new(),
                 auto: Vec::new(),
                 bounds: self.bounds,
+                reach: self.fitting.reach(),
                 mathml: None,
             },
         }
@@ -328,10 +348,12 @@ impl Session {
             Some(id) => Some(gallery::find(id).ok_or_else(|| FieldError::UnknownSurface(id.clone()))?),
             None => None,
         };
-        let bounds = request.bounds.or(surface.map(|s| s.bounds)).unwrap_or(self.bounds);
-        if !bounds.is_valid() {
+        let own = request.bounds.or(surface.map(|s| s.bounds)).unwrap_or(self.own);
+        if !own.is_valid() {
             return Err(FieldError::Box);
         }
+        // A box stays given while the present field is changed.
+        let is_given = request.bounds.is_some() || surface.is_none() && self.fitting.is_given;
         let present = self.source.formula();
         let text = match (&request.formula, surface, present) {
             (Some(text), _, _) => text.as_str(),
@@ -339,8 +361,8 @@ impl Session {
             (None, None, Some(field)) => field.text(),
             // Of a model from points only the box can be changed.
             (None, None, None) => {
-                self.end_run_unless(bounds == self.bounds);
-                self.bounds = bounds;
+                self.end_run_unless(own == self.bounds);
+                (self.own, self.bounds) = (own, own);
                 return Ok(self.answer());
             }
         };
@@ -368,14 +390,26 @@ impl Session {
         }
         let is_same =
             present.is_some_and(|p| p.text() == field.text() && p.parameters() == field.parameters());
-        self.end_run_unless(is_same && bounds == self.bounds);
-        self.surface = surface
+        let is_same_text = present.is_some_and(|p| p.text() == field.text());
+        let surface = surface
             .or(self.surface.filter(|_| request.surface.is_none()))
             .filter(|surface| surface.formula == field.text());
+        // A box that is to be fitted stays what it was until it is.
+        let is_open = !is_given && surface.is_none();
+        let keeps_box = is_same_text && self.fitting.is_fitted() && is_open;
+        let bounds = if is_open { self.bounds } else { own };
+        self.end_run_unless(is_same && bounds == self.bounds);
+        if !keeps_box {
+            self.fitting.discard();
+        } else if !is_same {
+            self.fitting.restart();
+        }
+        self.fitting.is_given = is_given;
+        self.surface = surface;
         self.source = Source::Formula(field);
         self.measuring = None;
         self.declared = declared;
-        self.bounds = bounds;
+        (self.own, self.bounds) = (own, bounds);
         Ok(self.answer())
     }
 
@@ -407,7 +441,8 @@ impl Session {
         self.measuring = None;
         self.surface = None;
         self.declared.clear();
-        self.bounds = bounds;
+        self.fitting = Fitting::default();
+        (self.own, self.bounds) = (bounds, bounds);
         Ok(self.answer())
     }
 
@@ -431,6 +466,11 @@ impl Session {
     ///
     /// If a setting is out of its range, or there is no memory for the particles to expect.
     pub fn start(&mut self, settings: &Settings) -> Result<Start, SettingsError> {
+        settings.validate()?;
+        while !self.fitting.is_settled {
+            self.fit(settings, false, u32::MAX);
+        }
+        self.fitting.is_settled = false;
         let start = if self.is_surveyed {
             self.sampler.start_again(self.source.field(), settings)?
         } else {
@@ -560,6 +600,8 @@ impl Session {
             warnings.extend(warnings::about_count(count, settings.count));
         }
         warnings.extend(warnings::about(count, facing, &counts));
+        let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
+        let border = particles.slots.iter().filter(is_outside).count();
         Report {
             count,
             levels: level_counts.len() as u32,
@@ -575,6 +617,8 @@ impl Session {
             evaluations,
             evaluations_per_particle: counts.front_evaluations as f64 / count.max(1) as f64,
             fates: counts.fates,
+            border,
+            cut: self.cut(border),
             refined_levels: counts.refined_levels,
             stop_reason,
             warnings,

@@ -4,7 +4,7 @@ use super::values::{answer, to_js};
 use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
-use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
+use crate::session::{Fault, FaultKind, FieldAnswer, FieldRequest, Session, describe};
 use glam::Vec3;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
@@ -55,6 +55,16 @@ impl Core {
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
             self.session.set_points(data, info, bounds).map_err(|error| Fault::in_field(error, ""))
         }))
+    }
+
+    /// Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once it
+    /// is known, nothing before. While a slider moves the box `only_grows`.
+    pub fn fit(&mut self, settings: JsValue, only_grows: bool, budget: u32) -> Option<JsValue> {
+        let field = match read(settings, FaultKind::Settings) {
+            Ok(settings) => Ok(self.session.fit(&settings, only_grows, budget)?),
+            Err(fault) => Err(fault),
+        };
+        Some(answer(field))
     }
 
     /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.

@@ -2,7 +2,9 @@
 //! and the MathML is well formed.
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::formula::{FUNCTIONS, FormulaField, MAX_FORMULA_BYTES, MathGroup, MathNode};
+use marching_particles::field::formula::{
+    FUNCTIONS, FormulaErrorKind as Kind, FormulaField, MAX_FORMULA_BYTES, MathGroup, MathNode,
+};
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Enclosure, Field, Jet};
 use marching_particles::math::Sym3;
@@ -46,6 +48,51 @@ fn formulas() -> impl Strategy<Value = String> {
     })
 }
 
+/// The same formula as it might be pasted from LaTeX, where it has brackets, quotients, powers and calls.
+fn in_latex(node: &MathNode) -> Option<String> {
+    let all = |children: &[MathNode]| children.iter().map(in_latex).collect::<Option<Vec<String>>>();
+    match node {
+        // LaTeX writes no name for it.
+        MathNode::Token { text, .. } if text == "⌊" => None,
+        MathNode::Token { text, .. } => Some(match text.as_str() {
+            "\u{2061}" => " ".into(),
+            "\u{2062}" | "⋅" => "\\cdot ".into(),
+            "−" => "-".into(),
+            "," => ", ".into(),
+            "π" => "\\pi ".into(),
+            "τ" => "\\tau ".into(),
+            "φ" => "\\varphi ".into(),
+            "(" => "\\left(".into(),
+            ")" => "\\right)".into(),
+            "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "ln" | "min" | "max" => format!("\\{text} "),
+            // The name of a function or a parameter.
+            _ if text.chars().count() > 1 && text.chars().all(char::is_alphabetic) => {
+                format!("\\operatorname{{{text}}}")
+            }
+            _ => text.clone(),
+        }),
+        MathNode::Group { tag, children } => {
+            let parts = all(children)?;
+            Some(match tag {
+                MathGroup::Mrow if is_bars(children) => {
+                    format!("\\left|{}\\right|", parts[1..parts.len() - 1].concat())
+                }
+                MathGroup::Mrow => parts.concat(),
+                MathGroup::Mfrac => format!("\\frac{{{}}}{{{}}}", parts[0], parts[1]),
+                MathGroup::Msup => format!("{}^{{{}}}", parts[0], parts[1]),
+                MathGroup::Msqrt => format!("\\sqrt{{{}}}", parts.concat()),
+                MathGroup::Mroot => format!("\\sqrt[{}]{{{}}}", parts[1], parts[0]),
+                MathGroup::Msub if parts[0].starts_with("\\operatorname") => return None,
+                MathGroup::Msub => format!("{}_{{{}}}", parts[0], parts[1]),
+            })
+        }
+    }
+}
+
+fn is_bars(children: &[MathNode]) -> bool {
+    matches!(children.first(), Some(MathNode::Token { text, .. }) if text == "|")
+}
+
 proptest! {
     // The formulas are the same in every run, unless `PROPTEST_CASES` or `PROPTEST_RNG_SEED` is set.
     #![proptest_config(ProptestConfig {
@@ -67,6 +114,85 @@ proptest! {
         text in "[xyzabersincotapqhl0-9.,+*/^()=²³⁻¹−×π \u{202E}\\-]{0,120}"
     ) {
         check_error(&text);
+    }
+
+    #[test]
+    fn no_text_of_latex_makes_the_parser_panic(
+        text in prop::collection::vec(
+            prop::sample::select(vec![
+                "\\frac", "\\sqrt", "\\sin", "\\left", "\\right", "\\pi", "\\cdot", "\\operatorname", "\\", "\\le",
+                "|", "{", "}", "[", "]", "(", ")", "x", "y", "2", "1", "^", "_", "-", "=", "f(x,y,z)=", "sin", "ln ", " ",
+                "**", ",", "²", "√", "$",
+            ]),
+            0..30,
+        )
+    ) {
+        check_error(&text.concat());
+    }
+
+    #[test]
+    fn a_formula_means_the_same_with_other_brackets_and_signs(text in formulas(), at in any::<u64>()) {
+        if let Ok(field) = FormulaField::parse(&text, &[]) {
+            let brackets = [('(', ')'), ('[', ']'), ('{', '}')];
+            let mut open = Vec::new();
+            let mut choice = at;
+            let other: String = text.replace('^', "**").chars().map(|c| match c {
+                '(' => {
+                    let pair = brackets[(choice % 3) as usize];
+                    choice = choice.rotate_right(7) ^ 5;
+                    open.push(pair.1);
+                    pair.0
+                }
+                ')' => open.pop().unwrap_or(c),
+                _ => c,
+            }).collect();
+            let again = FormulaField::parse(&format!("f(x,y,z) == {other}"), &[])
+                .unwrap_or_else(|e| panic!("{text} → {other}: {e}"));
+            prop_assert!(field.same_tree(&again), "{} → {}", text, other);
+        }
+    }
+
+    #[test]
+    fn a_formula_set_in_latex_has_the_same_value(
+        text in formulas(),
+        point in prop::array::uniform3(0.1..2.0_f64),
+    ) {
+        let Ok(mut field) = FormulaField::parse(&text, &[]) else { return Ok(()) };
+        let MathNode::Group { children, .. } = field.mathml() else { return Ok(()) };
+        // Without the `= 0` at its end.
+        let Some(latex) = in_latex(&children[0]) else { return Ok(()) };
+        // Numbers with exponents and calls of `hypot` are set in other ways.
+        if latex.len() > MAX_FORMULA_BYTES || text.contains("1e") || text.contains("e-") || text.contains("hypot") {
+            return Ok(());
+        }
+        let mut again = match FormulaField::parse(&latex, &[]) {
+            Ok(again) => again,
+            // A quotient adds operations, and braces add levels.
+            Err(e) if matches!(e.kind, Kind::TooDeep | Kind::TooComplex | Kind::NotFinite) => return Ok(()),
+            Err(e) => panic!("{text} → {latex}: {e}"),
+        };
+        let p = DVec3::from_array(point);
+        let (wanted, got) = (field.jet(p).value, again.jet(p).value);
+        prop_assert!(
+            !wanted.is_finite() || (wanted - got).abs() <= 1e-9 * wanted.abs().max(1.0),
+            "{text} → {latex}: {wanted} but {got}"
+        );
+    }
+
+    #[test]
+    fn mending_throughout_leaves_no_mistake_of_the_kind(
+        terms in prop::collection::vec(prop::sample::select(vec!["x2", "y3", "z2 x", "0,5", "x", "cosx", "sin x y"]), 1..9)
+    ) {
+        let text = terms.join(" + ");
+        if let Err(error) = FormulaField::parse(&text, &[])
+            && let Some(mended) = error.mended
+        {
+            if let Err(next) = FormulaField::parse(&mended.text, &[]) {
+                let is_same = next.kind == error.kind
+                    && next.message.split('`').step_by(2).eq(error.message.split('`').step_by(2));
+                prop_assert!(!is_same, "{text} → {}: {next:?}", mended.text);
+            }
+        }
     }
 
     #[test]

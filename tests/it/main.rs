@@ -3,6 +3,7 @@
 
 mod adaptive;
 mod baseline;
+mod box_fit;
 #[cfg(feature = "cli")]
 mod cli;
 mod components;

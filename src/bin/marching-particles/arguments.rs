@@ -51,13 +51,15 @@ their number. Without --out and --mesh nothing is written, only measured.";
 const SAMPLE_AFTER: &str = "\
 Formulas:
   x y z, numbers, + - * / ^, brackets, and f = g. A product may leave out its sign where it is clear: 2x, x y, 3(x+1).
+  Also read: |x|, x**2, sin 2x, f(x,y,z) = ..., and LaTeX such as \\frac{x^{2}}{4}.
   pi e tau phi; sqrt cbrt abs sign min max floor exp ln log10 sin cos tan asin acos atan atan2 sinh cosh tanh hypot;
   smin(a,b,k) and smax(a,b,k) join smoothly. Negative is inside. Other names are parameters: --param a=2.
 
 Examples:
   marching-particles sample --surface ellipsoid --count 55748 --out points.ply --json
   marching-particles sample --surface torus --param r=0.25 --radius 1% --out torus.xyz --out torus.npy
-  marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 4 --radius 0.05
+  marching-particles sample --formula \"x^4 - 5x^2 + y^4 - 5y^2 + z^4 - 5z^2 + 11.8\"
+  marching-particles sample --formula \"sin(x)cos(y) + sin(y)cos(z) + sin(z)cos(x)\" --box 5 --radius 0.05
   marching-particles sample --points scan.ply --centres 400 --out even.ply --mesh even.glb
   marching-particles sample --formula \"(x^2 + 9/4 y^2 + z^2 - 1)^3 = x^2 z^3 + 9/80 y^2 z^3\" --relax 0
 
@@ -173,10 +175,31 @@ pub(crate) struct Surface {
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]
     pub(crate) parameters: Vec<(String, f64)>,
 
-    /// Box to sample in: H for -H..H on each axis, three half-widths, or the two corners (six numbers), separated by commas.
-    /// Default: the surface's own box, 2 for a formula
-    #[arg(long = "box", value_name = "NUMBERS", value_parser = bounds, allow_hyphen_values = true, help_heading = "Surface")]
-    pub(crate) bounds: Option<Bounds>,
+    /// Box to sample in: `fit` for one around the surface of a formula, found up to ±10,000, in which what goes on for ever is cut;
+    /// `fixed` for a surface's own, ±2 for a formula; or H for -H..H on each axis, three half-widths, or the two corners (six
+    /// numbers), separated by commas. A named surface keeps its own box [default: fit]
+    #[arg(
+        long = "box", value_name = "fit|fixed|NUMBERS", value_parser = choice_of_box, allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
+    pub(crate) bounds: Option<BoxChoice>,
+}
+
+/// Which box is sampled in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum BoxChoice {
+    Fit,
+    Fixed,
+    Given(Bounds),
+}
+
+impl BoxChoice {
+    pub(crate) fn given(self) -> Option<Bounds> {
+        match self {
+            Self::Given(bounds) => Some(bounds),
+            Self::Fit | Self::Fixed => None,
+        }
+    }
 }
 
 /// Arguments of `surfaces`.
@@ -235,6 +258,14 @@ pub(crate) fn length(text: &str) -> Result<Length, String> {
     }
 }
 
+fn choice_of_box(text: &str) -> Result<BoxChoice, String> {
+    match text.trim() {
+        "fit" => Ok(BoxChoice::Fit),
+        "fixed" => Ok(BoxChoice::Fixed),
+        numbers => bounds(numbers).map(BoxChoice::Given),
+    }
+}
+
 fn bounds(text: &str) -> Result<Bounds, String> {
     let numbers = text.split(',').map(number).collect::<Result<Vec<f64>, String>>()?;
     let bounds = match numbers[..] {
@@ -269,6 +300,14 @@ mod tests {
         for bad in ["0", "-1%", "nan", "inf", "", "%", "1%%"] {
             assert!(length(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn box_is_fitted_fixed_or_given() {
+        assert_eq!(choice_of_box("fit"), Ok(BoxChoice::Fit));
+        assert_eq!(choice_of_box("fixed"), Ok(BoxChoice::Fixed));
+        assert_eq!(choice_of_box("2"), Ok(BoxChoice::Given(Bounds::cube(2.0))));
+        assert!(choice_of_box("tight").is_err());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Errors of the tool, with their messages and exit codes.
 
-use marching_particles::field::formula::{FormulaError, FormulaErrorKind};
+use marching_particles::field::formula::{FormulaError, FormulaErrorKind, Mended};
 use std::fmt;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -88,6 +88,9 @@ fn formula(f: &mut fmt::Formatter<'_>, text: &str, error: &FormulaError) -> fmt:
     }
     if let Some(suggestion) = &error.suggestion {
         write!(f, "\n\nhelp: try `{suggestion}` there")?;
+    }
+    if let Some(Mended { text, places }) = error.mended.as_deref() {
+        write!(f, "\n\nhelp: mended in all {places} places: {text}")?;
     }
     if !error.names.is_empty() {
         let parameters: Vec<String> = error.names.iter().map(|name| format!("--param {name}=1")).collect();

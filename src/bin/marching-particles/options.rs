@@ -16,6 +16,8 @@ const SAMPLING: &str = "sampling";
 /// The option that asks for a number of particles, by which the measure of the size is chosen too.
 const COUNT: &str = "count";
 const SIZE_MODE: &str = "size_mode";
+/// The option of this one is `--box`, which takes numbers too.
+const BOX_MODE: &str = "box_mode";
 /// The limit is raised with the wanted number.
 const MAX_PARTICLES: &str = "max_particles";
 
@@ -50,7 +52,10 @@ impl Sampling {
 
 impl Args for Sampling {
     fn augment_args(command: Command) -> Command {
-        command.args(Settings::table().iter().filter(|setting| setting.name != SIZE_MODE).map(option))
+        let settings = Settings::table();
+        command.args(
+            settings.iter().filter(|setting| ![SIZE_MODE, BOX_MODE].contains(&setting.name)).map(option),
+        )
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -69,7 +74,9 @@ impl FromArgMatches for Sampling {
         let missing = |name: &str| Error::raw(ErrorKind::InvalidValue, format!("--{name} has no value"));
         for setting in Settings::table() {
             let name = setting.name;
-            if name == SIZE_MODE || matches.value_source(name) != Some(ValueSource::CommandLine) {
+            if [SIZE_MODE, BOX_MODE].contains(&name)
+                || matches.value_source(name) != Some(ValueSource::CommandLine)
+            {
                 continue;
             }
             let value: Json = match setting.kind {

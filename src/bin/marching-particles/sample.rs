@@ -1,6 +1,6 @@
 //! Subcommand `sample`: a run with its files and its report.
 
-use crate::arguments::{Sample, Surface};
+use crate::arguments::{BoxChoice, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
 use crate::mesh::{self, Mesh};
 use crate::options::{Sampling, refusal};
@@ -8,12 +8,13 @@ use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
 use indicatif::{ProgressBar, ProgressStyle};
 use marching_particles::export::{self, Format, MeshFormat};
+use marching_particles::extent::Reach;
 use marching_particles::field::formula::Parameter;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit::Fit;
-use marching_particles::sampler::{COUNT_ROOM, Phase, Progress, Settings, StopReason};
+use marching_particles::sampler::{BoxMode, COUNT_ROOM, Phase, Progress, Settings, StopReason};
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write};
@@ -23,7 +24,7 @@ use std::time::{Duration, Instant};
 
 /// Units of work between two readings of the clock. They take about 0.1 ms, which is the accuracy of the phases' times.
 const BUDGET: u32 = 256;
-/// Default box of a formula.
+/// Fixed box of a formula.
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 
 /// A session with the requested surface, whose run has begun.
@@ -43,16 +44,15 @@ pub(crate) fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Resu
     let answer = match fit(surface, quiet)? {
         Some(fit) => {
             seconds.points = clock.seconds();
-            let bounds = surface.bounds.unwrap_or(fit.bounds);
+            let bounds = surface.bounds.and_then(BoxChoice::given).unwrap_or(fit.bounds);
             session
                 .set_points(fit.data, fit.info, bounds)
                 .map_err(|error| Failure::Usage(error.to_string()))?
         }
         None => set_field(&mut session, surface)?,
     };
-    let settings = sampling.settings(&answer.bounds);
-
     let clock = Clock::start();
+    let (answer, settings) = fit_box(&mut session, surface, sampling, answer);
     let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
     seconds.seeding += clock.seconds();
     if start.predicted_count > u64::from(settings.max_particles) {
@@ -65,6 +65,29 @@ pub(crate) fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Resu
         )));
     }
     Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
+}
+
+/// Finds the box, and the settings in it: lengths are shares of its diagonal, and it has room for the largest particles.
+fn fit_box(
+    session: &mut Session,
+    surface: &Surface,
+    sampling: &Sampling,
+    mut answer: FieldAnswer,
+) -> (FieldAnswer, Settings) {
+    /// Rounds in which both follow each other.
+    const ROUNDS: u32 = 4;
+    let box_mode = match surface.bounds {
+        None | Some(BoxChoice::Fit) => BoxMode::Fit,
+        Some(BoxChoice::Fixed | BoxChoice::Given(_)) => BoxMode::Fixed,
+    };
+    let settings_in = |answer: &FieldAnswer| Settings { box_mode, ..sampling.settings(&answer.bounds) };
+    for _ in 0..ROUNDS {
+        let settings = settings_in(&answer);
+        while session.fit(&settings, false, u32::MAX).is_none() {}
+        answer = session.answer();
+    }
+    let settings = settings_in(&answer);
+    (answer, settings)
 }
 
 /// Name of the surface, if it has one.
@@ -83,7 +106,10 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let peak_sampling_mb = peak_mb();
     let count = session.count();
     if count == 0 {
-        let reason = last.message.unwrap_or_else(|| "no particle could be placed".to_owned());
+        let reason = match answer.reach {
+            Some(Reach::Nowhere) => "there is no surface within ±10,000".to_owned(),
+            _ => last.message.unwrap_or_else(|| "no particle could be placed".to_owned()),
+        };
         return Err(Failure::Nothing(reason));
     }
 
@@ -191,7 +217,11 @@ fn set_field(session: &mut Session, arguments: &Surface) -> Result<FieldAnswer, 
         formula: arguments.formula.clone(),
         parameters: arguments.parameters.iter().cloned().collect(),
         declare: if own { declare } else { Vec::new() },
-        bounds: arguments.bounds.or(own.then_some(FORMULA_BOX)),
+        bounds: match arguments.bounds {
+            Some(BoxChoice::Given(bounds)) => Some(bounds),
+            Some(BoxChoice::Fixed) if own => Some(FORMULA_BOX),
+            _ => None,
+        },
     };
     let answer = session.set_field(&request).map_err(|error| match error {
         FieldError::Formula(error) => {

@@ -3,7 +3,8 @@
 use crate::mesh::Mesh;
 use crate::outcome::Outcome;
 use marching_particles::field::model::{ModelInfo, NormalSource};
-use marching_particles::session::{ReportRow, describe};
+use marching_particles::math::shortest_text;
+use marching_particles::session::{Cut, ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
 
@@ -49,6 +50,20 @@ pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     writeln!(out)?;
     table(out, outcome)?;
     writeln!(out, "\ndigest {}", report.digest)?;
+    if let Some(cut) = report.cut {
+        let [min, max] =
+            [outcome.bounds.min, outcome.bounds.max].map(|corner| corner.map(significant).join(","));
+        let of = counted(report.border, "particle");
+        match cut {
+            Cut::Endless => {
+                writeln!(out, "the surface goes on beyond the box from {min} to {max}; --box sets another")?;
+            }
+            Cut::Fixed => writeln!(
+                out,
+                "the box from {min} to {max} cuts the surface, at {of}: enlarge it, or fit it with --box fit"
+            )?,
+        }
+    }
     let of_points = outcome.model.iter().flat_map(|model| &model.warnings);
     let of_mesh = outcome.mesh.iter().flat_map(mesh_warnings);
     for warning in of_points.chain(&report.warnings).cloned().chain(of_mesh) {
@@ -152,6 +167,12 @@ fn mesh_warnings(mesh: &Mesh) -> Vec<String> {
 fn counted(count: usize, name: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{} {name}{ending}", grouped(count))
+}
+
+/// A number with four significant digits.
+fn significant(number: f64) -> String {
+    let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    shortest_text(short)
 }
 
 /// Formats a count with separated thousands.

@@ -56,13 +56,25 @@ pub struct FormulaError {
     pub span: Range<usize>,
     /// Text that would correct the span, if there is a good guess.
     pub suggestion: Option<String>,
+    /// The formula with every mistake of this kind corrected, if there are several.
+    pub mended: Option<Box<Mended>>,
     /// Unknown names that could be declared as parameters ("add a slider"), in order of appearance.
     pub names: Vec<String>,
 }
 
+/// A formula in which every mistake of a kind is corrected.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Mended {
+    /// The whole formula.
+    pub text: String,
+    /// Number of places that were corrected.
+    pub places: usize,
+}
+
 impl FormulaError {
     pub(crate) fn new(kind: FormulaErrorKind, span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { kind, message: message.into(), span, suggestion: None, names: Vec::new() }
+        Self { kind, message: message.into(), span, suggestion: None, mended: None, names: Vec::new() }
     }
 
     pub(crate) fn suggest(mut self, suggestion: impl Into<String>) -> Self {

@@ -1,34 +1,12 @@
 //! Lexer: text to tokens.
 //!
-//! Characters that look like ASCII operators or digits are mapped to them. Any other character outside the language is
-//! an error that names its code point.
+//! Characters that look like ASCII operators or digits are mapped to them, and [`latex`](super::latex) says what a command
+//! such as `\frac` stands for. Any other character outside the language is an error that names its code point.
 
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
+use super::latex::{self, Command};
+use super::token::{Bar, Spanned, Token};
 use core::ops::Range;
-
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Token {
-    Number(f64),
-    Name(String),
-    /// Integer exponent in superscript digits.
-    Superscript(i32),
-    Plus,
-    Minus,
-    Star,
-    Slash,
-    Caret,
-    Open,
-    Close,
-    Comma,
-    Equals,
-    End,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct Spanned {
-    pub(super) token: Token,
-    pub(super) span: Range<usize>,
-}
 
 /// Character that `c` stands for in a formula.
 fn mapped(c: char) -> char {
@@ -72,6 +50,20 @@ fn greek_constant(c: char) -> Option<&'static str> {
         'φ' => Some("phi"),
         _ => None,
     }
+}
+
+/// Function that a root sign stands for.
+fn root(c: char) -> Option<&'static str> {
+    match c {
+        '√' => Some("sqrt"),
+        '∛' => Some("cbrt"),
+        _ => None,
+    }
+}
+
+/// Signs of an inequality.
+fn is_comparison(c: char) -> bool {
+    matches!(c, '<' | '>' | '≤' | '≥' | '≠')
 }
 
 /// The letters of names: Latin ones, and Greek ones but π, τ and φ, which are constants.
@@ -158,29 +150,31 @@ impl Lexer<'_> {
             _ if c.is_ascii_whitespace() => return Ok(()),
             '+' => Token::Plus,
             '-' => Token::Minus,
-            '*' if self.get(self.next) == Some('*') => {
-                return Err(self.doubled(start, "A power is written `^`").suggest("^"));
-            }
+            '*' if self.take('*') => Token::Caret,
             '*' => Token::Star,
             '/' => Token::Slash,
             '^' => Token::Caret,
-            '[' | '{' => return Err(bracket(c, '(', self.span(start, self.next))),
-            ']' | '}' => return Err(bracket(c, ')', self.span(start, self.next))),
-            '(' => Token::Open,
-            ')' => Token::Close,
+            '(' | '[' | '{' => Token::Open(c),
+            ')' | ']' | '}' => Token::Close(c),
+            '|' => Token::Bar(Bar::Either),
             ',' => Token::Comma,
-            '=' if self.get(self.next) == Some('=') => {
-                return Err(self.doubled(start, "An equation is written with one `=`").suggest("="));
+            '=' => {
+                self.take('=');
+                Token::Equals
             }
-            '=' => Token::Equals,
+            // The sign around a formula in a text.
+            '$' => return Ok(()),
+            '\\' => return self.command(start),
+            _ if is_comparison(c) => {
+                self.take('=');
+                return Err(comparison(c, self.span(start, self.next)));
+            }
             '0'..='9' | '.' => Token::Number(self.number(start)?),
             _ if superscript(c).is_some() || c == '⁻' => Token::Superscript(self.superscript(start)?),
             _ if greek_constant(c).is_some() => Token::Name(greek_constant(c).unwrap_or_default().into()),
+            _ if root(c).is_some() => Token::Name(root(c).unwrap_or_default().into()),
             _ if starts_name(c) => {
-                while self.get(self.next).is_some_and(continues_name) {
-                    self.next += 1;
-                }
-                let name = self.written(start, self.next);
+                let name = self.name(start);
                 if self.is_product(&name) {
                     for (offset, letter) in name.chars().enumerate() {
                         let span = self.span(start + offset, start + offset + 1);
@@ -193,6 +187,107 @@ impl Lexer<'_> {
             _ => return Err(unexpected_character(self.text, c, self.span(start, self.next))),
         };
         self.tokens.push(Spanned { token, span: self.span(start, self.next) });
+        Ok(())
+    }
+
+    /// Consumes the next character if it is `c`.
+    fn take(&mut self, c: char) -> bool {
+        let found = self.get(self.next) == Some(c);
+        self.next += usize::from(found);
+        found
+    }
+
+    /// Consumes the name that begins at character `start`; the subscript of `r_{12}` belongs to it.
+    fn name(&mut self, start: usize) -> String {
+        while self.get(self.next).is_some_and(continues_name) {
+            self.next += 1;
+        }
+        let mut name = self.written(start, self.next);
+        if name.ends_with('_')
+            && self.get(self.next) == Some('{')
+            && let Some((subscript, end)) = self.braced(self.next)
+        {
+            name.push_str(&subscript);
+            self.next = end;
+        }
+        name
+    }
+
+    /// The characters of a name between the brace at character `open` and the one that closes it, and the index after that.
+    fn braced(&self, open: usize) -> Option<(String, usize)> {
+        let mut end = open + 1;
+        while self.get(end).is_some_and(continues_name) {
+            end += 1;
+        }
+        let inside = self.written(open + 1, end);
+        (self.get(end) == Some('}') && !inside.is_empty()).then_some((inside, end + 1))
+    }
+
+    /// Index of the first character from `index` on that is no white space.
+    fn after_spaces(&self, mut index: usize) -> usize {
+        while self.get(index).is_some_and(|c| c.is_ascii_whitespace()) {
+            index += 1;
+        }
+        index
+    }
+
+    /// Appends the tokens of the LaTeX command whose backslash is character `start`.
+    fn command(&mut self, start: usize) -> Result<(), FormulaError> {
+        while self.get(self.next).is_some_and(|c| c.is_ascii_alphabetic()) {
+            self.next += 1;
+        }
+        // A command is a word or one other character.
+        if self.next == start + 1 && self.get(self.next).is_some() {
+            self.next += 1;
+        }
+        let word = self.written(start + 1, self.next);
+        let command = latex::command(&word);
+        let token = match command {
+            Some(Command::Nothing) => return Ok(()),
+            // `\left|` opens and `\right|` closes; other brackets say themselves which they do.
+            Some(Command::Side(bar)) => {
+                let at = self.after_spaces(self.next);
+                if self.get(at) != Some('|') {
+                    return Ok(());
+                }
+                self.next = at + 1;
+                Token::Bar(bar)
+            }
+            Some(Command::Word) => {
+                let open = self.after_spaces(self.next);
+                let Some((name, end)) = (self.get(open) == Some('{')).then(|| self.braced(open)).flatten()
+                else {
+                    let message = format!("A name in braces follows `\\{word}`, as in `\\{word}{{atan}}`");
+                    return Err(FormulaError::new(
+                        ErrorKind::UnexpectedSymbol,
+                        self.span(start, self.next),
+                        message,
+                    ));
+                };
+                self.next = end;
+                match latex::command(&name) {
+                    Some(Command::Token(token)) => token,
+                    _ => Token::Name(name),
+                }
+            }
+            Some(Command::Comparison(c)) => return Err(comparison(c, self.span(start, self.next))),
+            Some(Command::Token(token)) => token,
+            None => {
+                let span = self.span(start, self.next);
+                let message = format!("`{}` is no command that a formula can have", slice(self.text, &span));
+                return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message));
+            }
+        };
+        let is_fraction = token == Token::Fraction;
+        self.tokens.push(Spanned { token, span: self.span(start, self.next) });
+        // In `\frac12` every digit is a group of its own.
+        for _ in 0..if is_fraction { 2 } else { 0 } {
+            let at = self.after_spaces(self.next);
+            let Some(digit) = self.get(at).and_then(|c| c.to_digit(10)) else { break };
+            self.next = at + 1;
+            let span = self.span(at, self.next);
+            self.tokens.push(Spanned { token: Token::Number(f64::from(digit)), span });
+        }
         Ok(())
     }
 
@@ -259,11 +354,6 @@ impl Lexer<'_> {
         let value = i32::try_from(value).unwrap_or(i32::MAX);
         Ok(if negative { -value } else { value })
     }
-
-    /// Error for a doubled symbol at character `start`.
-    fn doubled(&self, start: usize, message: &str) -> FormulaError {
-        FormulaError::new(ErrorKind::UnexpectedSymbol, self.span(start, start + 2), message)
-    }
 }
 
 /// Text at `span`, or nothing if `span` splits a character. It never panics, whatever the formula.
@@ -271,9 +361,14 @@ pub(super) fn slice<'a>(text: &'a str, span: &Range<usize>) -> &'a str {
     text.get(span.clone()).unwrap_or_default()
 }
 
-fn bracket(found: char, wanted: char, span: Range<usize>) -> FormulaError {
-    let message = format!("Use round brackets `{wanted}` in place of `{found}`");
-    FormulaError::new(ErrorKind::UnexpectedSymbol, span, message).suggest(wanted)
+/// Error for the sign `c` of an inequality.
+fn comparison(c: char, span: Range<usize>) -> FormulaError {
+    let message = if c == '≠' {
+        "A surface is where two sides are equal: write `=`"
+    } else {
+        "An inequality describes a solid, and its surface is where both sides are equal: write `=`"
+    };
+    FormulaError::new(ErrorKind::UnexpectedCharacter, span, message).suggest("=")
 }
 
 /// Error for a character that is not part of the language.
@@ -297,12 +392,6 @@ fn unexpected_character(text: &str, c: char, span: Range<usize>) -> FormulaError
     };
     let error = FormulaError::new(ErrorKind::UnexpectedCharacter, span, message);
     match c {
-        '√' => error.suggest("sqrt"),
-        '∛' => error.suggest("cbrt"),
-        '|' => FormulaError { message: "Write an absolute value as `abs(…)`".into(), ..error },
-        '<' | '>' | '≤' | '≥' | '≠' => {
-            FormulaError { message: "A surface is an equation: write `f = g`".into(), ..error }.suggest("=")
-        }
         ';' => error.suggest(","),
         _ if !name.is_empty() => error.suggest(""),
         _ => error,

@@ -6,8 +6,12 @@
 //! named parameters, the operators `+ - * / ^`, brackets, and the functions of [`FUNCTIONS`]. At most one `=` stands
 //! for the difference of its sides. A product may be written without `*` where there is only one reading: `2x`, `x y`,
 //! `xyz`, `3(x + 1)`. `^` is right-associative and binds more tightly than a leading sign: `-x^2` is −(x²). `2e3` is
-//! two thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `π`, `τ`, `φ` and full-width
+//! two thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `√`, `π`, `τ`, `φ` and full-width
 //! characters are accepted.
+//!
+//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a function without brackets where there is
+//! one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of a definition `f(x, y, z) = …`, and what LaTeX has for all
+//! this: `\frac{1}{2}`, `\sqrt[3]{x}`, `x^{2}`, `\left|x\right|`, `\sin\theta`, `\cdot`.
 //!
 //! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling. There are at most
 //! [`MAX_AUTOMATIC_PARAMETERS`] of them.
@@ -21,6 +25,7 @@
 
 mod ast;
 mod build;
+mod call;
 mod compiled;
 mod derivative;
 mod display;
@@ -28,18 +33,21 @@ mod error;
 mod eval;
 mod graph;
 mod interval;
+mod latex;
 mod lex;
 mod mathml;
 mod operations;
 mod parse;
 mod powers;
 mod program;
+mod repair;
 mod scalar;
 #[cfg(test)]
 mod tests;
+mod token;
 
 pub use ast::{FUNCTIONS, FunctionInfo};
-pub use error::{FormulaError, FormulaErrorKind, utf16_offset};
+pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Enclosure, Field, Interval, Jet};
@@ -108,7 +116,7 @@ impl Parameter {
 /// let jet = field.jet((2.0, 0.0, 0.0).into());
 /// assert_eq!((jet.value, jet.gradient.x), (0.0, 1.0));
 ///
-/// let error = FormulaField::parse("x^2 + sin y", &[]).unwrap_err();
+/// let error = FormulaField::parse("x^2 + sin y z", &[]).unwrap_err();
 /// assert_eq!((error.span.clone(), error.suggestion.as_deref()), (6..11, Some("sin(y)")));
 /// # Ok::<(), marching_particles::field::formula::FormulaError>(())
 /// ```
@@ -143,8 +151,8 @@ impl FormulaField {
     pub fn parse(text: &str, declared: &[Parameter]) -> Result<Self, FormulaError> {
         check_declared(declared)?;
         let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
-        let parsed = parse::parse(text, &known)?;
-        let automatic = automatic_names(&parsed.names, &known)?;
+        let (parsed, automatic) =
+            syntax(text, &known).map_err(|error| repair::throughout(text, &known, error))?;
         let used = |parameter: &&Parameter| parsed.names.iter().any(|(name, _)| *name == parameter.name);
         let mut parameters: Vec<Parameter> = declared.iter().filter(used).cloned().collect();
         let unused = declared.iter().filter(|p| !used(p)).map(|p| p.name.clone()).collect();
@@ -230,6 +238,12 @@ impl FormulaField {
         self.compiled.is_constant()
     }
 
+    /// Number of operations that an evaluation of f takes.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        self.compiled.value_program.instructions.len()
+    }
+
     /// Sets the value of a parameter, which may lie outside the range of its slider. A declared parameter that the
     /// formula does not use is accepted and has no effect.
     ///
@@ -259,6 +273,13 @@ impl FormulaField {
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
         self.compiled.transformed_jet(&self.values, p)
     }
+}
+
+/// Syntax tree of `text`, and its undeclared names.
+fn syntax(text: &str, declared: &[&str]) -> Result<(parse::Parsed, Vec<String>), FormulaError> {
+    let parsed = parse::parse(text, declared)?;
+    let automatic = automatic_names(&parsed.names, declared)?;
+    Ok((parsed, automatic))
 }
 
 /// Checks that every declared parameter has a usable name, range and value.
@@ -315,7 +336,9 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
         && let Ok(exponent) = digit.parse::<u8>()
     {
         let meant = format!("{axis}^{exponent}");
-        let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
+        let message = format!(
+            "`{name}` is no name of a coordinate: a power is written `{meant}`. Or add a slider `{name}`"
+        );
         return Some((meant, message));
     }
     for function in Function::ALL {
@@ -324,7 +347,7 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
             && rest.bytes().all(|b| matches!(b, b'x' | b'y' | b'z'))
         {
             let meant = format!("{}({rest})", function.name());
-            let message = format!("Unknown name `{name}`: did you mean `{meant}`? Or add a slider `{name}`");
+            let message = format!("`{name}` reads as one name: write `{meant}`. Or add a slider `{name}`");
             return Some((meant, message));
         }
     }

@@ -1,18 +1,23 @@
 //! Recursive-descent parser: tokens to a syntax tree.
 //!
 //! ```text
-//! equation := sum [ "=" sum ]
+//! equation := [ name "(" "x" "," "y" "," "z" ")" "=" ] sum [ "=" sum ]
 //! sum      := term { ("+" | "-") term }
 //! term     := ("-" | "+") term | product
-//! product  := power { "*" signed | "/" signed | power }      juxtaposition: names and brackets only
+//! product  := power { "*" signed | "/" signed | power }      juxtaposition: no number but the first
 //! signed   := ("-" | "+") signed | power
 //! power    := atom [ superscript | "^" signed ]               "^" binds to the right
-//! atom     := number | name | function "(" sum { "," sum } ")" | "(" sum ")"
+//! atom     := number | name | "(" sum ")" | "|" sum "|" | "\frac" group group | "\sqrt" [ "[" sum "]" ] group
+//!           | function [ exponent ] ( "(" sum { "," sum } ")" | operand )
 //! ```
+//!
+//! An opening bracket of any kind, `(`, `[` or `{`, is closed by its own. [`call`](super::call) says what a function without
+//! brackets is applied to.
 
 use super::ast::{COORDINATES, Constant, Equation, Expr, Factor, Function, Kind, Sign};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
-use super::lex::{Spanned, Token, slice, tokens};
+use super::lex::{slice, tokens};
+use super::token::{Bar, Spanned, Token, closing};
 use super::{MAX_DEPTH, MAX_FORMULA_BYTES};
 use core::ops::Range;
 
@@ -39,7 +44,9 @@ pub(super) fn parse(text: &str, declared: &[&str]) -> Result<Parsed, FormulaErro
         let message = "Type a formula of x, y and z, for example `x^2 + y^2 + z^2 = 1`";
         return Err(FormulaError::new(ErrorKind::Empty, 0..0, message));
     }
-    let mut parser = Parser { text, tokens, next: 0, depth: 0, declared, names: Vec::new() };
+    let mut parser =
+        Parser { text, tokens, next: 0, depth: 0, is_in_bars: false, declared, names: Vec::new() };
+    parser.head()?;
     let left = parser.sum()?;
     let right = if parser.take(&Token::Equals) { Some(parser.sum()?) } else { None };
     let rest = parser.peek().clone();
@@ -53,32 +60,85 @@ pub(super) fn parse(text: &str, declared: &[&str]) -> Result<Parsed, FormulaErro
     }
 }
 
-struct Parser<'a> {
-    text: &'a str,
-    tokens: Vec<Spanned>,
-    next: usize,
+pub(super) struct Parser<'a> {
+    pub(super) text: &'a str,
+    pub(super) tokens: Vec<Spanned>,
+    /// Index of the next token.
+    pub(super) next: usize,
     depth: usize,
+    /// Whether the innermost bracket around the next token is a bar, which a bar after an operand closes.
+    is_in_bars: bool,
     declared: &'a [&'a str],
     names: Vec<(String, Range<usize>)>,
 }
 
-type Parse = Result<Expr, FormulaError>;
+pub(super) type Parse = Result<Expr, FormulaError>;
 
 impl Parser<'_> {
-    fn peek(&self) -> &Spanned {
+    /// Skips the head of a definition `f(x, y, z) = …`, whose body is the formula.
+    fn head(&mut self) -> Result<(), FormulaError> {
+        let [Spanned { token: Token::Name(name), span }, Spanned { token: Token::Open('('), .. }, rest @ ..] =
+            &self.tokens[..]
+        else {
+            return Ok(());
+        };
+        let mut left_out: Vec<&str> = COORDINATES.to_vec();
+        let mut end = None;
+        for (k, pair) in rest.chunks_exact(2).enumerate() {
+            let [Spanned { token: Token::Name(axis), .. }, after] = pair else { return Ok(()) };
+            let Some(place) = left_out.iter().position(|left| left == axis) else { return Ok(()) };
+            left_out.remove(place);
+            match after.token {
+                Token::Comma => {}
+                Token::Close(')') => {
+                    end = Some(2 + 2 * (k + 1));
+                    break;
+                }
+                _ => return Ok(()),
+            }
+        }
+        let Some(end) = end.filter(|&end| self.tokens[end].token == Token::Equals) else { return Ok(()) };
+        if Function::find(name).is_some() || COORDINATES.contains(&name.as_str()) {
+            return Ok(());
+        }
+        let whole = span.start..self.tokens[end].span.end;
+        match left_out[..] {
+            [] => {
+                self.next = end + 1;
+                Ok(())
+            }
+            [height] => {
+                let message = format!(
+                    "A function of two coordinates is no surface by itself: its graph is `{height} = …`"
+                );
+                Err(FormulaError::new(ErrorKind::Ambiguous, whole, message).suggest(format!("{height} =")))
+            }
+            _ => {
+                let message = format!("Write `{name}(x, y, z) = …`, or an equation of x, y and z");
+                Err(FormulaError::new(ErrorKind::Ambiguous, whole, message))
+            }
+        }
+    }
+
+    pub(super) fn peek(&self) -> &Spanned {
         // The last token, `End`, is never consumed.
         &self.tokens[self.next.min(self.tokens.len() - 1)]
     }
 
+    /// The token after the next one.
+    pub(super) fn second(&self) -> &Spanned {
+        &self.tokens[(self.next + 1).min(self.tokens.len() - 1)]
+    }
+
     /// Consumes the next token if it is `token`.
-    fn take(&mut self, token: &Token) -> bool {
+    pub(super) fn take(&mut self, token: &Token) -> bool {
         let found = self.peek().token == *token && *token != Token::End;
         self.next += usize::from(found);
         found
     }
 
     /// Applies `parse` one nesting level deeper; an error at the next token beyond [`MAX_DEPTH`].
-    fn deeper(&mut self, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
+    pub(super) fn deeper(&mut self, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
         if self.depth == MAX_DEPTH {
             let message = format!("Nested more than {MAX_DEPTH} levels deep");
             return Err(FormulaError::new(ErrorKind::TooDeep, self.peek().span.clone(), message));
@@ -90,7 +150,7 @@ impl Parser<'_> {
     }
 
     /// Error for the next token, which is not allowed here.
-    fn unexpected(&self) -> FormulaError {
+    pub(super) fn unexpected(&self) -> FormulaError {
         let Spanned { token, span } = self.peek();
         if *token == Token::End {
             return FormulaError::new(
@@ -103,11 +163,11 @@ impl Parser<'_> {
         let previous = self.next.checked_sub(1).map(|index| &self.tokens[index].token);
         let after_operand = matches!(
             previous,
-            Some(Token::Number(_) | Token::Name(_) | Token::Close | Token::Superscript(_))
+            Some(Token::Number(_) | Token::Name(_) | Token::Close(_) | Token::Superscript(_))
         );
         let message = match token {
-            Token::Close if after_operand => "This `)` closes nothing".to_owned(),
-            Token::Close => "Something is missing before this `)`".to_owned(),
+            Token::Close(_) if after_operand => format!("This `{written}` closes nothing"),
+            Token::Close(_) => format!("Something is missing before this `{written}`"),
             Token::Number(_) if after_operand => {
                 format!(
                     "An operator is missing before `{written}`; a number goes in front of what it multiplies"
@@ -139,7 +199,7 @@ impl Parser<'_> {
         self.signed(Self::term, Self::product)
     }
 
-    fn signed_power(&mut self) -> Parse {
+    pub(super) fn signed_power(&mut self) -> Parse {
         self.signed(Self::signed_power, Self::power)
     }
 
@@ -165,7 +225,8 @@ impl Parser<'_> {
                 factors.push((Factor::Times, self.signed_power()?));
             } else if self.take(&Token::Slash) {
                 factors.push((Factor::Over, self.signed_power()?));
-            } else if matches!(self.peek().token, Token::Name(_) | Token::Open) {
+            } else if self.begins_factor() {
+                self.check_bars(&factors)?;
                 let after_division = matches!(factors.last(), Some((Factor::Over, _)));
                 let divisor = factors.last().map_or(0..0, |(_, factor)| factor.span.clone());
                 let factor = self.power()?;
@@ -185,7 +246,33 @@ impl Parser<'_> {
         Ok(flatten(factors, Kind::Product))
     }
 
-    fn power(&mut self) -> Parse {
+    /// Whether the next token begins a factor that stands beside the one before it.
+    pub(super) fn begins_factor(&self) -> bool {
+        match self.peek().token {
+            Token::Name(_) | Token::Open(_) | Token::Fraction | Token::Root | Token::Bar(Bar::Opening) => {
+                true
+            }
+            Token::Bar(Bar::Either) => !self.is_in_bars,
+            _ => false,
+        }
+    }
+
+    /// In `|x|y|z|` the second bar may close or open: an error at the third one, where the factors lead to it.
+    fn check_bars(&self, factors: &[(Factor, Expr)]) -> Result<(), FormulaError> {
+        let Spanned { token, span } = self.peek();
+        let is_barred = |(_, factor): &(Factor, Expr)| slice(self.text, &factor.span).ends_with('|');
+        if *token != Token::Bar(Bar::Either)
+            || factors.last().is_none_or(is_barred)
+            || !factors.iter().any(is_barred)
+        {
+            return Ok(());
+        }
+        let message = "These bars have two readings: write `*` before the one that opens";
+        Err(FormulaError::new(ErrorKind::Ambiguous, span.clone(), message)
+            .suggest(format!("*{}", slice(self.text, span))))
+    }
+
+    pub(super) fn power(&mut self) -> Parse {
         let base = self.atom()?;
         let exponent = match self.peek().token {
             Token::Superscript(value) => {
@@ -219,29 +306,110 @@ impl Parser<'_> {
                 self.next += 1;
                 self.name(name, span)
             }
-            Token::Open => {
+            Token::Open(_) => {
+                let (inner, span) = self.bracketed(|parser| parser.within(false, Self::sum))?;
+                Ok(Expr { span, ..inner })
+            }
+            Token::Bar(Bar::Either | Bar::Opening) => {
                 self.next += 1;
-                let inner = self.deeper(Self::sum)?;
-                let end = self.close(&span)?;
-                Ok(Expr { span: span.start..end, ..inner })
+                let inner = self.within(true, Self::sum)?;
+                let end = self.peek().span.end;
+                if !(self.take(&Token::Bar(Bar::Either)) || self.take(&Token::Bar(Bar::Closing))) {
+                    return Err(self.unclosed(&span, "|"));
+                }
+                Ok(Expr { kind: Kind::Call(Function::Abs, vec![inner]), span: span.start..end })
+            }
+            Token::Fraction => {
+                self.next += 1;
+                let (above, below) = (self.group()?, self.group()?);
+                let span = span.start..below.span.end;
+                Ok(Expr { kind: Kind::Product(vec![(Factor::Times, above), (Factor::Over, below)]), span })
+            }
+            Token::Root => {
+                self.next += 1;
+                let degree = match self.peek().token {
+                    Token::Open('[') => Some(self.atom()?),
+                    _ => None,
+                };
+                let inner = self.group()?;
+                let span = span.start..inner.span.end;
+                Ok(Expr { kind: root(degree, inner), span })
             }
             _ => Err(self.unexpected()),
         }
     }
 
-    /// Consumes the `)` that closes the `(` at `open` and returns its end.
-    fn close(&mut self, open: &Range<usize>) -> Result<usize, FormulaError> {
-        let end = self.peek().span.end;
-        if self.take(&Token::Close) {
-            return Ok(end);
+    /// Parses what a command of LaTeX is applied to: something in braces, or one character.
+    fn group(&mut self) -> Parse {
+        let Spanned { token, span } = self.peek().clone();
+        match token {
+            Token::Open('{') => self.atom(),
+            Token::Number(_) | Token::Name(_) if span.len() == 1 => self.atom(),
+            _ => {
+                let message = "Braces hold what a command is applied to, as in `\\frac{1}{2}`";
+                Err(FormulaError::new(ErrorKind::UnexpectedSymbol, span, message))
+            }
         }
-        if self.peek().token == Token::End {
-            let message = format!("The bracket opened at character {} is not closed", {
-                slice(self.text, &(0..open.start)).chars().count() + 1
-            });
-            return Err(FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(")"));
+    }
+
+    /// Applies `parse` one nesting level deeper, within bars or within brackets.
+    fn within(&mut self, bars: bool, parse: impl FnOnce(&mut Self) -> Parse) -> Parse {
+        let outside = core::mem::replace(&mut self.is_in_bars, bars);
+        let result = self.deeper(parse);
+        self.is_in_bars = outside;
+        result
+    }
+
+    /// Parses a bracket, which is the next token, with what `inside` parses; returns the span of it all too.
+    fn bracketed<T>(
+        &mut self,
+        inside: impl FnOnce(&mut Self) -> Result<T, FormulaError>,
+    ) -> Result<(T, Range<usize>), FormulaError> {
+        let Spanned { token, span } = self.peek().clone();
+        let Token::Open(open) = token else { return Err(self.unexpected()) };
+        self.next += 1;
+        let content = inside(self)?;
+        let end = self.close(open, &span)?;
+        Ok((content, span.start..end))
+    }
+
+    /// Parses the arguments of a function with the brackets around them; returns their span too.
+    pub(super) fn arguments(&mut self) -> Result<(Vec<Expr>, Range<usize>), FormulaError> {
+        self.bracketed(|parser| {
+            let mut arguments = Vec::new();
+            if !matches!(parser.peek().token, Token::Close(_)) {
+                arguments.push(parser.within(false, Self::sum)?);
+                while parser.take(&Token::Comma) {
+                    arguments.push(parser.within(false, Self::sum)?);
+                }
+            }
+            Ok(arguments)
+        })
+    }
+
+    /// Consumes the bracket that closes the one at `span` and returns its end.
+    fn close(&mut self, open: char, span: &Range<usize>) -> Result<usize, FormulaError> {
+        let Spanned { token, span: found } = self.peek().clone();
+        if self.take(&Token::Close(closing(open))) {
+            return Ok(found.end);
         }
-        Err(self.unexpected())
+        if let Token::Close(_) = token {
+            let message = format!("`{}` cannot close a `{open}`", slice(self.text, &found));
+            return Err(FormulaError::new(ErrorKind::UnexpectedSymbol, found, message).suggest(closing(open)));
+        }
+        Err(self.unclosed(span, closing(open)))
+    }
+
+    /// Error where the bracket at `open` should be closed.
+    fn unclosed(&self, open: &Range<usize>, closing: impl Into<String>) -> FormulaError {
+        if self.peek().token != Token::End {
+            return self.unexpected();
+        }
+        let end = self.text.len();
+        let message = format!("The bracket opened at character {} is not closed", {
+            slice(self.text, &(0..open.start)).chars().count() + 1
+        });
+        FormulaError::new(ErrorKind::UnexpectedEnd, end..end, message).suggest(closing)
     }
 
     /// Parses what begins with `name`, which has just been consumed.
@@ -256,108 +424,31 @@ impl Parser<'_> {
         if let Some(function) = Function::find(&name) {
             return self.call(function, span);
         }
-        if self.peek().token == Token::Open && !self.declared.contains(&name.as_str()) {
+        if self.peek().token == Token::Open('(') && !self.declared.contains(&name.as_str()) {
             let guess = self.similar(&name);
+            let has_arguments = self.has_comma();
             if name == "pow" {
                 let message = "A power is written `a^b`";
                 return Err(FormulaError::new(ErrorKind::UnknownFunction, span, message));
             }
             let message = match guess {
                 Some(guess) => format!("There is no function `{name}`: did you mean `{guess}`?"),
+                None if has_arguments => {
+                    format!("There is no function `{name}`: write its formula in its place")
+                }
                 None => format!("There is no function `{name}`; to multiply, write `{name}*(`"),
             };
             let error = FormulaError::new(ErrorKind::UnknownFunction, span, message);
-            return Err(error.suggest(guess.map_or_else(|| format!("{name}*"), str::to_owned)));
+            return Err(match guess {
+                Some(guess) => error.suggest(guess),
+                None if has_arguments => error,
+                None => error.suggest(format!("{name}*")),
+            });
         }
         if !self.names.iter().any(|(known, _)| *known == name) {
             self.names.push((name.clone(), span.clone()));
         }
         Ok(Expr { kind: Kind::Parameter(name), span })
-    }
-
-    /// Parses the exponent and the arguments of `function`, whose name has just been consumed at `span`.
-    fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
-        let name = function.name();
-        // In `sin^2(x)` and `sin²(x)` the power applies to the value.
-        let mut exponent = None;
-        if let Token::Superscript(value) = self.peek().token {
-            exponent = Some(integer(value, self.peek().span.clone()));
-            self.next += 1;
-        } else if self.peek().token == Token::Caret {
-            self.next += 1;
-            let negative = self.take(&Token::Minus);
-            let Spanned { token, span: raised } = self.peek().clone();
-            let Token::Number(value) = token else {
-                let message = format!("Write the power of a value as `{name}(…)^n`");
-                return Err(FormulaError::new(ErrorKind::Ambiguous, span.start..raised.end, message));
-            };
-            self.next += 1;
-            let value = if negative { -value } else { value };
-            exponent = Some(Expr { kind: Kind::Number(value), span: raised });
-        }
-        let negative = |kind: &Kind| match kind {
-            Kind::Number(value) => *value < 0.0,
-            _ => true,
-        };
-        if let Some(Expr { kind, span: raised }) = &exponent
-            && negative(kind)
-        {
-            let message = format!(
-                "A negative power of `{name}` has two readings: write `1/{name}(…)`, or name the inverse"
-            );
-            return Err(FormulaError::new(ErrorKind::Ambiguous, span.start..raised.end, message));
-        }
-        if self.peek().token != Token::Open {
-            return Err(self.missing_brackets(name, span));
-        }
-        let open = self.peek().span.clone();
-        self.next += 1;
-        let mut arguments = Vec::new();
-        if self.peek().token != Token::Close {
-            arguments.push(self.deeper(Self::sum)?);
-            while self.take(&Token::Comma) {
-                arguments.push(self.deeper(Self::sum)?);
-            }
-        }
-        let whole = span.start..self.close(&open)?;
-        let (least, most) = function.arity();
-        if !(least..=most).contains(&arguments.len()) {
-            let wanted = match (least, most) {
-                (1, 1) => "one argument".to_owned(),
-                (least, most) if least == most => format!("{least} arguments"),
-                (least, most) => format!("{least} to {most} arguments"),
-            };
-            let message =
-                format!("`{}` takes {wanted}, and here it has {}", function.signature(), arguments.len());
-            return Err(FormulaError::new(ErrorKind::WrongArity, whole, message));
-        }
-        let call = Expr { kind: Kind::Call(function, arguments), span: whole.clone() };
-        Ok(match exponent {
-            Some(exponent) => Expr { kind: Kind::Power(Box::new(call), Box::new(exponent)), span: whole },
-            None => call,
-        })
-    }
-
-    /// Error for the function `name` without brackets, with the brackets suggested around its operand.
-    fn missing_brackets(&mut self, name: &str, span: Range<usize>) -> FormulaError {
-        let message = format!("`{name}` needs brackets around what it is applied to");
-        let error = FormulaError::new(ErrorKind::MissingBrackets, span.clone(), message);
-        let starts_operand = matches!(self.peek().token, Token::Name(_) | Token::Number(_));
-        // The brackets should hold the operand that follows and any name written directly after it, as in `sin 2x`.
-        match if starts_operand { self.deeper(Self::power) } else { Err(error.clone()) } {
-            Ok(operand) => {
-                let mut inside = operand.span;
-                while matches!(self.peek().token, Token::Name(_)) && self.peek().span.start == inside.end {
-                    match self.deeper(Self::power) {
-                        Ok(factor) => inside.end = factor.span.end,
-                        Err(_) => break,
-                    }
-                }
-                let inner = slice(self.text, &inside);
-                FormulaError { span: span.start..inside.end, ..error }.suggest(format!("{name}({inner})"))
-            }
-            Err(_) => error.suggest(format!("{name}(…)")),
-        }
     }
 
     /// Function that was probably meant by `name`.
@@ -367,9 +458,25 @@ impl Parser<'_> {
 }
 
 /// Tree of an integer; a negative one is a negated number.
-fn integer(value: i32, span: Range<usize>) -> Expr {
+pub(super) fn integer(value: i32, span: Range<usize>) -> Expr {
     let magnitude = Expr { kind: Kind::Number(f64::from(value).abs()), span: span.clone() };
     if value < 0 { Expr { kind: Kind::Negated(Box::new(magnitude)), span } } else { magnitude }
+}
+
+/// The root of the given degree, or the square root.
+fn root(degree: Option<Expr>, inner: Expr) -> Kind {
+    match degree {
+        None => Kind::Call(Function::Sqrt, vec![inner]),
+        Some(Expr { kind: Kind::Number(2.0), .. }) => Kind::Call(Function::Sqrt, vec![inner]),
+        Some(Expr { kind: Kind::Number(3.0), .. }) => Kind::Call(Function::Cbrt, vec![inner]),
+        Some(degree) => {
+            let span = degree.span.clone();
+            let one = Expr { kind: Kind::Number(1.0), span: span.clone() };
+            let inverse =
+                Expr { kind: Kind::Product(vec![(Factor::Times, one), (Factor::Over, degree)]), span };
+            Kind::Power(Box::new(inner), Box::new(inverse))
+        }
+    }
 }
 
 /// The only item, or a `list` node of several.

@@ -55,6 +55,9 @@ export type Condition = {
   equal: boolean,
 };
 
+/** Why particles lie at the border of the box. */
+export type Cut = "endless" | "fixed";
+
 /** The whole description. */
 export type Description = {
   /** Version of this crate. */
@@ -121,6 +124,8 @@ export type Fault = {
   end: number,
   /** Text that would mend the span, if there is a good guess. */
   suggestion: string | null,
+  /** The formula with every mistake of this kind mended, if there are several. */
+  mended: Mended | null,
   /** Unknown names that could become sliders. */
   names: Array<string>,
 };
@@ -142,8 +147,10 @@ export type FieldAnswer = {
   parameters: Array<Parameter>,
   /** Parameters that were not declared but found in the formula. */
   auto: Array<string>,
-  /** Clip box. */
+  /** Clip box; before [`Session::fit`] or a start it may be that of the formula before. */
   bounds: Bounds,
+  /** How far the surface reaches, if the box was fitted to it. */
+  reach: Reach | null,
   /** The formula as MathML; none if there is no formula. */
   mathml: MathNode | null,
 };
@@ -161,7 +168,7 @@ export type FieldRequest = {
   parameters: { [key in string]: number },
   /** Parameters that the formula's unknown names become. */
   declare: Array<Parameter>,
-  /** Clip box. */
+  /** Clip box. Without one it is that of the surface, or fitted (see [`Session::fit`]). */
   bounds: Bounds | null,
 };
 
@@ -336,6 +343,14 @@ export type MeshComponent = {
   open_edges: number,
 };
 
+/** A formula in which every mistake of a kind is corrected. */
+export type Mended = {
+  /** The whole formula. */
+  text: string,
+  /** Number of places that were corrected. */
+  places: number,
+};
+
 /** A built-in model. */
 export type Model = {
   /** Identifier: lower case, words joined by hyphens. No gallery surface has the same one. */
@@ -446,6 +461,9 @@ export type Progress = {
   moved: boolean,
 };
 
+/** How far a surface reaches. */
+export type Reach = "bounded" | "endless" | "nowhere" | "unknown";
+
 /** Everything worth knowing about a run. */
 export type Report = {
   /** Number of particles. */
@@ -478,6 +496,10 @@ export type Report = {
   fates: FateCounts,
   /** Times that a coarse front was refined; none where it was not, or the front stands. */
   refined_levels: number | null,
+  /** Particles with a child that fell outside of the box. */
+  border: number,
+  /** Why there are such particles, unless the box was chosen for the surface. */
+  cut: Cut | null,
   /** Why the run ended. */
   stop_reason: StopReason | null,
   /** Things the user should know, in words. */

@@ -100,7 +100,7 @@
  * @property {string} formula
  * @property {Record<string, number>} parameters
  * @property {Parameter[]} declared
- * @property {Bounds | null} bounds  null: the surface's own box
+ * @property {Bounds | null} bounds  null: the surface's own box, or one that fits the formula
  * @property {Settings} settings
  * @property {ViewState} view
  */
@@ -228,6 +228,7 @@
  * @property {(name: string) => void} resetParameter  restores the value of the gallery or of the declaration
  * @property {(name: string) => void} declareParameter  declares an unknown name of the formula as a parameter
  * @property {(bounds: Bounds | null, options?: {live?: boolean}) => void} setBounds
+ * @property {() => void} fitBox  takes the box of the gallery surface back, or fits it to the formula
  * @property {(name: string, value: number | string, options?: {live?: boolean}) => void} setSetting
  * @property {(name: string) => void} resetSetting
  * @property {(shape: Shape) => void} restore  restores an earlier state, without the view

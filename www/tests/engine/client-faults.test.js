@@ -8,7 +8,7 @@ afterEach(() => vi.useRealTimers());
 describe('a formula with a fault', () => {
   const fault = {
     ok: false,
-    error: { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, names: [] },
+    error: { kind: 'unexpected_end', message: 'no', start: 0, end: 1, suggestion: null, mended: null, names: [] },
   };
 
   test('leaves the last surface, dimmed', () => {
@@ -232,7 +232,7 @@ describe('the surface that stays', () => {
           id: 2,
           answer: {
             ok: false,
-            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, names: [] },
+            error: { kind: 'unexpected_end', message: '', start: 0, end: 0, suggestion: null, mended: null, names: [] },
           },
         });
       }

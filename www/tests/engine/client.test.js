@@ -197,7 +197,10 @@ describe('a run', () => {
       say({
         type: 'field',
         id,
-        answer: { ok: false, error: { kind, message: '', start: 0, end: 0, suggestion: null, names: [] } },
+        answer: {
+          ok: false,
+          error: { kind, message: '', start: 0, end: 0, suggestion: null, mended: null, names: [] },
+        },
       });
       expect(told.at(-1)).toBe('dim');
     }

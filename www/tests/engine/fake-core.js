@@ -4,6 +4,23 @@
  */
 
 /**
+ * @param {string} formula @param {import('../../src/engine/types.js').Bounds} bounds
+ * @returns {import('../../src/engine/types.js').FieldAnswer}
+ */
+const field = (formula, bounds) => ({
+  ok: true,
+  kind: 'formula',
+  model: null,
+  surface: null,
+  formula,
+  parameters: [],
+  auto: [],
+  bounds,
+  reach: 'bounded',
+  mathml: null,
+});
+
+/**
  * @param {object} [options]
  * @param {number} [options.particles]
  * @param {number} [options.relax_steps]
@@ -11,6 +28,7 @@
  * @param {number} [options.slices]  of a measurement
  * @param {number} [options.usPerSlice]
  * @param {number} [options.refined_levels]  of a refinement after the front, of which each level has four times as many particles
+ * @param {number} [options.fitSlices]  of the search for a box
  */
 export function fakeCore({
   particles = 1000,
@@ -19,7 +37,9 @@ export function fakeCore({
   slices = 1000,
   usPerSlice = 50,
   refined_levels = 0,
+  fitSlices = 0,
 } = {}) {
+  let fitted = 0;
   const clock = { ms: 0 };
   const calls = /** @type {string[]} */ ([]);
   let count = 0;
@@ -68,20 +88,11 @@ export function fakeCore({
             start: 4,
             end: 4,
             suggestion: null,
+            mended: null,
             names: [],
           },
         };
-      return {
-        ok: true,
-        kind: 'formula',
-        model: null,
-        surface: null,
-        formula: formula ?? '',
-        parameters: [],
-        auto: [],
-        bounds: { min: [-1, -1, -1], max: [1, 1, 1] },
-        mathml: null,
-      };
+      return field(formula ?? '', { min: [-1, -1, -1], max: [1, 1, 1] });
     },
     /** @param {Uint8Array} bytes @param {import('../../src/engine/types.js').SolvedModel} about @returns {import('../../src/engine/types.js').FieldAnswer} */
     set_points(bytes, { info, bounds }) {
@@ -95,8 +106,21 @@ export function fakeCore({
         parameters: [],
         auto: [],
         bounds,
+        reach: null,
         mathml: null,
       };
+    },
+    /**
+     * @param {import('../../src/engine/types.js').Settings} _settings @param {boolean} _onlyGrows @param {number} budget
+     * @returns {import('../../src/engine/types.js').FieldAnswer | undefined}
+     */
+    fit(_settings, _onlyGrows, budget) {
+      const n = Math.min(budget, fitSlices - fitted);
+      fitted += n;
+      clock.ms += (n * usPerSlice) / 1000;
+      if (fitted < fitSlices) return undefined;
+      fitted = 0;
+      return field('x', { min: [-2, -2, -2], max: [2, 2, 2] });
     },
     /** @param {import('../../src/engine/types.js').Settings} settings @returns {import('../../src/engine/types.js').StartAnswer} */
     start(settings) {

@@ -83,6 +83,36 @@ describe('a job', () => {
     expect(posted.at(-1)?.type).toBe('report');
   });
 
+  test('the box is found before the sampling starts, and told', async () => {
+    const core = fakeCore({ fitSlices: 500 });
+    const { posted } = await run(core, sampleJob());
+    const types = posted.map(({ type }) => type);
+    expect(types.indexOf('box')).toBeGreaterThanOrEqual(0);
+    expect(types.indexOf('box')).toBeLessThan(types.indexOf('started'));
+    expect(of(posted, 'box')[0].answer.bounds.max).toEqual([2, 2, 2]);
+  });
+
+  test('a search for a box that takes long gives way to a newer job at once, and to a stop', async () => {
+    for (const usPerSlice of [5, 1000]) {
+      const core = fakeCore({ fitSlices: 1e6, usPerSlice });
+      let longest = 0;
+      const search = core.fit.bind(core);
+      core.fit = (...parts) => {
+        const before = core.clock.ms;
+        const answer = search(...parts);
+        longest = Math.max(longest, core.clock.ms - before);
+        return answer;
+      };
+      const replaced = await run(core, sampleJob(), { interrupt: () => (core.clock.ms > 300 ? 'replace' : null) });
+      expect(of(replaced.posted, 'done')).toHaveLength(0);
+      expect(of(replaced.posted, 'beat').length).toBeGreaterThan(0);
+      const stopped = await run(core, sampleJob(), { interrupt: () => 'stop' });
+      expect(of(stopped.posted, 'done')[0].outcome).toBe('stopped');
+      expect(core.calls).not.toContain('start');
+      expect(longest, `at ${usPerSlice} µs a slice`).toBeLessThan(50);
+    }
+  });
+
   test('the last word on the slots covers every particle', async () => {
     const core = fakeCore({ particles: 5000, relax_steps: 0 });
     const { posted } = await run(core, sampleJob({ settings: { relax_steps: 0 } }));

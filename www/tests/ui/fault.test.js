@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { beginsFunction, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
+import { beginsFunction, changeBetween, describeFault, excerptOf, segmentsOf } from '../../src/ui/field/fault.js';
 
 /** @type {import('../../src/engine/types.js').FieldFault} */
 const fault = {
@@ -8,6 +8,7 @@ const fault = {
   start: 4,
   end: 7,
   suggestion: null,
+  mended: null,
   names: ['foo'],
 };
 
@@ -33,6 +34,17 @@ describe('a fault in a formula', () => {
   it('offers a suggestion first, as a change of the marked place', () => {
     const view = describeFault('x + foo = 1', { ...fault, suggestion: 'floor' });
     expect(view?.repairs[0]).toEqual({ label: 'Change to floor', replace: { start: 4, end: 7, text: 'floor' } });
+  });
+
+  it('offers one press for every place of a kind, as the shortest change of the text', () => {
+    const mended = { text: 'x^2 + y^2 = 1', places: 2 };
+    const view = describeFault('x2 + y2 = 1', { ...fault, start: 0, end: 2, suggestion: 'x^2', mended });
+    expect(view?.repairs[0]).toEqual({
+      label: 'Change to x^2, in all 2 places',
+      replace: { start: 1, end: 6, text: '^2 + y^' },
+    });
+    expect(changeBetween('aXa', 'aa')).toEqual({ start: 1, end: 2, text: '' });
+    expect(changeBetween('aa', 'aaa')).toEqual({ start: 2, end: 2, text: 'a' });
   });
 
   it('says insert where something is missing and remove where something is too much', () => {

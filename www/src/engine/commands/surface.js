@@ -12,7 +12,7 @@ import { FILE_SURFACE } from '../types.js';
 const NAME_MS = 1000;
 
 /** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setSetting' | 'resetSetting'>} InputCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, runs, look, framing }) {
@@ -81,6 +81,12 @@ export function inputCommands({ store, runs, look }) {
       change(store, { bounds: valid });
       look.show();
       resample(live);
+    },
+    fitBox() {
+      const { box_mode: _, ...settings } = state.value.settings;
+      change(store, { bounds: null, settings });
+      look.show();
+      resample(false);
     },
     setSetting(name, value, { live = false } = {}) {
       const about = store.description.value;

@@ -273,6 +273,8 @@ export class SamplingClient {
       return;
     }
     switch (message.type) {
+      case 'box':
+        return this.boxFound(message.answer, current);
       case 'progress':
         return this.presenter.progress(message.progress, current);
       case 'columns':
@@ -317,6 +319,17 @@ export class SamplingClient {
     this.happened({ type: 'accepted', id, bounds: answer.bounds });
     this.presenter.begin(id, request);
     if (!request.restoring) this.presenter.field(request.field, answer);
+  }
+
+  /**
+   * Takes the box in which a run samples, which is found after its field was accepted.
+   * @param {import('../types.js').FieldOk} answer
+   * @param {Run} run
+   */
+  boxFound(answer, { request }) {
+    if (request.kind !== 'sample') return;
+    this.happened({ type: 'boxed', bounds: answer.bounds });
+    if (!request.restoring) this.presenter.box(answer);
   }
 
   /** @param {number} id @param {Extract<import('../types.js').FieldAnswer, {ok: false}>} answer */

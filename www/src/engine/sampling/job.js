@@ -21,6 +21,8 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * @typedef {object} CoreLike
  * @property {(request: import('../types.js').FieldRequest) => import('../types.js').FieldAnswer} set_field
  * @property {(system: Uint8Array, about: import('../types.js').SolvedModel) => import('../types.js').FieldAnswer} set_points
+ * @property {(settings: import('../types.js').Settings, onlyGrows: boolean, budget: number) => import('../types.js').FieldAnswer | undefined} fit  the
+ *   field with its box once it is found, else undefined
  * @property {(settings: import('../types.js').Settings) => import('../types.js').StartAnswer} start
  * @property {(budget: number) => CoreProgress} step
  * @property {(steps: number) => void} relax
@@ -63,7 +65,7 @@ import { BEAT_MS, PROGRESS_MS } from './protocol.js';
  * paper's placement on a model, takes a third of a millisecond, so even then a Stop takes effect within 100 ms.
  */
 const FIRST_BUDGET = 256;
-/** First budget of a measurement, in slices, which take up to a tenth of a millisecond. */
+/** First budget of a measurement or of the search for a box, in slices, which take up to a tenth of a millisecond. */
 const FIRST_SLICES = 32;
 /** Shortest interval between column messages: about a frame at 60 Hz. */
 const PICTURE_MS = 15;
@@ -122,7 +124,7 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
  */
 export async function runJob(core, job, env, memory) {
   const run = new JobRun(core, job, env);
-  if (!run.start(memory)) return;
+  if (!(await run.fit(memory)) || !run.start(memory)) return;
   const last = await run.sample();
   if (!last) {
     memory.held = 0;
@@ -164,6 +166,44 @@ class JobRun {
   }
 
   /**
+   * Finds the box of a sampling, slice by slice, so that the next key is not kept waiting by a formula that takes long.
+   * @param {{held: number}} memory
+   * @returns {Promise<boolean>} false if the job has ended already
+   */
+  async fit(memory) {
+    const { core, job, env } = this;
+    if (job.kind !== 'sample') return true;
+    memory.held = 0;
+    let slices = FIRST_SLICES;
+    this.beatMs = env.nowMs();
+    for (;;) {
+      const before = env.nowMs();
+      const answer = core.fit(job.settings, job.live, slices);
+      const took = env.nowMs() - before;
+      this.seconds.seeding += took / 1000;
+      if (answer?.ok === false) return this.end('refused', answer.error.message);
+      if (answer) {
+        env.post({ type: 'box', id: job.id, answer });
+        return true;
+      }
+      slices = nextBudget(slices, took);
+      this.beat();
+      await env.pause();
+      const why = env.interrupt();
+      if (why === 'replace') return false;
+      if (why === 'stop') return this.end('stopped');
+    }
+  }
+
+  /** Shows the supervisor from time to time that the worker is alive. */
+  beat() {
+    const { env } = this;
+    if (env.nowMs() - this.beatMs <= BEAT_MS) return;
+    env.post({ type: 'beat' });
+    this.beatMs = env.nowMs();
+  }
+
+  /**
    * Starts the sampling or the relaxation in the core.
    * @param {Memory} memory
    * @returns {boolean} false if the job has ended already
@@ -171,7 +211,6 @@ class JobRun {
   start(memory) {
     const { core, job, env } = this;
     if (job.kind === 'sample') {
-      memory.held = 0;
       // The core looks for the surface when it starts; for a model, this is most of the seeding.
       const before = env.nowMs();
       const start = core.start(job.settings);
@@ -332,10 +371,7 @@ class JobRun {
       const took = env.nowMs() - before;
       seconds.quality += took / 1000;
       slices = nextBudget(slices, took);
-      if (env.nowMs() - this.beatMs > BEAT_MS) {
-        env.post({ type: 'beat' });
-        this.beatMs = env.nowMs();
-      }
+      this.beat();
     } while (report === undefined);
     const figures = {
       valence: core.valence(),

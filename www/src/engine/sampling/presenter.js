@@ -69,6 +69,14 @@ export class Presenter {
     store.fieldError.value = null;
   }
 
+  /** Shows the box that was found for the field. @param {Extract<FieldAnswer, {ok: true}>} answer */
+  box({ bounds, reach }) {
+    const { field } = this.store;
+    if (!field.value || JSON.stringify([bounds, reach]) === JSON.stringify([field.value.bounds, field.value.reach]))
+      return;
+    field.value = { ...field.value, bounds, reach };
+  }
+
   /** Shows the error of a field that the core has refused. @param {Extract<FieldAnswer, {ok: false}>} answer */
   fault({ error }) {
     this.store.fieldError.value = error;

@@ -111,6 +111,7 @@
  *   | {type: 'failed', fault: LoadFault, message: string}
  *   | {type: 'beat'}
  *   | {type: 'field', id: number, answer: FieldAnswer}
+ *   | {type: 'box', id: number, answer: import('../types.js').FieldOk}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
  *   | ColumnsMessage | DoneMessage | ReportMessage

@@ -35,7 +35,8 @@ import { clampSettings } from '../share/state.js';
  * @typedef {'seeding' | 'growing' | 'measuring' | 'over'} Stage
  */
 /**
- * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted.
+ * A job that was sent to the worker. `bounds` is the clip box of its field, known once the field is accepted, and final
+ * once the box is found.
  * @typedef {{id: number, request: RunRequest, bounds: Bounds | null, stage: Stage, sinceMs: number}} Run
  */
 /** @typedef {{request: SampleRequest, reported: boolean}} Shown */
@@ -55,6 +56,7 @@ import { clampSettings } from '../share/state.js';
  * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
  * @typedef {{type: 'sent', id: number, request: RunRequest, nowMs: number}
  *   | {type: 'accepted', id: number, bounds: Bounds}
+ *   | {type: 'boxed', bounds: Bounds}
  *   | {type: 'refused', id: number}
  *   | {type: 'particles', description: Description | null}
  *   | {type: 'done', outcome: import('./protocol.js').Outcome, particles: number, reportFollows: boolean}
@@ -100,6 +102,8 @@ export function reduce(state, event) {
         astray: request.restoring === true && state.astray,
       };
     }
+    case 'boxed':
+      return { ...state, current: state.current && { ...state.current, bounds: event.bounds } };
     case 'refused':
       return { ...state, asked: after(state.asked, event.id) };
     case 'particles':

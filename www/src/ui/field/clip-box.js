@@ -1,6 +1,7 @@
-/** The controls of the clip box, one row per axis. */
+/** The controls of the clip box, one row per axis, and the line about a surface that it cuts. */
 import { computed, effect } from '@preact/signals-core';
-import { h } from '../dom.js';
+import { cutOf, enlarge } from '../box.js';
+import { fill, h } from '../dom.js';
 import { formatSignificant } from '../format.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
@@ -14,7 +15,9 @@ const STEP_SHARE = 0.02;
 export function createClipBox(engine) {
   const bounds = computed(() => engine.state.value.bounds ?? engine.field.value?.bounds ?? null);
   const drawn = computed(() => engine.state.value.view.box);
-  const own = computed(() => engine.state.value.bounds !== null);
+  const own = computed(() => engine.state.value.bounds !== null || engine.state.value.settings.box_mode === 'fixed');
+  /** Whether the surface has a box of its own, as those of the gallery and of points have. */
+  const kept = computed(() => engine.field.value?.surface !== null || engine.field.value?.kind === 'points');
 
   const summary = h('span', { class: 'quiet range' });
   const inputs = AXES.map((axis, i) =>
@@ -64,7 +67,7 @@ export function createClipBox(engine) {
   const show = h('input', { type: 'checkbox', on: { change: () => engine.setView({ box: show.checked }) } });
   const reset = h(
     'button',
-    { type: 'button', class: 'button plain small', on: { click: () => engine.setBounds(null) } },
+    { type: 'button', class: 'button plain small', on: { click: () => engine.fitBox() } },
     'Reset',
   );
   const details = h(
@@ -87,13 +90,43 @@ export function createClipBox(engine) {
     const now = bounds.value;
     if (!now) return;
     write(now);
-    summary.textContent = now.max.map((high, i) => formatSignificant(high - now.min[i], 3)).join(' × ');
+    const size = now.max.map((high, i) => formatSignificant(high - now.min[i], 3)).join(' × ');
+    summary.textContent = engine.field.value?.reach === 'bounded' ? `fits · ${size}` : size;
   });
   effect(() => {
     show.checked = drawn.value;
   });
   effect(() => {
     reset.classList.toggle('invisible', !own.value);
+    reset.textContent = kept.value ? 'Reset' : 'Fit';
   });
-  return details;
+  return [createCut(engine), details];
+}
+
+/** Creates the line about a surface that the box cuts, with what to do. @param {Engine} engine */
+function createCut(engine) {
+  const line = h('div', { class: 'section cut', role: 'status' });
+  // During a run the line of the previous one stays.
+  let last = cutOf(engine.report.peek());
+  const cut = computed(() => {
+    if (engine.empty.value) last = null;
+    else if (engine.report.value) last = cutOf(engine.report.value);
+    return last;
+  });
+  effect(() => {
+    const now = cut.value;
+    line.hidden = now === null;
+    if (!now) return fill(line);
+    const action = (/** @type {string} */ label, /** @type {() => void} */ act) =>
+      h('button', { type: 'button', class: 'button small', on: { click: act } }, label);
+    fill(
+      line,
+      h('p', null, now.text),
+      h('div', { class: 'repairs' }, [
+        action('Enlarge', () => enlarge(engine)),
+        now.canFit ? action('Fit', () => engine.fitBox()) : null,
+      ]),
+    );
+  });
+  return line;
 }

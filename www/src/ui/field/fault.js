@@ -41,10 +41,29 @@ export function describeFault(formula, fault) {
         : mending === ''
           ? `Remove ${shorten(marked)}`
           : `Change to ${shorten(mending)}`;
-    // An ellipsis stands for text that the user has to fill in.
-    repairs.unshift({ label, replace: { start, end, text: mending.replace('…', '') } });
+    const { mended } = fault;
+    repairs.unshift(
+      mended
+        ? { label: `${label}, in all ${mended.places} places`, replace: changeBetween(formula, mended.text) }
+        : // An ellipsis stands for text that the user has to fill in.
+          { label, replace: { start, end, text: mending.replace('…', '') } },
+    );
   }
   return { tone: 'fault', message: fault.message, excerpt: excerptOf(formula, start, end), repairs };
+}
+
+/**
+ * Returns the shortest change that turns one text into another, so that the caret stays near it.
+ * @param {string} from
+ * @param {string} to
+ */
+export function changeBetween(from, to) {
+  const most = Math.min(from.length, to.length);
+  let start = 0;
+  while (start < most && from[start] === to[start]) start += 1;
+  let same = 0;
+  while (same < most - start && from[from.length - 1 - same] === to[to.length - 1 - same]) same += 1;
+  return { start, end: from.length - same, text: to.slice(start, to.length - same) };
 }
 
 /**

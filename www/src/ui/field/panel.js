@@ -26,7 +26,7 @@ export function mountField(body, engine, description) {
     createFormula(engine, description),
     createModel(engine, description),
     createParameters(engine),
-    createClipBox(engine),
+    ...createClipBox(engine),
   );
 }
 

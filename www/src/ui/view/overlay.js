@@ -1,5 +1,6 @@
 /** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
 import { computed, effect } from '@preact/signals-core';
+import { enlarge } from '../box.js';
 import { bindText, fill, h } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { NO_MESH, wordsOf } from './mesh-words.js';
@@ -69,8 +70,12 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
   const lost = computed(() => engine.empty.value && engine.fieldError.value === null);
   effect(() => {
     empty.hidden = !lost.value;
-    if (lost.value) fill(empty, ...emptyState(engine));
-    else fill(empty);
+    if (lost.value) {
+      // The next formula may have no surface for another reason.
+      void engine.field.value;
+      void engine.revision.value;
+      fill(empty, ...emptyState(engine));
+    } else fill(empty);
   });
 }
 
@@ -91,26 +96,18 @@ const EMPTY = {
 /** @param {Engine} engine */
 function emptyState(engine) {
   const { message, stop_reason } = engine.progress.peek();
-  const bounds = engine.field.peek()?.bounds;
-  const widen = () => {
-    if (!bounds) return;
-    const grow = (/** @type {1 | -1} */ side) =>
-      /** @type {[number, number, number]} */ (
-        bounds.min.map((low, i) => {
-          const high = bounds.max[i];
-          return (low + high) / 2 + side * (high - low);
-        })
-      );
-    engine.setBounds({ min: grow(-1), max: grow(1) });
-  };
-  const [title, remedy] = EMPTY[stop_reason ?? ''] ?? [
-    'No surface inside the box',
-    'Change the formula, or widen the box.',
-  ];
+  const nowhere = engine.field.peek()?.reach === 'nowhere';
+  const [title, remedy] =
+    EMPTY[stop_reason ?? ''] ??
+    (nowhere
+      ? ['No surface within ±10,000', 'Change the formula: nowhere there do both sides become equal.']
+      : ['No surface inside the box', 'Change the formula, or widen the box.']);
   return [
     h('h2', null, title),
     // The title already contains the first half of the message.
-    message ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, '')) : null,
+    message && !nowhere
+      ? h('p', { class: 'quiet reason' }, message.replace(/^No surface (found )?in this box: /, ''))
+      : null,
     h(
       'p',
       { class: 'quiet' },
@@ -119,8 +116,8 @@ function emptyState(engine) {
     h(
       'div',
       { class: 'empty-actions' },
-      stop_reason === 'no_surface'
-        ? h('button', { type: 'button', class: 'button', on: { click: widen } }, 'Double the box')
+      stop_reason === 'no_surface' && !nowhere
+        ? h('button', { type: 'button', class: 'button', on: { click: () => enlarge(engine) } }, 'Double the box')
         : null,
       h(
         'button',

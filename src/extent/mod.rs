@@ -1,0 +1,162 @@
+//! How far a surface reaches: the box that fits it.
+//!
+//! A [`scan`] of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether
+//! it goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
+//! extremes. Where it goes on for ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where its
+//! bends are, or is known to pass near the origin. What no interval decides is [looked at on a grid](sampled).
+//!
+//! The work is counted in cells and can be left and gone on with; the result is the same to the last bit everywhere.
+
+mod sampled;
+mod scan;
+
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::slices::{self, Work, pause};
+use glam::DVec3;
+use scan::{Outcome, Scan};
+use serde::Serialize;
+
+/// Half-widths of the cubes that are searched, the largest first.
+const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
+/// Half-width of the box of a surface that goes on for ever and passes near the origin. A gyroid has one and a quarter periods in it.
+const USUAL_HALF: f64 = 4.0;
+/// Half-width of the box where there is no surface, or nothing is known of it.
+const FALLBACK_HALF: f64 = 2.0;
+/// Room around the bends of an endless surface, as a share of their box.
+const ROOM: f64 = 0.25;
+/// Room around a surface on every side, as a share of its box, and in radii of particles: children are proposed at two radii.
+const MARGIN: f64 = 0.05;
+const MARGIN_RADII: f64 = 3.0;
+/// The room in radii is not more than this share of the longest side.
+const MOST_MARGIN: f64 = 0.5;
+/// Cells visited at most for a short formula: 20 to 50 milliseconds.
+const MOST_CELLS: usize = 32_768;
+/// Operations of such a formula. A longer one may have fewer cells, in inverse proportion, but at least so many.
+const SHORT: usize = 64;
+const LEAST_CELLS: usize = 2_048;
+
+/// How far a surface reaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum Reach {
+    /// All of it within ±10⁴ lies in the box.
+    Bounded,
+    /// It goes on beyond the box.
+    Endless,
+    /// There is none within ±10⁴.
+    Nowhere,
+    /// Neither intervals nor a grid tell.
+    #[default]
+    Unknown,
+}
+
+/// The box around a surface, without room, and what it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// Around all bounded components; of what goes on for ever a part.
+    pub bounds: Bounds,
+    /// How far the surface reaches.
+    pub reach: Reach,
+}
+
+impl Extent {
+    /// The box with room for particles, whose radius is at most this share of its diagonal: 5 % on every side, and three radii. A
+    /// box that cuts the surface has room already.
+    #[must_use]
+    pub fn with_room(&self, share: f64) -> Bounds {
+        if self.reach != Reach::Bounded {
+            return self.bounds;
+        }
+        /// Rounds in which room and diagonal follow each other; the room settles by a factor of ten in each for usual radii.
+        const ROUNDS: u32 = 8;
+        let size = self.bounds.hi() - self.bounds.lo();
+        let most = MOST_MARGIN * size.max_element();
+        let mut room = MARGIN * size;
+        for _ in 0..ROUNDS {
+            let radii = (MARGIN_RADII * share * (size + 2.0 * room).length()).min(most);
+            room = (MARGIN * size).max(DVec3::splat(radii));
+        }
+        placeable(self.bounds.lo() - room, self.bounds.hi() + room)
+    }
+}
+
+/// A search for the box of a surface.
+pub struct BoxFit {
+    work: Work<Extent>,
+}
+
+impl BoxFit {
+    /// Begins the search for the box of a field that evaluates about so many operations.
+    #[must_use]
+    pub fn new<F: Field + 'static>(mut field: F, operations: usize) -> Self {
+        let cells = (MOST_CELLS * SHORT / operations.max(SHORT)).max(LEAST_CELLS);
+        Self { work: Box::pin(async move { find(&mut field, cells).await }) }
+    }
+
+    /// Does up to `budget` slices of the work, of some 32 cells each: the box, once it is found. It must not be called after that.
+    pub fn step(&mut self, budget: u32) -> Option<Extent> {
+        slices::advance(self.work.as_mut(), budget)
+    }
+}
+
+/// Finds the box of a surface in at most so many cells.
+async fn find(field: &mut dyn Field, cells: usize) -> Extent {
+    let mut left = cells;
+    let mut bends: Option<[DVec3; 2]> = None;
+    let mut before = None;
+    for half in HALVES {
+        let Scan { outcome, hull } = scan::scan(field, half, &mut left).await;
+        pause().await;
+        let is_first = before.is_none();
+        match (outcome, hull) {
+            (Outcome::Inside, Some([lo, hi])) => {
+                let reach = if is_first { Reach::Bounded } else { Reach::Endless };
+                let bounds = placeable(lo, hi);
+                // What is beyond the box says nothing about the room within.
+                let extent = Extent { bounds, reach: Reach::Bounded };
+                return if is_first { extent } else { Extent { bounds: extent.with_room(0.0), reach } };
+            }
+            (Outcome::Empty, _) => {
+                return match before {
+                    None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Nowhere },
+                    Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
+                };
+            }
+            (Outcome::Crossing, hull) => bends = bends.or(hull),
+            (Outcome::Undecided | Outcome::Inside, _) if is_first => return sampled::find(field).await,
+            (Outcome::Undecided | Outcome::Inside, _) => {}
+        }
+        before = Some(half);
+    }
+    Extent { bounds: around(bends), reach: Reach::Endless }
+}
+
+/// The box of an endless surface with these bends.
+fn around(bends: Option<[DVec3; 2]>) -> Bounds {
+    let usual = Bounds::cube(USUAL_HALF);
+    let Some([lo, hi]) = bends else { return usual };
+    if lo.cmpge(usual.lo()).all() && hi.cmple(usual.hi()).all() {
+        return usual;
+    }
+    let (middle, half) = (0.5 * (lo + hi), (0.5 + ROOM) * (hi - lo).max_element());
+    placeable(middle - half, middle + half)
+}
+
+/// The box, made larger around its middle until particles can be put in it.
+fn placeable(lo: DVec3, hi: DVec3) -> Bounds {
+    let (middle, mut half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+    // A flat box has no room across.
+    half = half.max(DVec3::splat(1e-6 * half.max_element()).max(DVec3::splat(f64::MIN_POSITIVE)));
+    loop {
+        let bounds = Bounds { min: (middle - half).to_array(), max: (middle + half).to_array() };
+        if bounds.is_valid() || !half.is_finite() {
+            return bounds;
+        }
+        half *= 2.0;
+    }
+}
+
+#[cfg(test)]
+mod tests;

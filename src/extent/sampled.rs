@@ -1,0 +1,80 @@
+//! The box of a surface of which bounds tell nothing, by the signs of f on grids.
+
+use super::{Extent, FALLBACK_HALF, HALVES, Reach, placeable};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::slices::pause;
+use glam::{DVec3, Vec3};
+
+/// Cells along a side of a grid.
+const CELLS: usize = 32;
+/// The grid is laid anew over what it found, until that fills this share of it.
+const FULL: f64 = 0.6;
+const MOST_GRIDS: u32 = 12;
+
+/// Finds the smallest cube through whose faces the surface does not pass, and its box in it.
+pub(super) async fn find(field: &mut dyn Field) -> Extent {
+    let mut seen = None;
+    for half in HALVES.into_iter().rev() {
+        let cube = [DVec3::splat(-half), DVec3::splat(half)];
+        let Some((mut hull, passes)) = changes(field, cube).await else { continue };
+        seen = seen.or(Some(half));
+        if passes {
+            continue;
+        }
+        let mut over = cube;
+        for _ in 0..MOST_GRIDS {
+            if (hull[1] - hull[0]).max_element() >= FULL * (over[1] - over[0]).max_element() {
+                break;
+            }
+            // A cell of the grid around what it found is room for what it missed.
+            over = hull;
+            let Some((finer, _)) = changes(field, over).await else { break };
+            hull = finer;
+        }
+        return Extent { bounds: placeable(hull[0], hull[1]), reach: Reach::Bounded };
+    }
+    match seen {
+        Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
+        None => Extent { bounds: Bounds::cube(FALLBACK_HALF), reach: Reach::Unknown },
+    }
+}
+
+/// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one of them lies at the faces.
+async fn changes(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> Option<([DVec3; 2], bool)> {
+    const NODES: usize = CELLS + 1;
+    let step = (hi - lo) / CELLS as f64;
+    let mut below = vec![f32::NAN; NODES * NODES];
+    let mut layer = below.clone();
+    let (mut first, mut last) = ([usize::MAX; 3], [0; 3]);
+    for k in 0..NODES {
+        let node = |m: usize| lo + step * DVec3::new((m % NODES) as f64, (m / NODES) as f64, k as f64);
+        let points: Vec<Vec3> = (0..NODES * NODES).map(|m| node(m).as_vec3()).collect();
+        field.values(&points, &mut layer);
+        for m in 0..NODES * NODES {
+            let before = [
+                (m % NODES > 0).then(|| layer[m - 1]),
+                (m / NODES > 0).then(|| layer[m - NODES]),
+                (k > 0).then_some(below[m]),
+            ];
+            let value = layer[m];
+            if before
+                .into_iter()
+                .flatten()
+                .any(|other| value < 0.0 && other >= 0.0 || value >= 0.0 && other < 0.0)
+            {
+                for (axis, at) in [m % NODES, m / NODES, k].into_iter().enumerate() {
+                    first[axis] = first[axis].min(at.saturating_sub(1));
+                    last[axis] = last[axis].max(at);
+                }
+            }
+        }
+        core::mem::swap(&mut below, &mut layer);
+        pause().await;
+    }
+    let passes = first.contains(&0) || last.contains(&CELLS);
+    let at = |node: [usize; 3], room: f64| {
+        DVec3::from_array(core::array::from_fn(|axis| lo[axis] + step[axis] * (node[axis] as f64 + room)))
+    };
+    (first[0] != usize::MAX).then(|| ([at(first, -1.0), at(last, 1.0)], passes))
+}

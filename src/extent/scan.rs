@@ -1,0 +1,291 @@
+//! The scan of a cube: it is divided into eighths, again and again, and cells without surface are dropped.
+//!
+//! A point at which a component reaches farthest along an axis, inside the cube, has no slope along the other two: else the
+//! surface would go on. So besides the cells at the faces of the cube only those are kept whose bounds allow that for some axis:
+//! of a sphere a few around its six poles. Bounds of the value are those of the expression and of the mean value form, as in
+//! the search for components.
+
+use crate::field::{Enclosure, Field};
+use crate::slices::pause;
+use glam::DVec3;
+
+/// The cubes are not centred on the origin, where many surfaces have planes of symmetry that would run along the faces of cells.
+const OFF_CENTRE: DVec3 = DVec3::new(0.013, 0.007, 0.019);
+/// What the cube is larger by, so that it still reaches to its half-width.
+const LARGER: f64 = 1.02;
+/// The extremes are known to this share of the longest side of their box.
+const FINE: f64 = 1.0 / 64.0;
+/// Where there are many cells, this share will do.
+const COARSE: f64 = 1.0 / 16.0;
+/// Halvings after which what is still in the cells at the faces counts as passing through them.
+const FACE_LEVEL: u32 = 7;
+/// Halvings at most: for an isolated point, or a surface of less than 1e-7 of the cube.
+const DEPTH: u32 = 30;
+/// Cells of a level that are many, while some lie at the faces and when none does.
+const MANY_AT_FACES: usize = 1_500;
+const MANY_INSIDE: usize = 4_000;
+/// Where a level of this depth drops less than a tenth of its cells, the bounds say nothing.
+const IDLE_LEVEL: u32 = 3;
+const IDLE_SHARE: f64 = 0.9;
+/// Cells in a batch, after which the scan may be left.
+const BATCH: usize = 32;
+
+/// How a scan ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// There is no surface in the cube.
+    Empty,
+    /// The surface in the cube lies in the hull.
+    Inside,
+    /// It passes through the faces of the cube: f changes its sign there. The hull is that of its bends, if these are few.
+    Crossing,
+    /// The bounds do not tell.
+    Undecided,
+}
+
+/// What a scan found.
+pub(super) struct Scan {
+    pub(super) outcome: Outcome,
+    pub(super) hull: Option<[DVec3; 2]>,
+}
+
+/// Place of a cell in the grid of its level.
+type Place = [u32; 3];
+
+/// A cell that may hold surface.
+#[derive(Clone, Copy)]
+struct Cell {
+    at: Place,
+    /// The axes along which the surface may have an extreme in it.
+    extremes: [bool; 3],
+}
+
+/// The grid of a level.
+#[derive(Clone, Copy)]
+struct Level {
+    lo: DVec3,
+    size: f64,
+    /// Cells along a side.
+    cells: u32,
+    /// Halvings.
+    depth: u32,
+}
+
+impl Level {
+    fn corners(&self, at: Place) -> [DVec3; 2] {
+        [0, 1].map(|end| self.lo + self.size * DVec3::from_array(at.map(|k| f64::from(k + end))))
+    }
+
+    fn is_at_face(&self, at: Place) -> bool {
+        at.into_iter().any(|k| k == 0 || k + 1 == self.cells)
+    }
+}
+
+/// Scans the cube of this half-width around the origin, in about `left` cells, of which those visited are taken.
+pub(super) async fn scan(field: &mut dyn Field, half: f64, left: &mut usize) -> Scan {
+    let side = 2.0 * half * LARGER;
+    let lo = side * (OFF_CENTRE / 2.0 - 0.5);
+    let mut places = vec![[0; 3]];
+    for depth in 0.. {
+        let cells = 1_u32 << depth;
+        let level = Level { lo, size: side / f64::from(cells), cells, depth };
+        let kept = visit(field, &level, &places, left).await;
+        if let Some(outcome) = outcome(field, &level, &kept, *left).await {
+            let hull = match outcome {
+                Outcome::Inside => Some(hull(&level, &kept)),
+                Outcome::Crossing => bends(field, level, kept, left).await,
+                Outcome::Empty | Outcome::Undecided => None,
+            };
+            return Scan { outcome, hull };
+        }
+        places = eighths(&kept);
+    }
+    unreachable!("a level of the largest depth is the last")
+}
+
+/// The places of the eighths of the cells in the next level.
+fn eighths(cells: &[Cell]) -> Vec<Place> {
+    let of = |cell: &Cell, eighth: u32| core::array::from_fn(|axis| 2 * cell.at[axis] + (eighth >> axis & 1));
+    cells.iter().flat_map(|cell| (0..8).map(move |eighth| of(cell, eighth))).collect()
+}
+
+/// How the scan ends, if a level with these cells is the last one.
+async fn outcome(field: &mut dyn Field, level: &Level, kept: &[Cell], left: usize) -> Option<Outcome> {
+    if kept.is_empty() {
+        return Some(Outcome::Empty);
+    }
+    let is_last = level.depth >= DEPTH || left == 0;
+    let is_idle =
+        level.depth >= IDLE_LEVEL && kept.len() as f64 > IDLE_SHARE * f64::from(level.cells).powi(3);
+    if kept.iter().any(|cell| level.is_at_face(cell.at)) {
+        if !(is_last || is_idle || level.depth >= FACE_LEVEL || kept.len() > MANY_AT_FACES) {
+            return None;
+        }
+        let is_crossing = crosses_faces(field, level, kept).await;
+        return Some(if is_crossing { Outcome::Crossing } else { Outcome::Undecided });
+    }
+    let share = if is_last || kept.len() > MANY_INSIDE { COARSE } else { FINE };
+    if is_fine(level, hull(level, kept), share) {
+        return Some(Outcome::Inside);
+    }
+    (is_last || kept.len() > 4 * MANY_INSIDE).then_some(Outcome::Undecided)
+}
+
+/// Whether the cells of a level are at most this share of a box.
+fn is_fine(level: &Level, [lo, hi]: [DVec3; 2], share: f64) -> bool {
+    level.size <= share * (hi - lo).max_element()
+}
+
+/// The box of the extremes.
+fn hull(level: &Level, kept: &[Cell]) -> [DVec3; 2] {
+    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for cell in kept {
+        let corners = level.corners(cell.at);
+        for axis in (0..3).filter(|&axis| cell.extremes[axis]) {
+            lo[axis] = lo[axis].min(corners[0][axis]);
+            hi[axis] = hi[axis].max(corners[1][axis]);
+        }
+    }
+    [lo, hi]
+}
+
+/// The box of the bends of a surface that goes on: of the cells with an extreme, where these are few and none lies at the faces.
+async fn bends(
+    field: &mut dyn Field,
+    mut level: Level,
+    mut kept: Vec<Cell>,
+    left: &mut usize,
+) -> Option<[DVec3; 2]> {
+    loop {
+        kept.retain(|cell| cell.extremes != [false; 3]);
+        if kept.is_empty() || kept.len() > MANY_AT_FACES || kept.iter().any(|cell| level.is_at_face(cell.at))
+        {
+            return None;
+        }
+        let corners = kept.iter().map(|cell| level.corners(cell.at));
+        let join = |[lo, hi]: [DVec3; 2], [a, b]: [DVec3; 2]| [lo.min(a), hi.max(b)];
+        let hull = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], join);
+        if is_fine(&level, hull, FINE) || level.depth >= DEPTH || *left == 0 {
+            return Some(hull);
+        }
+        level = Level { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
+        kept = visit(field, &level, &eighths(&kept), left).await;
+    }
+}
+
+/// The cells that may hold surface, and lie at the faces of the cube or may hold an extreme.
+async fn visit(field: &mut dyn Field, level: &Level, cells: &[Place], left: &mut usize) -> Vec<Cell> {
+    *left = left.saturating_sub(cells.len());
+    let parts = field.parts();
+    let mut kept = Vec::new();
+    let mut batch = Batch::default();
+    for chunk in cells.chunks(BATCH) {
+        let mut extremes = [None; BATCH];
+        for part in 0..parts {
+            batch.enclose(field, part, level, chunk, &mut extremes);
+        }
+        for (&at, extremes) in chunk.iter().zip(extremes) {
+            if let Some(extremes) = extremes
+                && (extremes != [false; 3] || level.is_at_face(at))
+            {
+                kept.push(Cell { at, extremes });
+            }
+        }
+        pause().await;
+    }
+    kept
+}
+
+/// Boxes and bounds over them.
+#[derive(Default)]
+struct Batch {
+    boxes: Vec<[DVec3; 2]>,
+    known: Vec<Enclosure>,
+    /// Those that the bounds of the expression leave open.
+    open: Vec<usize>,
+    middles: Vec<[DVec3; 2]>,
+    at_middle: Vec<Enclosure>,
+}
+
+impl Batch {
+    /// Notes the extremes that a part of the field may have in cells where it may vanish.
+    fn enclose(
+        &mut self,
+        field: &mut dyn Field,
+        part: usize,
+        level: &Level,
+        cells: &[Place],
+        extremes: &mut [Option<[bool; 3]>; BATCH],
+    ) {
+        self.boxes.clear();
+        self.boxes.extend(cells.iter().map(|&at| level.corners(at)));
+        self.known.resize(cells.len(), Enclosure::UNKNOWN);
+        field.enclose(part, &self.boxes, &mut self.known);
+        self.open.clear();
+        self.open.extend(
+            (0..cells.len()).filter(|&k| holds_zero(self.known[k].value) && self.known[k].may_vanish),
+        );
+        self.middles.clear();
+        self.middles.extend(self.open.iter().map(|&k| {
+            let middle = 0.5 * (self.boxes[k][0] + self.boxes[k][1]);
+            [middle, middle]
+        }));
+        self.at_middle.resize(self.middles.len(), Enclosure::UNKNOWN);
+        field.enclose(part, &self.middles, &mut self.at_middle);
+        for (&k, middle) in self.open.iter().zip(&self.at_middle) {
+            let known = &self.known[k];
+            let is_regular = known.defined && known.continuous;
+            if is_regular && !holds_zero(mean_value(known, middle, 0.5 * level.size)) {
+                continue;
+            }
+            let found = extremes[k].get_or_insert([false; 3]);
+            for (axis, found) in found.iter_mut().enumerate() {
+                let others = [(axis + 1) % 3, (axis + 2) % 3];
+                *found |= !is_regular || others.iter().all(|&other| holds_zero(known.gradient[other]));
+            }
+        }
+    }
+}
+
+fn holds_zero([lo, hi]: [f64; 2]) -> bool {
+    lo <= 0.0 && hi >= 0.0
+}
+
+/// Bounds of the value by the mean value form around the middle of a cube of this half-width.
+fn mean_value(known: &Enclosure, middle: &Enclosure, half: f64) -> [f64; 2] {
+    /// What the few operations may have been rounded by.
+    const ROUNDING: f64 = 16.0 * f64::EPSILON;
+    let swing: f64 = known.gradient.iter().map(|[lo, hi]| hi.max(-lo) * half).sum();
+    let slack = ROUNDING * (swing + middle.value[0].abs() + middle.value[1].abs());
+    let (lo, hi) = (middle.value[0] - swing - slack, middle.value[1] + swing + slack);
+    // Where nothing is known it is not a number.
+    if lo.is_nan() || hi.is_nan() { [f64::NEG_INFINITY, f64::INFINITY] } else { [lo, hi] }
+}
+
+/// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
+async fn crosses_faces(field: &mut dyn Field, level: &Level, kept: &[Cell]) -> bool {
+    let parts = field.parts();
+    for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {
+        let [lo, hi] = level.corners(cell.at);
+        let mut boxes = vec![[lo, hi]];
+        boxes.extend((0..8).map(|corner| {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { lo[axis] } else { hi[axis] };
+            let p = DVec3::new(pick(0), pick(1), pick(2));
+            [p, p]
+        }));
+        let mut known = [Enclosure::UNKNOWN; 9];
+        for part in 0..parts {
+            field.enclose(part, &boxes, &mut known);
+            let corners = &known[1..];
+            let is_regular = known[0].defined && known[0].continuous;
+            if is_regular
+                && corners.iter().any(|corner| corner.value[1] < 0.0)
+                && corners.iter().any(|corner| corner.value[0] > 0.0)
+            {
+                return true;
+            }
+        }
+        pause().await;
+    }
+    false
+}

@@ -1,0 +1,103 @@
+//! The commands of LaTeX that a formula may have, as it is pasted from a text.
+
+use super::token::{Bar, Token};
+
+/// What a command stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Command {
+    /// Nothing: a space, or how large a thing is set.
+    Nothing,
+    /// Nothing, but that it makes a `|` after it one that opens or closes.
+    Side(Bar),
+    /// A name in braces follows.
+    Word,
+    /// The sign of an inequality.
+    Comparison(char),
+    /// This token.
+    Token(Token),
+}
+
+/// Functions and constants by their commands.
+const NAMES: &[(&str, &str)] = &[
+    ("sin", "sin"),
+    ("cos", "cos"),
+    ("tan", "tan"),
+    ("sinh", "sinh"),
+    ("cosh", "cosh"),
+    ("tanh", "tanh"),
+    ("arcsin", "asin"),
+    ("arccos", "acos"),
+    ("arctan", "atan"),
+    ("exp", "exp"),
+    ("ln", "ln"),
+    ("log", "log"),
+    ("lg", "lg"),
+    ("min", "min"),
+    ("max", "max"),
+    ("sgn", "sign"),
+    ("pi", "pi"),
+    ("tau", "tau"),
+    ("phi", "phi"),
+    ("varphi", "phi"),
+    ("alpha", "α"),
+    ("beta", "β"),
+    ("gamma", "γ"),
+    ("delta", "δ"),
+    ("epsilon", "ε"),
+    ("varepsilon", "ε"),
+    ("zeta", "ζ"),
+    ("eta", "η"),
+    ("theta", "θ"),
+    ("vartheta", "θ"),
+    ("iota", "ι"),
+    ("kappa", "κ"),
+    ("lambda", "λ"),
+    ("mu", "μ"),
+    ("nu", "ν"),
+    ("xi", "ξ"),
+    ("rho", "ρ"),
+    ("sigma", "σ"),
+    ("upsilon", "υ"),
+    ("chi", "χ"),
+    ("psi", "ψ"),
+    ("omega", "ω"),
+    ("Gamma", "Γ"),
+    ("Delta", "Δ"),
+    ("Theta", "Θ"),
+    ("Lambda", "Λ"),
+    ("Xi", "Ξ"),
+    ("Pi", "Π"),
+    ("Sigma", "Σ"),
+    ("Upsilon", "Υ"),
+    ("Phi", "Φ"),
+    ("Psi", "Ψ"),
+    ("Omega", "Ω"),
+];
+
+/// What the command `word`, without its backslash, stands for.
+pub(super) fn command(word: &str) -> Option<Command> {
+    let token = match word {
+        "," | ";" | ":" | "!" | " " | "quad" | "qquad" | "displaystyle" | "textstyle" | "big" | "Big"
+        | "bigg" | "Bigg" | "(" | ")" | "[" | "]" | "limits" => return Some(Command::Nothing),
+        "left" | "bigl" | "Bigl" | "biggl" | "Biggl" => return Some(Command::Side(Bar::Opening)),
+        "right" | "bigr" | "Bigr" | "biggr" | "Biggr" => return Some(Command::Side(Bar::Closing)),
+        "operatorname" | "mathrm" | "text" | "mathit" => return Some(Command::Word),
+        "lt" | "le" | "leq" | "leqslant" => return Some(Command::Comparison('<')),
+        "gt" | "ge" | "geq" | "geqslant" => return Some(Command::Comparison('>')),
+        "ne" | "neq" => return Some(Command::Comparison('≠')),
+        "frac" | "dfrac" | "tfrac" => Token::Fraction,
+        "sqrt" => Token::Root,
+        "cdot" | "times" | "ast" => Token::Star,
+        "div" => Token::Slash,
+        "vert" | "mid" => Token::Bar(Bar::Either),
+        "lvert" => Token::Bar(Bar::Opening),
+        "rvert" => Token::Bar(Bar::Closing),
+        "{" => Token::Open('{'),
+        "}" => Token::Close('}'),
+        _ => {
+            let (_, name) = NAMES.iter().find(|(latex, _)| *latex == word)?;
+            Token::Name((*name).into())
+        }
+    };
+    Some(Command::Token(token))
+}

@@ -1,0 +1,51 @@
+//! The tokens of a formula.
+
+use core::ops::Range;
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token {
+    Number(f64),
+    Name(String),
+    /// Integer exponent in superscript digits.
+    Superscript(i32),
+    Plus,
+    Minus,
+    Star,
+    Slash,
+    Caret,
+    /// Opening bracket: round, square or curly.
+    Open(char),
+    Close(char),
+    Bar(Bar),
+    /// `\frac`, which two groups follow.
+    Fraction,
+    /// `\sqrt`, which `[n]` may follow, and a group.
+    Root,
+    Comma,
+    Equals,
+    End,
+}
+
+/// A bar of an absolute value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bar {
+    /// `|`, which opens or closes by its place.
+    Either,
+    Opening,
+    Closing,
+}
+
+/// The bracket that closes `open`.
+pub(super) fn closing(open: char) -> char {
+    match open {
+        '[' => ']',
+        '{' => '}',
+        _ => ')',
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Spanned {
+    pub(super) token: Token,
+    pub(super) span: Range<usize>,
+}

@@ -1,0 +1,28 @@
+import { describe, expect, it } from 'vitest';
+import { cutOf, doubled } from '../../src/ui/box.js';
+
+describe('a surface that the box cuts', () => {
+  it('is not spoken of where the box was chosen for the surface', () => {
+    expect(cutOf(null)).toBeNull();
+    expect(cutOf({ cut: null, border: 40 })).toBeNull();
+  });
+
+  it('goes on for ever, which no box fits', () => {
+    expect(cutOf({ cut: 'endless', border: 40 })).toEqual({
+      text: 'The surface goes on beyond the box.',
+      canFit: false,
+    });
+  });
+
+  it('is cut by a fixed box, and a fitted one would hold it', () => {
+    expect(cutOf({ cut: 'fixed', border: 1234 })).toEqual({
+      text: 'The box cuts the surface: 1,234 particles lie at its border.',
+      canFit: true,
+    });
+    expect(cutOf({ cut: 'fixed', border: 1 })?.text).toContain('1 particle lies');
+  });
+
+  it('has twice the room in a doubled box, around the same middle', () => {
+    expect(doubled({ min: [-1, 0, 2], max: [1, 2, 3] })).toEqual({ min: [-2, -1, 1.5], max: [2, 3, 3.5] });
+  });
+});
