@@ -53,6 +53,15 @@ const whole = () => [sent(1, wish('x')), accepted(1), particles, done('complete'
 const afterWhole = (...more) => stateAfter(.../** @type {RunEvent[]} */ (whole()), ...more);
 
 describe('a run', () => {
+  test('has the box that was found for it, and not that of its field before', () => {
+    /** @type {import('../../src/engine/types.js').Bounds} */
+    const found = { min: [-9, -9, -9], max: [9, 9, 9] };
+    expect(stateAfter({ type: 'boxed', bounds: found }).current).toBeNull();
+    const state = stateAfter(sent(1, wish('x')), accepted(1), { type: 'boxed', bounds: found });
+    expect(state.current?.bounds).toEqual(found);
+    expect(state.current?.stage).toBe('seeding');
+  });
+
   test('goes through its stages, and is waited for by the page and by the worker as long as each has to', () => {
     const seen = whole().map((_, k) => {
       const state = stateAfter(.../** @type {RunEvent[]} */ (whole()).slice(0, k + 1));

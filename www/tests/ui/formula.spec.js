@@ -43,6 +43,8 @@ for (const phase of ['relaxation', 'quality']) {
   }) => {
     const { clean } = await open(page, { width: 390, height: 844 });
     const before = await report(page);
+    const camera = async () => (await state(page)).view.camera;
+    const old = await camera();
     await page.evaluate(async (wanted) => {
       const { engine } = /** @type {any} */ (window).marchingParticles;
       engine.setSetting('radius_share', 0.003);
@@ -70,8 +72,6 @@ for (const phase of ['relaxation', 'quality']) {
     await expect(page.locator('#report .figures, .figures').first()).toBeAttached();
     await expect(page.locator('.stale .figures')).toHaveCount(0);
     // The camera comes once the typing rests: where it then stands is where a fit would put it.
-    const camera = async () => (await state(page)).view.camera;
-    const old = await camera();
     await expect.poll(camera).not.toEqual(old);
     await atRest(page);
     const { distance, target } = await camera();
