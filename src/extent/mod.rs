@@ -1,9 +1,9 @@
 //! How far a surface reaches: the box that fits it.
 //!
-//! A [`scan`] of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether
+//! A scan of a cube by interval arithmetic finds the cells in which the surface may have an extreme along an axis, and whether
 //! it goes on through the faces of the cube. The first cube reaches to ±10⁴. Where the surface stays inside, its box is that of the
 //! extremes. Where it goes on for ever, smaller cubes follow, until it stays inside one (a sphere and a far plane), shows where its
-//! bends are, or is known to pass near the origin. What no interval decides is [looked at on a grid](sampled).
+//! bends are, or is known to pass near the origin. What no interval decides is looked at on a grid.
 //!
 //! The work is counted in cells and can be left and gone on with; the result is the same to the last bit everywhere.
 

@@ -321,6 +321,14 @@ export type MathNode = {
 /** Element of MathML Core with text. */
 export type MathToken = "mi" | "mn" | "mo";
 
+/** A formula in which every mistake of a kind is corrected. */
+export type Mended = {
+  /** The whole formula. */
+  text: string,
+  /** Number of places that were corrected. */
+  places: number,
+};
+
 /** What a mesh adds up to. */
 export type MeshAnswer = {
   /** Triangles. */
@@ -341,14 +349,6 @@ export type MeshComponent = {
   euler: number,
   /** Edges with one triangle. */
   open_edges: number,
-};
-
-/** A formula in which every mistake of a kind is corrected. */
-export type Mended = {
-  /** The whole formula. */
-  text: string,
-  /** Number of places that were corrected. */
-  places: number,
 };
 
 /** A built-in model. */
@@ -494,12 +494,12 @@ export type Report = {
   evaluations_per_particle: number,
   /** What became of the children. */
   fates: FateCounts,
-  /** Times that a coarse front was refined; none where it was not, or the front stands. */
-  refined_levels: number | null,
   /** Particles with a child that fell outside of the box. */
   border: number,
   /** Why there are such particles, unless the box was chosen for the surface. */
   cut: Cut | null,
+  /** Times that a coarse front was refined; none where it was not, or the front stands. */
+  refined_levels: number | null,
   /** Why the run ended. */
   stop_reason: StopReason | null,
   /** Things the user should know, in words. */
