@@ -24,8 +24,10 @@ pub(super) struct Painter {
 #[derive(Clone)]
 struct Buffers {
     depth: wgpu::Texture,
-    /// What is resolved to the target, where a pixel has several samples.
+    /// What is resolved, where a pixel has several samples.
     samples: Option<wgpu::Texture>,
+    /// What it is resolved to, where that is copied to the target.
+    resolved: Option<wgpu::Texture>,
 }
 
 /// Contents of a picture.
@@ -47,6 +49,8 @@ pub(super) struct Scene<'a> {
 /// Where a picture is drawn.
 pub(super) struct Canvas<'a> {
     pub(super) view: &'a wgpu::TextureView,
+    /// The texture to which samples are copied once they are resolved; without one they are resolved to the view.
+    pub(super) copied: Option<&'a wgpu::Texture>,
     pub(super) size: [u32; 2],
     /// Whether the buffers are kept for the next target of the same size.
     pub(super) keep: bool,
@@ -77,8 +81,8 @@ impl Painter {
         let samples = if scene.faces.is_some() { FACE_SAMPLES } else { 1 };
         let target = TargetKind { format: self.format, samples };
         let buffers = match &self.buffers {
-            Some(buffers) if buffers.fit(canvas.size, target) => buffers.clone(),
-            _ => Buffers::new(device, canvas.size, target),
+            Some(buffers) if buffers.fit(canvas, target) => buffers.clone(),
+            _ => Buffers::new(device, canvas, target),
         };
         if canvas.keep {
             self.buffers = Some(buffers.clone());
@@ -88,14 +92,15 @@ impl Painter {
         } else {
             &self.discs
         };
-        let sampled = buffers.samples.as_ref().map(view_of);
+        let [sampled, resolved] =
+            [&buffers.samples, &buffers.resolved].map(|texture| texture.as_ref().map(view_of));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: sampled.as_ref().unwrap_or(canvas.view),
                 depth_slice: None,
-                resolve_target: sampled.as_ref().map(|_| canvas.view),
+                resolve_target: sampled.as_ref().map(|_| resolved.as_ref().unwrap_or(canvas.view)),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(scene.clear_colour()),
                     store: if sampled.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store },
@@ -114,6 +119,10 @@ impl Painter {
         pass.set_bind_group(0, &self.frame.group, &[]);
         scene.draw(&mut pass, pipelines);
         drop(pass);
+        if let (Some(resolved), Some(texture)) = (&buffers.resolved, canvas.copied) {
+            let (from, to) = (resolved.as_image_copy(), texture.as_image_copy());
+            encoder.copy_texture_to_texture(from, to, resolved.size());
+        }
         queue.submit([encoder.finish()]);
     }
 }
@@ -164,27 +173,35 @@ fn draw_instances(
 }
 
 impl Buffers {
-    fn new(device: &wgpu::Device, [width, height]: [u32; 2], target: TargetKind) -> Self {
-        let texture = |label, format| {
+    fn new(device: &wgpu::Device, canvas: &Canvas<'_>, target: TargetKind) -> Self {
+        let [width, height] = canvas.size;
+        let texture = |label, format, sample_count, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
-                sample_count: target.samples,
+                sample_count,
                 dimension: wgpu::TextureDimension::D2,
                 format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
                 view_formats: &[],
             })
         };
+        let TargetKind { format, samples } = target;
+        let plain = wgpu::TextureUsages::empty();
+        let is_copied = samples > 1 && canvas.copied.is_some();
         Self {
-            depth: texture("depth", DEPTH_FORMAT),
-            samples: (target.samples > 1).then(|| texture("samples", target.format)),
+            depth: texture("depth", DEPTH_FORMAT, samples, plain),
+            samples: (samples > 1).then(|| texture("samples", format, samples, plain)),
+            resolved: is_copied.then(|| texture("resolved", format, 1, wgpu::TextureUsages::COPY_SRC)),
         }
     }
 
-    fn fit(&self, size: [u32; 2], target: TargetKind) -> bool {
-        [self.depth.width(), self.depth.height()] == size && self.depth.sample_count() == target.samples
+    fn fit(&self, canvas: &Canvas<'_>, target: TargetKind) -> bool {
+        let Self { depth, resolved, .. } = self;
+        [depth.width(), depth.height()] == canvas.size
+            && depth.sample_count() == target.samples
+            && (target.samples == 1 || resolved.is_some() == canvas.copied.is_some())
     }
 }
 

@@ -312,7 +312,8 @@ impl Renderer {
         let view = self.screen.view(&texture);
         let size = self.screen.size;
         let frame = self.frame(size, time_s);
-        self.paint(&Canvas { view: &view, size, keep: true }, frame, false);
+        let copied = self.screen.copied(&texture);
+        self.paint(&Canvas { view: &view, copied, size, keep: true }, frame, false);
         self.gpu.queue.present(texture);
         if self.is_lost() { Outcome::Lost } else { Outcome::Drawn }
     }
@@ -340,7 +341,7 @@ impl Renderer {
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let frame = self.frame(size, time_s);
-        self.paint(&Canvas { view: &view, size, keep: false }, frame, transparent);
+        self.paint(&Canvas { view: &view, copied: None, size, keep: false }, frame, transparent);
         let buffer = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("picture"),
             size: u64::from(padded_row(size[0])) * u64::from(size[1]),

@@ -21,15 +21,22 @@ impl Screen {
     /// If there is no sRGB format for it.
     pub(super) fn new(surface: wgpu::Surface<'static>, adapter: &wgpu::Adapter) -> Result<Self, CreateError> {
         let mut config = surface.get_default_config(adapter, 1, 1).ok_or(CreateError::Format)?;
-        let formats = surface.get_capabilities(adapter).formats;
+        let capabilities = surface.get_capabilities(adapter);
         let downlevel = adapter.get_downlevel_capabilities();
         let view_format = if downlevel.flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS) {
             let view_format = config.format.add_srgb_suffix();
             config.view_formats = vec![view_format];
+            // Every canvas of WebGPU can be copied to, although wgpu lists only that it can be drawn to.
+            if adapter.get_info().backend == wgpu::Backend::BrowserWebGpu {
+                config.usage |= wgpu::TextureUsages::COPY_DST;
+            }
             view_format
         } else {
-            config.format =
-                formats.into_iter().find(wgpu::TextureFormat::is_srgb).ok_or(CreateError::Format)?;
+            config.format = capabilities
+                .formats
+                .into_iter()
+                .find(wgpu::TextureFormat::is_srgb)
+                .ok_or(CreateError::Format)?;
             config.format
         };
         if !view_format.is_srgb() {
@@ -77,6 +84,13 @@ impl Screen {
             format: Some(self.view_format),
             ..wgpu::TextureViewDescriptor::default()
         })
+    }
+
+    /// The texture, if samples are not to be resolved to its view but copied to it: where the view has another format, a driver may
+    /// resolve to the format of the texture, and the picture be too dark (seen in Chromium 156 with SwiftShader's WebGPU).
+    pub(super) fn copied<'a>(&self, texture: &'a wgpu::SurfaceTexture) -> Option<&'a wgpu::Texture> {
+        let can_copy = self.config.usage.contains(wgpu::TextureUsages::COPY_DST);
+        (can_copy && self.view_format != self.config.format).then_some(&texture.texture)
     }
 
     fn configure(&mut self, device: &wgpu::Device) {

@@ -54,6 +54,30 @@ export const suite = () => {
     expect(errors).toEqual([]);
   });
 
+  test('a mesh is on the canvas in the colours that are read back', async ({ page }) => {
+    await open(page);
+    await look(page, { draw: 'mesh', colour: 'plain', edges: false, marks: false });
+    const box = await page.locator('#stage canvas').boundingBox();
+    if (!box) throw new Error('the canvas has no box');
+    // A corner of the canvas that no panel covers shows the background alone.
+    const shot = await page.screenshot({ clip: { x: box.x, y: box.y, width: 4, height: 4 } });
+    const read = await page.evaluate(async () =>
+      Array.from((await /** @type {any} */ (window).marchingParticles.pixels(16, 12)).pixels.subarray(0, 3)),
+    );
+    // Decoded in a page without a content security policy.
+    const blank = await page.context().newPage();
+    const seen = await blank.evaluate(async (data) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const context = /** @type {OffscreenCanvasRenderingContext2D} */ (new OffscreenCanvas(4, 4).getContext('2d'));
+      context.drawImage(image, 0, 0);
+      return Array.from(context.getImageData(2, 2, 1, 1).data.subarray(0, 3));
+    }, shot.toString('base64'));
+    await blank.close();
+    expect(seen).toEqual(read);
+  });
+
   test('a mesh goes with its particles and comes back with the next ones', async ({ page }) => {
     const { errors } = await open(page, `./${link({ ...coarse, view: { draw: 'mesh' } })}`);
     await expect.poll(async () => (await status(page)).mesh?.components[0].euler).toBe(2);
