@@ -57,7 +57,7 @@ export function fakeCore({
     phase: stop ? 'done' : count < target ? 'generation' : refined_levels ? 'refinement' : 'relaxation',
     particles: count,
     level: Math.floor(Math.sqrt(count)),
-    refine_level: refined,
+    refine_level: Math.floor(refined) + 1,
     refine_levels: refined_levels,
     relax_step: step,
     relax_steps: steps,
@@ -148,9 +148,11 @@ export function fakeCore({
       joined = 0;
       moves += 1;
       if (refined_levels) {
-        if (refined > 0) target = count *= 4;
-        if (refined === refined_levels) stop = 'complete';
-        refined += 1;
+        // A level is handed on in one step, and worked at in the next.
+        refined += 0.5;
+        if (refined % 1 === 0) return progress();
+        if (refined > 1) target = count *= 4;
+        if (refined > refined_levels) stop = 'complete';
         return progress(true);
       }
       step += 1;

@@ -175,6 +175,7 @@ class JobRun {
     if (job.kind !== 'sample') return true;
     memory.held = 0;
     let slices = FIRST_SLICES;
+    const wasHanding = false;
     this.beatMs = env.nowMs();
     for (;;) {
       const before = env.nowMs();
@@ -265,11 +266,13 @@ class JobRun {
       budgets[phase] = nextBudget(budget, took);
       sent.stale ||= progress.moved;
       if (progress.phase === 'done') return progress;
-      // A refinement moves the particles when it hands a level on, the coarse one first.
-      if (job.kind === 'sample' && job.coarse && progress.phase === 'refinement' && progress.moved) {
+      // A refinement moves the particles while it hands a level on, the coarse one first, and then goes on below them.
+      const isHanding = progress.phase === 'refinement' && progress.moved;
+      if (job.kind === 'sample' && job.coarse && wasHanding && !isHanding) {
         this.progress = { ...core.cancel(), stop_reason: 'complete' };
         return this.progress;
       }
+      wasHanding = isHanding;
       phase = progress.phase;
       this.tell(progress);
       await env.pause();
