@@ -175,7 +175,6 @@ class JobRun {
     if (job.kind !== 'sample') return true;
     memory.held = 0;
     let slices = FIRST_SLICES;
-    const wasHanding = false;
     this.beatMs = env.nowMs();
     for (;;) {
       const before = env.nowMs();
@@ -249,6 +248,7 @@ class JobRun {
     const budgets = {};
     /** @type {CoreProgress['phase']} */
     let phase = job.kind === 'sample' ? 'seeding' : 'relaxation';
+    let wasHanding = false;
     this.beatMs = env.nowMs();
     for (;;) {
       const why = env.interrupt();
