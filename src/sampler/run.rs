@@ -297,7 +297,8 @@ impl Sampler {
                 self.front.release();
                 // They are those of the front.
                 self.neighbours.clear();
-                self.moved = true;
+                // The last front was one of several.
+                self.moved |= self.fronts.are_several;
                 PhaseState::Refinement(Box::new(components))
             }
             Err(refusal) => self.refuse(refusal),
