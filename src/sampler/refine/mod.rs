@@ -142,7 +142,7 @@ impl Refinement {
             wanted: 0.0,
             spacing: 0.0,
             faces: 0.0,
-            recipe: Recipe::of(true, target.levels, target.grading.is_some()),
+            recipe: Recipe::of(target.levels, target.levels, target.grading.is_some()),
             near: Vec::new(),
             tally: Tally::default(),
             area_before: None,
@@ -407,7 +407,7 @@ impl Refinement {
             return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
         }
         self.to_come -= 1;
-        self.recipe = Recipe::of(false, self.to_come, self.target.grading.is_some());
+        self.recipe = Recipe::of(self.target.levels, self.to_come, self.target.grading.is_some());
         self.surgeon.forget();
         Ok((self.begin_pass(0), BLOCK as u32))
     }

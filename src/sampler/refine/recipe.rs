@@ -57,7 +57,7 @@ struct Plan {
 }
 
 /// The first level. Its particles are few, and what is mended here holds on every finer level.
-const FIRST: Plan = Plan { sweeps: 10, rounds: 10, calm: 3, centre: 0, theta: 0.8, omega: 1.5, delta: 0.03 };
+const FIRST: Plan = Plan { sweeps: 10, rounds: 20, calm: 3, centre: 0, theta: 0.8, omega: 1.5, delta: 0.02 };
 /// The levels between: rest lengths nearer to the spacing keep particles and holes even (closest pairs 0.80 instead of 0.78 of
 /// the ideal on the ellipsoid), and cost 0.1° of the mean angle.
 const MIDDLE: Plan = Plan { sweeps: 4, rounds: 5, calm: 2, centre: 0, theta: 0.9, omega: 1.5, delta: 0.015 };
@@ -65,7 +65,12 @@ const MIDDLE: Plan = Plan { sweeps: 4, rounds: 5, calm: 2, centre: 0, theta: 0.9
 const LAST_BUT_ONE: Plan =
     Plan { sweeps: 4, rounds: 4, calm: 1, centre: 0, theta: 0.9, omega: 1.5, delta: 0.012 };
 /// The last level: surgery would add more defects than it takes.
-const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.9, omega: 1.5, delta: 0.0 };
+const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.95, omega: 1.5, delta: 0.0 };
+/// Where a front is refined so many times at most, its surface bends much between neighbours: dearer defects and stiffer springs then do
+/// better. On the tanglecube the smallest angle is 40.5° instead of 38.6°, and the mean one 56.6° instead of 56.5°.
+const FEW_LEVELS: u32 = 2;
+const FIRST_OF_FEW: Plan = Plan { delta: 0.03, ..FIRST };
+const LAST_OF_FEW: Plan = Plan { theta: 0.9, ..LAST };
 
 /// Steps in which the first level goes from one size to those of the radius field. At once, neighbours would tangle.
 const BLEND: u8 = WHOLE;
@@ -73,7 +78,7 @@ const BLEND: u8 = WHOLE;
 /// the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
 const BLEND_SWEEPS: usize = 3;
 const BLEND_ROUNDS: usize = 2;
-/// What differs from the plans where sizes differ: more rounds at the first level, and springs at the others that keep the lattice stiff
+/// What differs from the plans where sizes differ: fewer rounds at the end of the first level, dearer defects there, and springs at the others that keep the lattice stiff
 /// in shear, which on the ellipsoid gains 0.2° of the mean angle.
 const GRADED_ROUNDS: usize = 16;
 const GRADED_THETA: f32 = 0.8;
@@ -82,16 +87,20 @@ const GRADED_THETA: f32 = 0.8;
 const LIMITS: usize = 4;
 
 impl Recipe {
-    /// The recipe of a level with so many to come, of one size or of sizes that differ.
-    pub(super) fn of(is_first: bool, to_come: u32, is_graded: bool) -> Self {
+    /// The recipe of a level with so many to come of all `levels`, of one size or of sizes that differ.
+    pub(super) fn of(levels: u32, to_come: u32, is_graded: bool) -> Self {
+        let (is_first, are_few) = (to_come == levels, levels <= FEW_LEVELS);
         let mut plan = match (is_first, to_come) {
+            (true, _) if are_few => FIRST_OF_FEW,
             (true, _) => FIRST,
+            (false, 0) if are_few => LAST_OF_FEW,
             (false, 0) => LAST,
             (false, 1) => LAST_BUT_ONE,
             (false, _) => MIDDLE,
         };
         if is_graded && is_first {
             plan.rounds = GRADED_ROUNDS;
+            plan.delta = FIRST_OF_FEW.delta;
         } else if is_graded && to_come > 0 {
             plan.theta = GRADED_THETA;
         }
@@ -162,9 +171,9 @@ mod tests {
 
     #[test]
     fn a_level_is_measured_first_and_inspected_last() {
-        for (is_first, to_come) in [(true, 3), (false, 2), (false, 1), (false, 0)] {
+        for to_come in 0..=3 {
             for is_graded in [false, true] {
-                let passes = Recipe::of(is_first, to_come, is_graded).passes;
+                let passes = Recipe::of(3, to_come, is_graded).passes;
                 assert_eq!((passes[0], passes[passes.len() - 1]), (Pass::Measure, Pass::Inspect));
                 let surgery = passes.iter().filter(|&&pass| pass == Pass::Mend).count();
                 assert_eq!(surgery > 0, to_come > 0, "{to_come} levels to come");
