@@ -498,3 +498,20 @@ fn a_file_of_two_gigabytes_is_refused_before_it_is_read() {
     std::fs::remove_file(&path).expect("the file can be removed");
     assert!(message.contains("the file has 2000 MB, and up to 50 MB are read"), "{message}");
 }
+
+#[test]
+fn a_formula_has_a_box_that_fits_and_a_surface_that_is_cut_is_told_with_what_to_do() {
+    let fast = ["--radius", "2%", "--relax", "0", "--quiet"];
+    let text = |more: &[&str]| String::from_utf8_lossy(&run(&[more, &fast].concat()).stdout).into_owned();
+    let tangle = ["sample", "--formula", "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8"];
+    let whole = text(&tangle);
+    assert!(!whole.contains("cuts the surface") && !whole.contains("beyond the box"), "{whole}");
+    let cut = text(&[&tangle[..], &["--box", "2"]].concat());
+    assert!(cut.contains("cuts the surface") && cut.contains("--box fit"), "{cut}");
+    let fixed = text(&[&tangle[..], &["--box", "fixed"]].concat());
+    assert!(fixed.contains("from -2,-2,-2 to 2,2,2 cuts the surface"), "{fixed}");
+    let endless = text(&["sample", "--formula", "z = 0"]);
+    assert!(endless.contains("goes on beyond the box from -4,-4,-4 to 4,4,4"), "{endless}");
+    assert!(fails(3, &["sample", "--formula", "x^2 = -1"]).contains("±10,000"));
+    assert!(fails(2, &["sample", "--formula", "x2 + y2 = 1"]).contains("in all 2 places: x^2 + y^2 = 1"));
+}

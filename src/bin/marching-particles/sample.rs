@@ -106,8 +106,10 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let peak_sampling_mb = peak_mb();
     let count = session.count();
     if count == 0 {
-        let reason = match answer.reach {
-            Some(Reach::Nowhere) => "there is no surface within ±10,000".to_owned(),
+        let reason = match (answer.reach, last.stop_reason) {
+            (Some(Reach::Nowhere), Some(StopReason::NoSurface)) => {
+                "there is no surface within ±10,000".to_owned()
+            }
             _ => last.message.unwrap_or_else(|| "no particle could be placed".to_owned()),
         };
         return Err(Failure::Nothing(reason));
