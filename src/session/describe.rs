@@ -3,7 +3,7 @@
 
 use crate::export::{COLUMNS, Column};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
-use crate::field::gallery::{self, Surface};
+use crate::field::gallery::{self, Group, Surface};
 use crate::field::model::{MODELS, Model};
 use crate::math::Bounds;
 use crate::sampler::{COUNT_ROOM, Setting, Settings};
@@ -77,6 +77,10 @@ pub struct SurfaceEntry {
     pub genus: Option<u32>,
     /// Two sentences about it.
     pub story: &'static str,
+    /// A text to read on.
+    pub source: &'static str,
+    /// Name of its group in the gallery.
+    pub group: &'static str,
 }
 
 /// A row of the report.
@@ -138,7 +142,7 @@ pub fn describe() -> Description {
     Description {
         version: env!("CARGO_PKG_VERSION"),
         default_surface: gallery::SURFACES[0].id,
-        surfaces: gallery::SURFACES.iter().map(surface).collect(),
+        surfaces: surfaces(),
         models: MODELS,
         settings: Settings::table(),
         report: REPORT,
@@ -158,7 +162,12 @@ pub fn describe() -> Description {
     }
 }
 
-fn surface(surface: &Surface) -> SurfaceEntry {
+fn surfaces() -> Vec<SurfaceEntry> {
+    let entries = |group: &'static Group| group.surfaces.iter().map(|surface| entry(surface, group.name));
+    gallery::GROUPS.iter().flat_map(entries).collect()
+}
+
+fn entry(surface: &Surface, group: &'static str) -> SurfaceEntry {
     SurfaceEntry {
         id: surface.id,
         name: surface.name,
@@ -168,6 +177,8 @@ fn surface(surface: &Surface) -> SurfaceEntry {
         degree: surface.degree,
         genus: surface.genus,
         story: surface.story,
+        source: surface.source,
+        group,
     }
 }
 

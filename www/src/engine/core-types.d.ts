@@ -620,6 +620,10 @@ export type SurfaceEntry = {
   genus: number | null,
   /** Two sentences about it. */
   story: string,
+  /** A text to read on. */
+  source: string,
+  /** Name of its group in the gallery. */
+  group: string,
 };
 
 /** The value of a setting. */

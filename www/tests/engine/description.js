@@ -40,6 +40,8 @@ export const description = {
       degree: 2,
       genus: 0,
       story: '',
+      source: '',
+      group: 'Closed',
     },
     {
       id: 'torus',
@@ -50,6 +52,8 @@ export const description = {
       degree: 4,
       genus: 1,
       story: '',
+      source: '',
+      group: 'Closed',
     },
   ],
   models: [{ id: 'bunny', name: 'Bunny', story: '', credit: 'Stanford', points: 200 }],

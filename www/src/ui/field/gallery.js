@@ -1,8 +1,8 @@
 /**
- * The gallery: one picture per surface, as radio buttons. Formulas come first, then models from points and the file
- * opened last.
+ * The gallery: one picture per surface, as radio buttons, in groups of which one is shown. The last group holds the models
+ * from points and the file opened last. A search looks through all groups.
  */
-import { computed, effect } from '@preact/signals-core';
+import { batch, computed, effect, signal } from '@preact/signals-core';
 import { FILE_SURFACE, FILE_TYPES } from '../../engine/types.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
@@ -12,6 +12,8 @@ import { FORMATS, LIMIT, listOf } from './files.js';
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 
 const PICTURE_PX = 160;
+/** Name of the group of models and files. */
+const POINTS = 'Points';
 
 /**
  * @param {Engine} engine
@@ -21,11 +23,16 @@ export function createGallery(engine, description) {
   /** @type {Map<string, HTMLInputElement>} */
   const inputs = new Map();
 
-  /** @param {string} id @param {string} name @param {Node} face @param {() => import('../explain.js').Explanation} help */
-  function createTile(id, name, face, help) {
+  /**
+   * The radio buttons of a group have a name of their own: if all shared one, the chosen one, hidden in another group, would
+   * keep the keyboard out of this group.
+   * @param {string} group @param {string} id @param {string} name @param {Node} face
+   * @param {() => import('../explain.js').Explanation} help
+   */
+  function createTile(group, id, name, face, help) {
     const input = h('input', {
       type: 'radio',
-      name: 'surface',
+      name: `surface-${group}`,
       value: id,
       class: 'visually-hidden',
       'aria-label': name,
@@ -37,13 +44,14 @@ export function createGallery(engine, description) {
     return tile;
   }
 
-  /** @param {{ id: string, name: string, story: string, credit?: string }} entry */
-  function pictured({ id, name, story, credit }) {
+  /** @param {string} group @param {{ id: string, name: string, story: string, credit?: string }} entry */
+  function pictured(group, { id, name, story, credit }) {
     const picture = h('img', {
       alt: '',
       width: PICTURE_PX,
       height: PICTURE_PX,
       decoding: 'async',
+      loading: 'lazy',
       src: `./gallery/${id}.webp`,
     });
     picture.addEventListener(
@@ -51,7 +59,7 @@ export function createGallery(engine, description) {
       () => picture.replaceWith(h('span', { class: 'tile-name', 'aria-hidden': 'true' }, name)),
       { once: true },
     );
-    return createTile(id, name, picture, () => ({ title: name, text: story, ideal: credit }));
+    return createTile(group, id, name, picture, () => ({ title: name, text: story, ideal: credit }));
   }
 
   /** Restores the original formula when the present surface is chosen again. @param {string} id */
@@ -59,13 +67,16 @@ export function createGallery(engine, description) {
     if (engine.state.peek().surface === id && engine.field.peek()?.surface !== id) engine.setSurface(id);
   }
 
-  const models = h(
-    'div',
-    { class: 'tiles', role: 'group', 'aria-label': 'From points' },
-    description.models.map(pictured),
-  );
-  const open = createOpen(engine);
-  models.append(...open);
+  const sections = groupsOf(description).map(({ name, entries }) => ({
+    name,
+    entries,
+    tiles: h(
+      'div',
+      { class: 'tiles', role: 'group', 'aria-label': name },
+      entries.map((entry) => pictured(name, entry)),
+    ),
+  }));
+  const models = sections[sections.length - 1].tiles;
   // The file opened last has its own tile, by which the user can return to it.
   const file = computed(() =>
     engine.field.value?.surface === FILE_SURFACE ? (engine.field.value.model?.name ?? 'File') : null,
@@ -77,7 +88,7 @@ export function createGallery(engine, description) {
     fileName = name;
     inputs.get(FILE_SURFACE)?.closest('label')?.remove();
     const face = h('span', { class: 'tile-name', 'aria-hidden': 'true' }, icon('file'), extensionOf(name));
-    open[0].before(createTile(FILE_SURFACE, name, face, () => ({ title: name, text: 'The file opened last.' })));
+    models.append(createTile(POINTS, FILE_SURFACE, name, face, () => ({ title: name, text: 'The file opened last.' })));
     check();
   });
 
@@ -87,21 +98,116 @@ export function createGallery(engine, description) {
   function check() {
     for (const [id, input] of inputs) input.checked = id === chosen.peek();
   }
+
+  const shown = signal(sections[0].name);
+  const query = signal('');
   effect(() => {
-    void chosen.value;
+    const id = chosen.value;
     check();
+    if (!id) return;
+    const group = sections.find(({ entries }) => entries.some((entry) => entry.id === id));
+    batch(() => {
+      shown.value = group?.name ?? POINTS;
+      query.value = '';
+    });
     // In the compact layout the gallery is a strip that scrolls. The chosen tile is scrolled into view.
-    if (chosen.value)
-      inputs.get(chosen.value)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    inputs.get(id)?.closest('label')?.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   });
   return h(
     'fieldset',
     { class: 'section gallery' },
     h('legend', { class: 'visually-hidden' }, 'Surface'),
-    h('div', { class: 'tiles', role: 'group', 'aria-label': 'Formulas' }, description.surfaces.map(pictured)),
-    h('h2', { class: 'tiles-head' }, 'From points'),
-    models,
+    createGroups(sections, shown, query),
+    h('div', { class: 'gallery-find' }, createSearch(query), ...createOpen(engine)),
+    sections.map(({ tiles }) => tiles),
+    showTiles(sections, shown, query),
   );
+}
+
+/**
+ * Returns the groups of the gallery in their order, the models last.
+ * @param {import('../../engine/types.js').Description} description
+ */
+function groupsOf({ surfaces, models }) {
+  /** @type {Map<string, { id: string, name: string, story: string, formula?: string, credit?: string }[]>} */
+  const groups = new Map();
+  for (const entry of surfaces) groups.set(entry.group, [...(groups.get(entry.group) ?? []), entry]);
+  groups.set(POINTS, models);
+  return [...groups].map(([name, entries]) => ({ name, entries }));
+}
+
+/**
+ * Shows the tiles of one group, or those of all groups that the search finds. Returns the line that says that there is none.
+ * @param {{ name: string, entries: { id: string, name: string, story: string, formula?: string }[], tiles: HTMLElement }[]} sections
+ * @param {import('@preact/signals-core').ReadonlySignal<string>} shown
+ * @param {import('@preact/signals-core').ReadonlySignal<string>} query
+ */
+function showTiles(sections, shown, query) {
+  const none = h('p', { class: 'quiet', role: 'status' });
+  effect(() => {
+    const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
+    let isFound = false;
+    for (const { name, entries, tiles } of sections) {
+      const found = entries.filter((entry) => words.every((word) => textOf(entry).includes(word)));
+      isFound ||= found.length > 0;
+      tiles.hidden = words.length > 0 ? found.length === 0 : name !== shown.value;
+      for (const tile of tiles.children) {
+        const { surface } = /** @type {HTMLElement} */ (tile).dataset;
+        /** @type {HTMLElement} */ (tile).hidden = words.length > 0 && !found.some(({ id }) => id === surface);
+      }
+    }
+    none.textContent = isFound ? '' : 'No surface has these words in its name, formula or story.';
+  });
+  return none;
+}
+
+/** Returns what the search looks through. @param {{ name: string, story: string, formula?: string }} entry */
+const textOf = ({ name, story, formula = '' }) => `${name} ${story} ${formula}`.toLowerCase();
+
+/**
+ * Creates the buttons that choose the group.
+ * @param {{ name: string }[]} sections
+ * @param {import('@preact/signals-core').Signal<string>} shown
+ * @param {import('@preact/signals-core').Signal<string>} query
+ */
+function createGroups(sections, shown, query) {
+  const buttons = sections.map(({ name }) => {
+    const show = () =>
+      batch(() => {
+        shown.value = name;
+        query.value = '';
+      });
+    const button = h('button', { type: 'button', class: 'button small plain', on: { click: show } }, name);
+    effect(() => {
+      button.setAttribute('aria-pressed', String(query.value.trim() === '' && shown.value === name));
+    });
+    return button;
+  });
+  return h('div', { class: 'gallery-groups', role: 'group', 'aria-label': 'Groups of surfaces' }, buttons);
+}
+
+/** Creates the search field. @param {import('@preact/signals-core').Signal<string>} query */
+function createSearch(query) {
+  const input = h('input', {
+    type: 'search',
+    class: 'box search',
+    placeholder: 'Find a surface',
+    'aria-label': 'Find a surface',
+    on: {
+      input: () => {
+        query.value = input.value;
+      },
+      keydown: (/** @type {KeyboardEvent} */ event) => {
+        if (event.key !== 'Escape' || input.value === '') return;
+        query.value = '';
+        event.stopPropagation();
+      },
+    },
+  });
+  effect(() => {
+    if (input.value !== query.value) input.value = query.value;
+  });
+  return input;
 }
 
 /** @param {string} name */

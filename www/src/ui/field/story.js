@@ -33,5 +33,5 @@ export function storyOf(description, id, info) {
   ]
     .filter(Boolean)
     .join(' · ');
-  return { name: entry.name, facts, text: entry.story, credit: '' };
+  return { name: entry.name, facts, text: entry.story, credit: entry.source };
 }

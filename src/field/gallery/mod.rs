@@ -1,0 +1,149 @@
+//! Named surfaces, each with a formula, parameters, a box and known properties.
+
+mod closed;
+mod many;
+mod open;
+mod periodic;
+mod singular;
+
+use super::formula::{FormulaField, Parameter};
+use crate::math::Bounds;
+
+/// A parameter of a gallery surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceParameter {
+    /// Name in the formula.
+    pub name: &'static str,
+    /// Label for the user.
+    pub label: &'static str,
+    /// Default value.
+    pub value: f64,
+    /// Smallest value of the slider.
+    pub min: f64,
+    /// Largest value of the slider.
+    pub max: f64,
+    /// Step of the slider.
+    pub step: f64,
+}
+
+/// A named surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Identifier: lower case, words joined by hyphens.
+    pub id: &'static str,
+    /// Name for the user.
+    pub name: &'static str,
+    /// Formula of f, or an equation; f < 0 inside.
+    pub formula: &'static str,
+    /// Parameters of the formula, in the order of their sliders.
+    pub parameters: &'static [SurfaceParameter],
+    /// Box that is sampled.
+    pub bounds: Bounds,
+    /// Algebraic degree; `None` for a transcendental surface.
+    pub degree: Option<u32>,
+    /// Whether the surface is closed, so that it lies in the box for all values of the parameters.
+    pub closed: bool,
+    /// Genus with the default parameters; `None` unless the surface is closed, connected and free of
+    /// self-intersections.
+    pub genus: Option<u32>,
+    /// Whether the surface with the default parameters has no singular point.
+    pub smooth: bool,
+    /// Whether thin parts or long blends keep the search for components from a proof, and a coarse relaxation from its last
+    /// steps.
+    pub intricate: bool,
+    /// Two sentences about the surface.
+    pub story: &'static str,
+    /// Where it comes from: a text to read on.
+    pub source: &'static str,
+}
+
+/// Surfaces that teach the same thing.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// Name for the user.
+    pub name: &'static str,
+    /// Its surfaces, the simplest first.
+    pub surfaces: &'static [Surface],
+}
+
+impl Surface {
+    /// The parameters in the form that [`FormulaField::parse`] takes.
+    #[must_use]
+    pub fn declared(&self) -> Vec<Parameter> {
+        self.parameters
+            .iter()
+            .map(|p| Parameter {
+                name: p.name.into(),
+                label: p.label.into(),
+                value: p.value,
+                min: p.min,
+                max: p.max,
+                step: p.step,
+            })
+            .collect()
+    }
+
+    /// Parses the formula, with the default values of the parameters.
+    ///
+    /// # Panics
+    ///
+    /// Never: a test parses every formula of the gallery.
+    #[must_use]
+    pub fn field(&self) -> FormulaField {
+        FormulaField::parse(self.formula, &self.declared())
+            .unwrap_or_else(|error| panic!("gallery surface `{}`: {error}", self.id))
+    }
+}
+
+/// Surface with the identifier `id`.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static Surface> {
+    SURFACES.iter().find(|surface| surface.id == id)
+}
+
+const fn parameter(
+    name: &'static str,
+    label: &'static str,
+    value: f64,
+    [min, max, step]: [f64; 3],
+) -> SurfaceParameter {
+    SurfaceParameter { name, label, value, min, max, step }
+}
+
+/// The gallery. Its first surface is the default.
+pub static GROUPS: &[Group] = &[
+    Group { name: "Closed", surfaces: closed::SURFACES },
+    Group { name: "Parts", surfaces: many::SURFACES },
+    Group { name: "Singular", surfaces: singular::SURFACES },
+    Group { name: "Periodic", surfaces: periodic::SURFACES },
+    Group { name: "Open", surfaces: open::SURFACES },
+];
+
+/// All surfaces of the gallery, group by group.
+pub static SURFACES: &[Surface] = &all::<{ count() }>();
+
+/// Number of surfaces in all groups.
+const fn count() -> usize {
+    let (mut count, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        count += GROUPS[group].surfaces.len();
+        group += 1;
+    }
+    count
+}
+
+/// Joins the groups, `N` surfaces in all.
+const fn all<const N: usize>() -> [Surface; N] {
+    let mut joined = [closed::SURFACES[0]; N];
+    let (mut next, mut group) = (0, 0);
+    while group < GROUPS.len() {
+        let mut k = 0;
+        while k < GROUPS[group].surfaces.len() {
+            joined[next] = GROUPS[group].surfaces[k];
+            next += 1;
+            k += 1;
+        }
+        group += 1;
+    }
+    joined
+}
