@@ -145,6 +145,7 @@ for (const [width, height] of /** @type {const} */ ([
     const [model] = await page.evaluate(
       () => /** @type {any} */ (window).marchingParticles.engine.description.value.models,
     );
+    await page.getByRole('button', { name: 'Points', exact: true }).click();
     await page.locator(`.tile[data-surface="${model.id}"]`).click();
     await expect(page.locator('.story')).toContainText(model.name);
     await settled(page);
@@ -171,7 +172,7 @@ for (const [width, height] of /** @type {const} */ ([
   });
 }
 
-test('a dropped file becomes the surface, keeps a tile of its own, and is there again in one press', async ({
+test('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async ({
   page,
 }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
@@ -181,8 +182,10 @@ test('a dropped file becomes the surface, keeps a tile of its own, and is there 
   const { quality } = await report(page);
   expect(quality.area / (4 * Math.PI)).toBeCloseTo(1, 1);
   await expect(page.locator('.facts')).toContainText('given');
+  await page.getByRole('button', { name: 'Closed', exact: true }).click();
   await page.locator('.tile[data-surface="torus"]').click();
   await settled(page);
+  await page.getByRole('button', { name: 'Points', exact: true }).click();
   await page.locator('.tile[data-surface="file"]').click();
   await settled(page);
   await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
