@@ -9,8 +9,8 @@ pub(super) const SURFACES: &[Surface] = &[
         name: "Plane",
         formula: "z = a x + b y",
         parameters: &[
-            parameter("a", "Slope along x", 0.5, [-0.6, 0.6, 0.01]),
-            parameter("b", "Slope along y", 0.2, [-0.6, 0.6, 0.01]),
+            parameter("a", "Slope along x", -0.4, [-0.6, 0.6, 0.01]),
+            parameter("b", "Slope along y", -0.3, [-0.6, 0.6, 0.01]),
         ],
         bounds: Bounds::symmetric([1.0, 1.0, 0.8]),
         degree: Some(1),
