@@ -191,6 +191,22 @@ fn a_refinement_of_two_components_can_be_cut_and_cancelled_anywhere() {
         let digest = sampled(&mut field, &bounds, &settings, budget).particles().digest();
         assert_eq!(digest, expected, "in steps of {budget}");
     }
+    // The columns change once a level, never in between.
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &bounds, &settings).expect("valid settings");
+    let mut counts = Vec::new();
+    loop {
+        let progress = sampler.step(&mut field, 1);
+        if progress.phase == Phase::Refinement {
+            counts.push(progress.particles);
+        }
+        if progress.stop_reason.is_some() {
+            break;
+        }
+    }
+    counts.dedup();
+    let levels = sampler.counts().refined_levels.expect("a refined run");
+    assert!(counts.len() as u32 <= levels + 1, "{counts:?} with {levels} levels");
     for steps in [60, 80, 100, 150, 200, 300] {
         let mut sampler = Sampler::new();
         sampler.start(&mut field, &bounds, &settings).expect("valid settings");

@@ -46,7 +46,7 @@ pub(super) const SURFACES: &[Surface] = &[
         formula: "min(hypot(hypot(x + R/2, y) - R, z), hypot(hypot(x - R/2, z) - R, y)) = r",
         parameters: &[
             parameter("R", "Radius of the rings", 0.75, [0.6, 0.85, 0.01]),
-            parameter("r", "Radius of the tubes", 0.25, [0.08, 0.28, 0.01]),
+            parameter("r", "Radius of the tubes", 0.26, [0.08, 0.28, 0.01]),
         ],
         bounds: Bounds::symmetric([1.65, 1.2, 1.2]),
         degree: None,

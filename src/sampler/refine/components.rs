@@ -227,8 +227,17 @@ pub(crate) struct Components {
     components: Vec<Component>,
     /// The level under way, by how many come after it.
     level: u32,
-    /// Component and particle up to which the finished level has been handed on, while that is being done.
-    handed: Option<(usize, usize)>,
+    /// The finished level of all components, while it is put together.
+    joint: Option<Joint>,
+}
+
+/// The particles of all components in one set of columns, as far as they are there.
+#[derive(Clone, Debug, Default)]
+struct Joint {
+    particles: Particles,
+    /// The component under way, and its first particle that is not there yet.
+    component: usize,
+    next: usize,
 }
 
 impl Components {
@@ -242,7 +251,7 @@ impl Components {
             }
         }
         let level = components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
-        Self { components, level, handed: None }
+        Self { components, level, joint: None }
     }
 
     /// Evaluations of the field so far.
@@ -252,7 +261,7 @@ impl Components {
 
     /// Whether there is nothing left to do.
     pub(crate) fn is_done(&self) -> bool {
-        self.handed.is_none() && self.components.iter().all(|component| component.refinement.is_done())
+        self.joint.is_none() && self.components.iter().all(|component| component.refinement.is_done())
     }
 
     /// Fewest and most times that a front is refined.
@@ -292,9 +301,13 @@ impl Components {
         }
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
-            if let Some(from) = self.handed {
-                self.handed = self.hand_on(particles, from);
-                has_changed = true;
+            if let Some(joint) = &mut self.joint {
+                if joint.step(&self.components) {
+                    // At once, so that a run that is cancelled has a whole level.
+                    mem::swap(particles, &mut joint.particles);
+                    self.joint = None;
+                    has_changed = true;
+                }
                 done += SLICE as u32 / 16;
                 continue;
             }
@@ -304,35 +317,41 @@ impl Components {
             let Some(component) = next.max_by_key(pending) else { break };
             if component.refinement.pending() < self.level {
                 self.level -= 1;
-                self.handed = Some((0, 0));
+                self.joint = Some(Joint::default());
                 continue;
             }
             let (units, _) = component.refinement.step(field, sizing, &mut component.particles, 1)?;
             done += units;
             if self.components.iter().all(|component| component.refinement.is_done()) {
-                self.handed = Some((0, 0));
+                self.joint = Some(Joint::default());
             }
         }
         Ok((done, has_changed))
     }
+}
 
-    /// Puts a slice of the finished level into `particles`. Returns where to go on.
-    fn hand_on(&self, particles: &mut Particles, (at, from): (usize, usize)) -> Option<(usize, usize)> {
-        if (at, from) == (0, 0) {
-            particles.clear();
-            particles.reserve(self.components.iter().map(|component| component.particles.len()).sum());
+impl Joint {
+    /// Goes on for a slice. Returns whether all particles are there.
+    fn step(&mut self, components: &[Component]) -> bool {
+        if self.particles.is_empty() {
+            self.particles.reserve(components.iter().map(|component| component.particles.len()).sum());
         }
-        let own = &self.components[at].particles;
-        let first = (particles.len() - from) as u32;
-        let end = own.len().min(from + SLICE);
-        for i in from..end {
+        let Some(Component { particles: own, .. }) = components.get(self.component) else { return true };
+        let first = (self.particles.len() - self.next) as u32;
+        let end = own.len().min(self.next + SLICE);
+        for i in self.next..end {
             let parent = match own.parent[i] {
                 Particles::NO_PARENT => Particles::NO_PARENT,
                 parent => first + parent,
             };
-            particles.push(own.position[i], own.normal[i], own.radius[i], parent, own.level[i], own.slots[i]);
+            let (position, normal) = (own.position[i], own.normal[i]);
+            self.particles.push(position, normal, own.radius[i], parent, own.level[i], own.slots[i]);
         }
-        let is_last = at + 1 == self.components.len();
-        if end < own.len() { Some((at, end)) } else { (!is_last).then_some((at + 1, 0)) }
+        self.next = end;
+        if end == own.len() {
+            self.component += 1;
+            self.next = 0;
+        }
+        self.component == components.len()
     }
 }
