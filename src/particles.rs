@@ -2,6 +2,7 @@
 //! are in the order in which the front placed them, so generation levels are contiguous; particles that fill gaps come
 //! last.
 
+use crate::math::Bounds;
 use glam::Vec3;
 
 /// Particle columns. Index `i` of every column belongs to particle `i`.
@@ -141,6 +142,28 @@ impl Particles {
         self.parent.truncate(len);
         self.level.truncate(len);
         self.slots.truncate(len);
+    }
+
+    /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
+    pub(crate) fn keep_within(&mut self, bounds: &Bounds) {
+        let mut place = vec![Self::NO_PARENT; self.len()];
+        let mut kept = 0;
+        for i in 0..self.len() {
+            if !bounds.contains(self.position[i]) {
+                continue;
+            }
+            // Parents come before their children, so its new place and level are known.
+            let parent = place.get(self.parent[i] as usize).copied().unwrap_or(Self::NO_PARENT);
+            place[i] = kept as u32;
+            self.position[kept] = self.position[i];
+            self.normal[kept] = self.normal[i];
+            self.radius[kept] = self.radius[i];
+            self.slots[kept] = self.slots[i];
+            self.parent[kept] = parent;
+            self.level[kept] = if parent == Self::NO_PARENT { 0 } else { self.level[parent as usize] + 1 };
+            kept += 1;
+        }
+        self.truncate(kept);
     }
 
     /// Removes all particles and keeps the memory.

@@ -1,6 +1,6 @@
 //! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
 
-use crate::math::SQRT_3;
+use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine;
@@ -145,6 +145,11 @@ impl Attempt {
     pub(super) fn front_radius(&self) -> f64 {
         let coarse = |levels: u32| refine::FRONT_RADIUS * f64::from(1_u32 << levels);
         self.radius * self.levels.map_or(1.0, coarse)
+    }
+
+    /// The box in which the front grows, when particles are wanted in `bounds`.
+    pub(super) fn front_bounds(&self, bounds: &Bounds) -> Bounds {
+        if self.levels.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
     }
 
     /// Takes the radius from the radius field, if there is one.

@@ -8,7 +8,7 @@ use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
-use crate::sampler::refine::{self, Components, Next, Refusal, Target};
+use crate::sampler::refine::{self, Components, Next, Refusal, Surface, Target};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
 use glam::Vec3;
@@ -55,6 +55,7 @@ impl Sampler {
                 | PhaseState::Filling => {
                     self.front.active_mut().stop(&mut self.particles);
                     self.particles = self.fronts.end().unwrap_or(core::mem::take(&mut self.particles));
+                    self.drop_beyond();
                     self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
                 }
@@ -62,7 +63,7 @@ impl Sampler {
                     self.moved |= self.relaxation.abandon(&mut self.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
-                // The columns hold the last level that was finished.
+                // The columns hold the last level that was finished, or the coarse front.
                 PhaseState::Refinement(_) => {
                     self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
@@ -97,7 +98,7 @@ impl Sampler {
         }
         self.front.reset(&FrontSetup {
             settings: &settings,
-            bounds: &self.bounds,
+            bounds: &self.attempt.front_bounds(&self.bounds),
             survey: &self.survey,
             radius: self.attempt.front_radius() as f32,
             radii: self.attempt.radii(),
@@ -284,7 +285,13 @@ impl Sampler {
         let is_smooth = self.seeds.singular().is_empty() && !self.front.is_capped();
         let sizing = self.attempt.graded.as_ref();
         let next = if is_smooth {
-            self.fronts.take_in(field, sizing, &mut self.particles, &self.bounds, target)
+            let witnesses = self.seeds.points().iter().map(|seed| seed.position);
+            let surface = Surface {
+                points: self.survey.position.iter().copied().chain(witnesses).collect(),
+                bounds: self.bounds,
+                sizing,
+            };
+            self.fronts.take_in(field, &surface, &mut self.particles, target)
         } else {
             Err(Refusal::Unsuitable)
         };
@@ -299,6 +306,7 @@ impl Sampler {
                 self.neighbours.clear();
                 // The last front was one of several.
                 self.moved |= self.fronts.are_several;
+                self.drop_beyond();
                 PhaseState::Refinement(Box::new(components))
             }
             Err(refusal) => self.refuse(refusal),
@@ -347,6 +355,15 @@ impl Sampler {
                 self.attempt.end_refinement();
                 PhaseState::Marking(StopReason::Complete)
             }
+        }
+    }
+
+    /// Drops the particles of a coarse front that has grown beyond the box.
+    fn drop_beyond(&mut self) {
+        if self.attempt.levels.is_some() {
+            let count = self.particles.len();
+            self.particles.keep_within(&self.bounds);
+            self.moved |= self.particles.len() < count;
         }
     }
 

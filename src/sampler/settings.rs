@@ -248,7 +248,7 @@ settings! {
     }
     method: Method = Method::Front => {
         label: "Method",
-        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on closed smooth surfaces.",
+        help: "A front and relaxation, as in the paper, or a coarse front that is brought into order and refined: more even, on smooth surfaces.",
         group: Group::Advanced,
         choices: Method::CHOICES,
     }

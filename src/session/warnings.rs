@@ -32,7 +32,9 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
 pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> {
     let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
-    let FateCounts { not_converged, undefined, .. } = counts.fates;
+    // Those of a coarse front are no trouble once its mesh has been checked and refined.
+    let FateCounts { not_converged, undefined, .. } =
+        if counts.refined_levels.is_some() { FateCounts::default() } else { counts.fates };
     let mut troubles = Vec::new();
     if not_converged > 0 {
         troubles.push(format!("{} found no surface at the right distance", children(not_converged)));

@@ -100,9 +100,9 @@ fn any_cut_into_steps_gives_the_same_graded_particles() {
 #[test]
 fn where_it_cannot_be_had_the_adaptive_front_stands() {
     for settings in [graded(0), counted(10_000, 0)] {
-        let (refused, _) = run("gyroid", &settings);
-        assert_eq!(refused.counts().refusal, Some(Refusal::Border));
-        let (front, _) = run("gyroid", &Settings { method: Method::Front, ..settings });
+        let (refused, _) = run("heart", &settings);
+        assert_eq!(refused.counts().refusal, Some(Refusal::Unsuitable));
+        let (front, _) = run("heart", &Settings { method: Method::Front, ..settings });
         assert_eq!(refused.particles().digest(), front.particles().digest(), "{:?}", settings.size_mode);
     }
 }

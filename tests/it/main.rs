@@ -3,6 +3,7 @@
 
 mod adaptive;
 mod baseline;
+mod borders;
 mod box_fit;
 #[cfg(feature = "cli")]
 mod cli;

@@ -512,7 +512,7 @@ fn a_surface_that_was_not_refined_is_warned_of() {
         while session.step(65_536).stop_reason.is_none() {}
         session.report().warnings
     };
-    let of_gyroid = warnings("gyroid");
-    assert!(of_gyroid.iter().any(|warning| warning.contains("the box cuts the surface")), "{of_gyroid:?}");
+    let of_heart = warnings("heart");
+    assert!(of_heart.iter().any(|warning| warning.contains("is not refined")), "{of_heart:?}");
     assert_eq!(warnings("ellipsoid"), [""; 0]);
 }

@@ -1,6 +1,9 @@
 //! The coarse front: how coarse it may be, and whether it is good enough.
 
-use super::layer::Layer;
+use super::border;
+use super::frame::Frame;
+use super::layer::{Ground, Layer};
+use super::refusal::Refusal;
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::Bounds;
@@ -8,7 +11,6 @@ use crate::mesh::build::{Options, Triangulation, triangulate};
 use crate::mesh::half_edge::HalfEdges;
 use crate::particles::Particles;
 use glam::Vec3;
-use serde::Serialize;
 
 /// Match tolerance of a coarse front. It places fewer particles where grains meet than the paper's front does, whose relaxation
 /// cannot remove one.
@@ -30,46 +32,10 @@ const MAX_BEND: f64 = 0.9;
 const MAX_ROUNDS: u32 = 2;
 const LEAST_AGREED: f64 = 0.9;
 const MAX_LEFT_OUT: f64 = 0.002;
-/// At most this share of edges has normals at its ends whose dot product is below [`SHARP`], 60° apart.
-const MAX_SHARP: f64 = 0.02;
+/// At most this share of edges has normals at its ends whose dot product is below [`SHARP`], 60° apart. The gyroid, which bends in two
+/// directions everywhere, has 4 % where [`MAX_BEND`] is met just so, and is refined well.
+const MAX_SHARP: f64 = 0.06;
 const SHARP: f32 = 0.5;
-
-/// Why the particles of a run were not refined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
-#[serde(rename_all = "snake_case")]
-pub enum Refusal {
-    /// What is asked for, or the surface, is of another kind.
-    #[error(
-        "The front stands, and is not refined: that takes at least 720 particles and room for them below the limit, a \
-         spacing of less than 0.45 of the smallest radius of curvature, and a gradient that vanishes nowhere on the surface."
-    )]
-    Unsuitable,
-    /// The box cuts the surface.
-    #[error("The front stands, and is not refined: the box cuts the surface.")]
-    Border,
-    /// A component has too few particles.
-    #[error("The front stands, and is not refined: a part of the surface has fewer than 180 particles.")]
-    Small,
-    /// The particles could not be joined to a closed surface beyond doubt.
-    #[error(
-        "The front stands, and is not refined: its particles could not be joined to a closed surface beyond doubt. With more \
-         of them they may be."
-    )]
-    Doubtful,
-    /// The surface bends too much between neighbours.
-    #[error("The front stands, and is not refined: the surface bends too much between neighbours.")]
-    Sharp,
-    /// A refinement has left the surface, or has led onto another sheet.
-    #[error("The front stands, and is not refined: halving its edges led off the surface.")]
-    Folded,
-}
-
-impl Refusal {
-    /// Whether a finer front may do.
-    pub(crate) fn is_coarse(self) -> bool {
-        !matches!(self, Self::Unsuitable | Self::Border)
-    }
-}
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
 pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<f64> {
@@ -92,46 +58,78 @@ pub(crate) fn levels(bend: f64, count: f64, is_graded: bool) -> Option<u32> {
     Some(if is_graded { (levels - 1).max(1) } else { levels })
 }
 
-/// The particles of a front joined to a closed surface, if that can be had beyond doubt. Particles in no triangle are
+/// The particles of a front joined to a surface, if that can be had beyond doubt, and clipped by the box. Particles in no triangle are
 /// left out. The front is to be refined so many times.
-pub(super) fn join(particles: &Particles, bounds: &Bounds, levels: u32) -> Result<Layer, Refusal> {
-    let options = Options { bounds: Some(bounds), ..Options::default() };
+pub(super) fn join(
+    ground: &mut Ground,
+    particles: &Particles,
+    bounds: &Bounds,
+    levels: u32,
+) -> Result<Layer, Refusal> {
+    let radius = particles.radius.first().copied().unwrap_or(0.0);
+    let spacing = 2.0 * radius;
+    let grown = border::grown(bounds, f64::from(radius));
+    let options = Options { bounds: Some(&grown), ..Options::default() };
     let joined = triangulate(&particles.position, &particles.normal, &options);
-    judge_triangles(&joined, particles, levels)?;
+    judge_triangles(&joined, particles, bounds)?;
     let mesh =
         HalfEdges::from_triangles(particles.len(), &joined.triangles).map_err(|_| Refusal::Doubtful)?;
-    let layer = Layer {
+    judge_size(&mesh, particles, bounds, levels)?;
+    let mut layer = Layer {
         mesh,
         position: particles.position.clone(),
         normal: particles.normal.clone(),
         slots: particles.slots.clone(),
         size: Vec::new(),
+        frame: Frame::new(bounds, &particles.position, spacing),
     };
+    border::clip(&mut layer, ground, spacing)?;
     judge_bend(&layer)?;
     Ok(layer)
 }
 
-fn judge_triangles(joined: &Triangulation, particles: &Particles, levels: u32) -> Result<(), Refusal> {
+/// Judges the triangles in the box: beyond it they are cut away.
+fn judge_triangles(joined: &Triangulation, particles: &Particles, bounds: &Bounds) -> Result<(), Refusal> {
     let triangles = joined.triangles.len() as f64;
-    let left_out = joined.left_out.len() as f64;
+    let is_inside = |&v: &u32| bounds.contains(particles.position[v as usize]);
+    let left_out = joined.left_out.iter().filter(|v| is_inside(v));
     // The only particle of a component, say.
     let is_seed = |&i: &u32| particles.parent[i as usize] == Particles::NO_PARENT;
     if joined.rounds > MAX_ROUNDS
         || (joined.agreed as f64) < LEAST_AGREED * triangles
-        || left_out > MAX_LEFT_OUT * particles.len() as f64
-        || joined.left_out.iter().any(is_seed)
-        || !joined.unfilled.is_empty()
+        || left_out.clone().count() as f64 > MAX_LEFT_OUT * particles.len() as f64
+        || left_out.copied().any(|v| is_seed(&v))
+        || joined.unfilled.iter().any(|hole| hole.iter().any(is_inside))
         || joined.triangles.is_empty()
     {
         return Err(Refusal::Doubtful);
     }
-    if joined.topology.components.iter().any(|component| component.border_edges > 0) {
-        return Err(Refusal::Border);
-    }
+    Ok(())
+}
+
+/// Judges the number of particles of each component that reaches into the box.
+fn judge_size(mesh: &HalfEdges, particles: &Particles, bounds: &Bounds, levels: u32) -> Result<(), Refusal> {
     // At full resolution there are no more to be had.
     let least = if levels > 0 { LEAST_PARTICLES } else { 0 };
-    if joined.topology.components.iter().any(|component| component.vertices < least) {
-        return Err(Refusal::Small);
+    let mut is_met = vec![false; particles.len()];
+    for root in 0..particles.len() as u32 {
+        if is_met[root as usize] || !mesh.has_vertex(root) {
+            continue;
+        }
+        is_met[root as usize] = true;
+        let (mut open, mut count, mut is_inside) = (vec![root], 0, false);
+        while let Some(v) = open.pop() {
+            count += 1;
+            is_inside |= bounds.contains(particles.position[v as usize]);
+            for other in mesh.neighbours(v) {
+                if !core::mem::replace(&mut is_met[other as usize], true) {
+                    open.push(other);
+                }
+            }
+        }
+        if is_inside && count < least {
+            return Err(Refusal::Small);
+        }
     }
     Ok(())
 }

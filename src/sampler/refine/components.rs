@@ -4,8 +4,9 @@
 //! For each component that may be coarser another front grows from one of its particles. The components are then refined level by
 //! level, the coarsest first.
 
-use super::coarse::{Refusal, largest_curvatures, levels};
-use super::{Count, Refinement, Target};
+use super::coarse::{largest_curvatures, levels};
+use super::refusal::Refusal;
+use super::{Count, Refinement, Target, border};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
 use crate::math::Bounds;
@@ -40,6 +41,16 @@ struct Candidate {
     levels: u32,
     /// A point of the component, and the unit normal there.
     seed: (Vec3, Vec3),
+}
+
+/// What is known of the surface before it is refined.
+pub(crate) struct Surface<'a> {
+    /// The box that is sampled. Coarse fronts grow beyond it.
+    pub(crate) bounds: Bounds,
+    /// Points spread over the surface in the box, by which a part of it is missed.
+    pub(crate) points: Vec<Vec3>,
+    /// The sizes that are wanted, where they differ.
+    pub(crate) sizing: Option<&'a Sizing>,
 }
 
 /// The fronts from which a refinement begins, one after the other.
@@ -84,14 +95,13 @@ impl Fronts {
     pub(crate) fn take_in(
         &mut self,
         field: &mut dyn Field,
-        sizing: Option<&Sizing>,
+        surface: &Surface,
         particles: &mut Particles,
-        bounds: &Bounds,
         target: Target,
     ) -> Result<Next, Refusal> {
         match self.candidates.pop() {
-            None => self.take_first(field, sizing, particles, bounds, target)?,
-            Some(candidate) => self.take_coarser(particles, bounds, target, candidate),
+            None => self.take_first(field, surface, particles, target)?,
+            Some(candidate) => self.take_coarser(field, surface, particles, target, candidate),
         }
         if let Some(candidate) = self.candidates.last() {
             return Ok(Next::Front(candidate.levels));
@@ -109,18 +119,21 @@ impl Fronts {
     fn take_first(
         &mut self,
         field: &mut dyn Field,
-        sizing: Option<&Sizing>,
+        &Surface { ref bounds, ref points, sizing }: &Surface,
         particles: &Particles,
-        bounds: &Bounds,
         target: Target,
     ) -> Result<(), Refusal> {
-        let parts = split(particles);
+        let mut parts = split(particles);
+        // Beyond the box there may be others.
+        parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
         if target.levels == 0 && !self.are_several {
             return Err(Refusal::Unsuitable);
         }
         for part in &parts {
-            let refinement = Refinement::new(part, bounds, target)?;
+            let refinement = Refinement::new(field, part, bounds, target)?;
+            let mut part = part.clone();
+            part.keep_within(bounds);
             if self.are_several {
                 let largest = largest_curvatures(field, &part.position).into_iter().fold(0.0, f64::max);
                 let bend = largest * 2.0 * f64::from(target.radius);
@@ -137,9 +150,15 @@ impl Fronts {
             let area = refinement.area();
             let weight = area * sizing.map_or(1.0, |sizing| density(field, sizing, &part.position));
             // A lone component hands its levels on by itself.
-            let particles = if self.are_several { part.clone() } else { Particles::default() };
+            let particles = if self.are_several { part } else { Particles::default() };
             self.components.push(Component { refinement, area, weight, particles });
         }
+        let radius = particles.radius.first().copied().unwrap_or(0.0);
+        border::judge_cover(
+            self.components.iter().map(|known| &known.refinement.layer),
+            points,
+            2.0 * radius,
+        )?;
         self.candidates.reverse();
         if !self.candidates.is_empty() {
             self.first = particles.clone();
@@ -148,17 +167,25 @@ impl Fronts {
     }
 
     /// Takes a coarser front of a component, or tries one that is less so.
-    fn take_coarser(&mut self, particles: &Particles, bounds: &Bounds, target: Target, tried: Candidate) {
+    fn take_coarser(
+        &mut self,
+        field: &mut dyn Field,
+        surface: &Surface,
+        particles: &Particles,
+        target: Target,
+        tried: Candidate,
+    ) {
         let component = &mut self.components[tried.component];
         let known = &component.refinement;
         let is_same = |refinement: &Refinement| {
             refinement.euler == known.euler && AREA_RATIO.contains(&(refinement.area() / component.area))
         };
-        if let Ok(refinement) = Refinement::new(particles, bounds, target)
+        if let Ok(refinement) = Refinement::new(field, particles, &surface.bounds, target)
             && is_same(&refinement)
         {
             component.refinement = refinement;
             component.particles = particles.clone();
+            component.particles.keep_within(&surface.bounds);
         } else if tried.levels > known.target.levels + 1 {
             self.candidates.push(Candidate { levels: tried.levels - 1, ..tried });
         }

@@ -1,5 +1,6 @@
 //! The particles of one level and the surface between them: sweeps, flips and the way back onto the surface.
 
+use super::frame::{Frame, Planes};
 use crate::differential::Curvature;
 use crate::field::Field;
 use crate::mesh::half_edge::{HalfEdges, NONE, previous};
@@ -55,6 +56,8 @@ pub(super) struct Block {
     gradient: Vec<Vec3>,
     /// Of some particles, from which their sizes follow.
     pub(super) curvature: Vec<Curvature>,
+    /// Those that could not be brought back.
+    pub(super) refused: Vec<u32>,
     /// Evaluations of the field so far.
     pub(super) evaluations: u64,
 }
@@ -83,6 +86,8 @@ pub(super) struct Layer {
     pub(super) slots: Vec<Slots>,
     /// Wanted spacing at each particle, in units of that of the springs. Empty where it is the same everywhere.
     pub(super) size: Vec<f32>,
+    /// The box, and the faces of it on which the particles lie.
+    pub(super) frame: Frame,
 }
 
 impl Layer {
@@ -94,6 +99,7 @@ impl Layer {
             normal: Vec::with_capacity(count),
             slots: Vec::with_capacity(count),
             size: Vec::new(),
+            frame: Frame::default(),
         }
     }
 
@@ -136,7 +142,7 @@ impl Layer {
                 force += offset * (rest * layer.size_between(v, other) / offset.length() - 1.0);
                 degree += 1.0;
             }
-            force * (springs.omega / (degree * stiffness))
+            force * (springs.omega / (degree * stiffness)) * layer.pace(v)
         });
     }
 
@@ -159,7 +165,13 @@ impl Layer {
         springs: Springs,
         particles: impl Iterator<Item = u32>,
     ) {
-        self.shift(ground, springs.spacing, particles, |layer, v| layer.way_to_centre(v) * springs.omega);
+        self.shift(ground, springs.spacing, particles, |layer, v| {
+            if layer.mesh.is_border(v) {
+                layer.way_along_border(v)
+            } else {
+                layer.way_to_centre(v) * springs.omega
+            }
+        });
     }
 
     /// From `v` to the centre of its Voronoi cell, whose corners are the circumcentres of the faces around it.
@@ -205,7 +217,12 @@ impl Layer {
             }
             let (p, n) = (self.position[v as usize], self.normal[v as usize]);
             let mut step = step(self, v);
-            step -= n * step.dot(n);
+            let planes = self.frame.planes(v);
+            step = if planes == Planes::INNER {
+                step - n * step.dot(n)
+            } else {
+                self.frame.along(planes, n, step)
+            };
             let length = step.length();
             let farthest = MAX_MOVE * spacing * self.size_of(v);
             if length > farthest {
@@ -220,24 +237,19 @@ impl Layer {
     }
 
     /// Brings the particles back onto the surface that have just been put near it.
-    pub(super) fn land(
-        &mut self,
-        ground: &mut Ground,
-        spacing: f32,
-        particles: impl Iterator<Item = u32>,
-    ) -> usize {
+    pub(super) fn land(&mut self, ground: &mut Ground, spacing: f32, particles: impl Iterator<Item = u32>) {
         ground.block.clear();
         for v in particles.filter(|&v| self.mesh.has_vertex(v)) {
             let p = self.position[v as usize];
             ground.block.add(v, p, p);
         }
-        self.settle(ground, spacing)
+        self.settle(ground, spacing);
     }
 
-    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient. Returns how
-    /// many could not be: they go back to where they were.
-    fn settle(&mut self, ground: &mut Ground, spacing: f32) -> usize {
-        let Block { which, before, points, value, gradient, evaluations, .. } = &mut *ground.block;
+    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the faces of
+    /// the box on which they lie. Those that could not be go back to where they were.
+    fn settle(&mut self, ground: &mut Ground, spacing: f32) {
+        let Block { which, before, points, value, gradient, refused, evaluations, .. } = &mut *ground.block;
         let n = points.len();
         if value.len() < n {
             value.resize(n, 0.0);
@@ -245,23 +257,30 @@ impl Layer {
         }
         *evaluations += n as u64;
         ground.field.gradients(points, &mut value[..n], &mut gradient[..n]);
-        let mut refused = 0;
+        refused.clear();
         for k in 0..n {
             let v = which[k] as usize;
             let inverse_slope = 1.0 / gradient[k].length();
             let normal = gradient[k] * inverse_slope;
             let correction = value[k] * inverse_slope;
             let longest = MAX_CORRECTION * spacing * self.size_of(which[k]);
+            let landing = if self.frame.is_near() {
+                let planes = self.frame.planes(which[k]);
+                self.frame.landing(planes, points[k], value[k], gradient[k], longest)
+            } else {
+                (correction.abs() <= longest).then(|| points[k] - normal * correction)
+            };
             // Written so that NaN fails.
-            if correction.abs() <= longest && normal.dot(self.normal[v]) >= MIN_AGREEMENT {
-                self.position[v] = points[k] - normal * correction;
+            if let Some(position) = landing
+                && normal.dot(self.normal[v]) >= MIN_AGREEMENT
+            {
+                self.position[v] = position;
                 self.normal[v] = normal;
             } else {
                 self.position[v] = before[k];
-                refused += 1;
+                refused.push(which[k]);
             }
         }
-        refused
     }
 
     /// Whether the two angles under which the edge of `h` is seen add up to more than π, so that the other diagonal of its
@@ -284,6 +303,10 @@ impl Layer {
         let slack = FLIP_SLACK * (sin_c + sin_d) * (ca.length_squared() + da.length_squared());
         // The sine of the sum, times the lengths.
         if cos_c * sin_d + sin_c * cos_d >= -slack {
+            return false;
+        }
+        let [v, w, x, y] = [h, t, previous(h), previous(t)].map(|h| self.mesh.origin(h));
+        if self.frame.is_near() && (self.is_along_border([v, x, y]) || self.is_along_border([w, x, y])) {
             return false;
         }
         // Both new faces must look outward.

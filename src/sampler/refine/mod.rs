@@ -17,18 +17,22 @@
 //! Everything is in single precision and in a fixed order: the same bits natively and in WebAssembly, however a run is cut into
 //! steps.
 
+mod border;
 mod coarse;
 mod components;
+mod frame;
 mod layer;
 mod recipe;
+mod refusal;
 mod rings;
 mod sizes;
 mod surgery;
 mod tally;
 
-pub use coarse::Refusal;
+pub(crate) use border::grown;
 pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, largest_curvatures, levels};
-pub(crate) use components::{Components, Fronts, Next};
+pub(crate) use components::{Components, Fronts, Next, Surface};
+pub use refusal::Refusal;
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
@@ -42,13 +46,16 @@ use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
-/// Area of the faces after a subdivision over that before: more where the surface is curved, and less only where it has lost
-/// something. Above, two sheets have been joined.
-const AREA_GAIN: RangeInclusive<f64> = 0.98..=1.15;
+/// Area of the faces after a subdivision over that before. On a dome it grows, and on a saddle it shrinks, by 2.5 % on a gyroid as coarse
+/// as may be. Below, something was lost; above, two sheets have been joined.
+const AREA_GAIN: RangeInclusive<f64> = 0.95..=1.15;
 
 /// Share of faces missing or too many from which on the first level tries every particle. Defects alone cannot make up for
 /// the front: where it leaves fives only, none would be inserted.
 const SLACK: f32 = 0.002;
+
+/// Rounds in which the spacing and the number of edges on the border are found from each other.
+const BORDER_ROUNDS: u32 = 4;
 
 /// Units that a trial of surgery counts for: it moves some twenty particles four times.
 const TRIAL_UNITS: u32 = 64;
@@ -94,6 +101,7 @@ struct Refinement {
     /// Wanted number of particles of the last level, once the surface has been measured.
     wanted: f64,
     euler: i64,
+    has_border: bool,
     /// Spacing of the hexagonal lattice with the wanted number of particles of this level.
     spacing: f32,
     /// Faces of that lattice.
@@ -122,27 +130,38 @@ enum Work {
 }
 
 impl Refinement {
-    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled.
+    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled, beyond which the
+    /// front has grown.
     ///
     /// # Errors
     ///
     /// Why the front is not good enough.
-    fn new(particles: &Particles, bounds: &Bounds, target: Target) -> Result<Self, Refusal> {
-        Ok(Self::of_layer(coarse::join(particles, bounds, target.levels)?, target))
+    fn new(
+        field: &mut dyn Field,
+        particles: &Particles,
+        bounds: &Bounds,
+        target: Target,
+    ) -> Result<Self, Refusal> {
+        let mut block = Block::default();
+        let mut ground = Ground { field, block: &mut block };
+        let layer = coarse::join(&mut ground, particles, bounds, target.levels)?;
+        Ok(Self::of_layer(layer, block, target))
     }
 
-    fn of_layer(layer: Layer, target: Target) -> Self {
+    fn of_layer(layer: Layer, block: Block, target: Target) -> Self {
+        let has_border = layer.has_border();
         let mut refinement = Self {
             target,
             euler: layer.mesh.euler(),
+            has_border,
             layer,
-            block: Block::default(),
+            block,
             surgeon: Surgeon::default(),
             to_come: target.levels,
             wanted: 0.0,
             spacing: 0.0,
             faces: 0.0,
-            recipe: Recipe::of(target.levels, target.levels, target.grading.is_some()),
+            recipe: Recipe::of(target.levels, target.levels, target.grading.is_some(), has_border),
             near: Vec::new(),
             tally: Tally::default(),
             area_before: None,
@@ -234,22 +253,37 @@ impl Refinement {
             let radius = f64::from(self.target.radius);
             self.wanted = match self.target.count {
                 Count::Total(count) => count,
-                Count::PerCell(packing) => packing * tally.area() / (2.0 * SQRT_3 * radius * radius),
+                Count::PerCell(packing) => {
+                    // Half of the cell of a particle on the border lies beyond it.
+                    packing * tally.area() / (2.0 * SQRT_3 * radius * radius)
+                        + tally.border() / (4.0 * radius)
+                }
             };
         }
         let share = f64::from(1_u32 << (2 * self.to_come));
         let euler = self.euler as f64;
+        let is_graded = self.layer.is_graded();
         // A closed surface has 2 (N − χ) faces, and a division makes four of each.
-        let faces = 2.0 * (self.wanted - euler) / share;
-        self.faces = faces as f32;
+        let closed = 2.0 * (self.wanted - euler) / share;
         // Each particle has the area of two faces.
-        let lattice = faces + 2.0 * euler;
-        let spacing_sq = if self.layer.is_graded() {
-            tally.cells() / lattice
-        } else {
-            2.0 * tally.area() / (SQRT_3 * (0.5 * lattice))
+        let spacing = |faces: f64| {
+            let lattice = faces + 2.0 * euler;
+            let spacing_sq = if is_graded {
+                tally.cells() / lattice
+            } else {
+                2.0 * tally.area() / (SQRT_3 * (0.5 * lattice))
+            };
+            spacing_sq.sqrt()
         };
-        self.spacing = spacing_sq.sqrt() as f32;
+        let mut faces = closed;
+        if tally.border() > 0.0 {
+            // With a border there are as many fewer as there are edges on it, and a division makes two of each of those.
+            for _ in 0..BORDER_ROUNDS {
+                faces = (closed - tally.border() / (spacing(faces) * share.sqrt())).max(1.0);
+            }
+        }
+        self.faces = faces as f32;
+        self.spacing = spacing(faces) as f32;
         Ok(())
     }
 
@@ -316,7 +350,12 @@ impl Refinement {
                 }
             }
             Pass::Find => {
-                let is_defect = |&v: &u32| layer.mesh.has_vertex(v) && layer.mesh.valence(v) != 6;
+                let has_border = self.has_border;
+                let is_defect = |&v: &u32| {
+                    layer.mesh.has_vertex(v)
+                        && layer.excess(v) != 0
+                        && (!has_border || layer.mesh.is_border(v))
+                };
                 self.near.extend((next..last).filter(is_defect));
             }
             Pass::Centre => {
@@ -376,6 +415,7 @@ impl Refinement {
         }
         let (mesh, ends) = subdivision.finish();
         let coarse = Box::new(core::mem::replace(&mut self.layer, Layer::with_room(mesh, ends.len())));
+        self.layer.frame = coarse.frame.finer(ends.len());
         (Work::Lift { coarse, ends }, BLOCK as u32)
     }
 
@@ -398,16 +438,20 @@ impl Refinement {
             layer.normal.push(normal);
             layer.slots.push(if a == b { coarse.slots[a as usize] } else { Slots::default() });
             layer.size.extend(coarse.is_graded().then(|| coarse.size_between(a, b)));
+            layer.bind_middle(&coarse, [a, b]);
         }
         let mut ground = Ground { field, block: &mut self.block };
-        if layer.land(&mut ground, self.spacing, start as u32..end as u32) > 0 {
+        layer.land(&mut ground, self.spacing, start as u32..end as u32);
+        let refused = core::mem::take(&mut ground.block.refused);
+        if !refused.iter().all(|&v| layer.rescue(&mut ground, self.spacing, v)) {
             return Err(Refusal::Folded);
         }
         if end < ends.len() {
             return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
         }
         self.to_come -= 1;
-        self.recipe = Recipe::of(self.target.levels, self.to_come, self.target.grading.is_some());
+        self.recipe =
+            Recipe::of(self.target.levels, self.to_come, self.target.grading.is_some(), self.has_border);
         self.surgeon.forget();
         Ok((self.begin_pass(0), BLOCK as u32))
     }

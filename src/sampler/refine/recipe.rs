@@ -71,6 +71,12 @@ const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.95,
 const FEW_LEVELS: u32 = 2;
 const FIRST_OF_FEW: Plan = Plan { delta: 0.03, ..FIRST };
 const LAST_OF_FEW: Plan = Plan { theta: 0.9, ..LAST };
+/// The last two levels of a surface with a border. Those that repeat in space are saddles throughout, with three times the defects
+/// of a closed surface, and in the strain between these stiffer springs, and cheaper defects, do more for the angles than Lloyd's
+/// method, which is left to the border. On the gyroid with 20,000 particles the mean smallest angle is 55.6° instead of 54.4°, and the
+/// largest hole 1.32 instead of 1.24; on Schwarz's surface 56.5° instead of 55.3°, and 1.28 instead of 1.21.
+const LAST_BUT_ONE_WITH_BORDER: Plan = Plan { rounds: 8, theta: 0.8, delta: 0.002, ..LAST_BUT_ONE };
+const LAST_WITH_BORDER: Plan = Plan { sweeps: 6, theta: 0.65, ..LAST };
 
 /// Steps in which the first level goes from one size to those of the radius field. At once, neighbours would tangle.
 const BLEND: u8 = WHOLE;
@@ -87,14 +93,16 @@ const GRADED_THETA: f32 = 0.8;
 const LIMITS: usize = 4;
 
 impl Recipe {
-    /// The recipe of a level with so many to come of all `levels`, of one size or of sizes that differ.
-    pub(super) fn of(levels: u32, to_come: u32, is_graded: bool) -> Self {
+    /// The recipe of a level with so many to come of all `levels`, of one size or of sizes that differ, with a border or without.
+    pub(super) fn of(levels: u32, to_come: u32, is_graded: bool, has_border: bool) -> Self {
         let (is_first, are_few) = (to_come == levels, levels <= FEW_LEVELS);
         let mut plan = match (is_first, to_come) {
             (true, _) if are_few => FIRST_OF_FEW,
             (true, _) => FIRST,
+            (false, 0) if has_border => LAST_WITH_BORDER,
             (false, 0) if are_few => LAST_OF_FEW,
             (false, 0) => LAST,
+            (false, 1) if has_border => LAST_BUT_ONE_WITH_BORDER,
             (false, 1) => LAST_BUT_ONE,
             (false, _) => MIDDLE,
         };
@@ -173,7 +181,7 @@ mod tests {
     fn a_level_is_measured_first_and_inspected_last() {
         for to_come in 0..=3 {
             for is_graded in [false, true] {
-                let passes = Recipe::of(3, to_come, is_graded).passes;
+                let passes = Recipe::of(3, to_come, is_graded, false).passes;
                 assert_eq!((passes[0], passes[passes.len() - 1]), (Pass::Measure, Pass::Inspect));
                 let surgery = passes.iter().filter(|&&pass| pass == Pass::Mend).count();
                 assert_eq!(surgery > 0, to_come > 0, "{to_come} levels to come");

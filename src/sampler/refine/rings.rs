@@ -64,7 +64,7 @@ impl Rings {
                 radius * layer.size_of(v as u32),
                 self.parent[k],
                 self.level[k],
-                layer.slots[v],
+                layer.fates(v as u32),
             );
         }
         let is_done = end == self.order.len();

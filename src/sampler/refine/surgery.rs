@@ -1,7 +1,8 @@
 //! Surgery: trials with one particle more or one fewer beside a defect, of which those are kept that pay.
 
+use super::frame::Planes;
 use super::layer::{Ground, Layer, Springs};
-use crate::mesh::half_edge::{HalfEdges, next, previous};
+use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
 use core::cmp::Ordering;
 use glam::Vec3;
@@ -44,11 +45,13 @@ enum Wish {
 
 /// What is tried.
 #[derive(Clone, Copy)]
-enum Operation {
+pub(super) enum Operation {
     /// Merge the particle at which the half-edge begins into the one at which it ends.
     Collapse(u32),
     /// Insert a particle into the face of the half-edge.
     Insert(u32),
+    /// Split the edge of the half-edge, on the border.
+    Split(u32),
 }
 
 /// The memory of the trials.
@@ -59,8 +62,8 @@ pub(super) struct Surgeon {
     /// Trial in which a particle was last in the patch.
     stamp: Vec<u32>,
     trial: u32,
-    /// Particles of the patch with place and normal before the trial.
-    saved: Vec<(u32, Vec3, Vec3)>,
+    /// Particles of the patch with place, normal and faces of the box before the trial.
+    saved: Vec<(u32, Vec3, Vec3, Planes)>,
     /// A half-edge of every edge with an end in the patch.
     edges: Vec<u32>,
 }
@@ -75,8 +78,11 @@ impl Surgeon {
     /// Tries to mend `v`, if it has not six neighbours: with fewer it is merged with the nearest of them, with more another one is
     /// inserted into the widest of its faces. Returns whether it was tried.
     pub(super) fn mend(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, v: u32) -> bool {
-        if !layer.mesh.has_vertex(v) || layer.mesh.is_border(v) {
+        if !layer.mesh.has_vertex(v) {
             return false;
+        }
+        if layer.mesh.is_border(v) {
+            return self.mend_border(layer, ground, aim, v);
         }
         let Some(wish) = wish(layer, aim, v) else { return false };
         let mesh = &layer.mesh;
@@ -85,7 +91,7 @@ impl Surgeon {
             Wish::OneFewer => {
                 let length = |h: u32| (layer.position[mesh.target(h) as usize] - p).length_squared();
                 let shortest = mesh.around(v).min_by(|&g, &h| length(g).total_cmp(&length(h)));
-                shortest.filter(|&h| mesh.can_collapse(h)).map(Operation::Collapse)
+                shortest.filter(|&h| layer.can_merge(h)).map(Operation::Collapse)
             }
             Wish::OneMore => {
                 let area = |h: u32| {
@@ -99,18 +105,28 @@ impl Surgeon {
         true
     }
 
-    /// Does the operation, relaxes what is around it, and takes all back unless that has paid. `size` is that of the particles there.
-    fn attempt(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, operation: Operation, size: f32) {
+    /// Does the operation, relaxes what is around it, and takes all back unless that has paid; whether it has. `size` is that of the
+    /// particles there.
+    pub(super) fn attempt(
+        &mut self,
+        layer: &mut Layer,
+        ground: &mut Ground,
+        aim: Aim,
+        operation: Operation,
+        size: f32,
+    ) -> bool {
         let a = aim.springs.spacing * size;
         let a_sq = a * a;
         self.gather(layer, operation);
         let before = self.energy(layer, aim.springs);
-        let state = |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize]);
+        let state =
+            |&v: &u32| (v, layer.position[v as usize], layer.normal[v as usize], layer.frame.planes(v));
         self.saved.clear();
         self.saved.extend(self.patch.iter().map(state));
         let slots = layer.position.len();
         layer.mesh.begin();
-        let (mut defects, added) = self.operate(layer, operation);
+        let (v, mut defects, added) = self.operate(layer, operation);
+        let is_flat = layer.has_face_along_border(v);
         self.collect_edges(layer);
         defects += self.flip(layer);
         let springs = Springs { omega: OMEGA, ..aim.springs };
@@ -125,19 +141,20 @@ impl Surgeon {
         let potential = 3.0 * theta * (1.0 - theta) + COUNT_PRICE * excess / aim.faces;
         let price = a_sq * (potential * added + aim.delta * defects as f32);
         let gain = before - self.energy(layer, aim.springs) - price;
-        if gain > LEAST_GAIN * a_sq {
+        if gain > LEAST_GAIN * a_sq && !is_flat {
             layer.mesh.keep();
-            return;
+            return true;
         }
         layer.mesh.undo();
-        for &(v, position, normal) in &self.saved {
-            layer.position[v as usize] = position;
-            layer.normal[v as usize] = normal;
+        for &(v, position, normal, planes) in &self.saved {
+            layer.put(v, position, normal, planes);
         }
         layer.position.truncate(slots);
         layer.normal.truncate(slots);
         layer.slots.truncate(slots);
         layer.size.truncate(slots);
+        layer.frame.truncate(slots);
+        false
     }
 
     /// Adds [`RINGS`] rings to some particles; all are then in ascending order.
@@ -180,7 +197,7 @@ impl Surgeon {
                 RINGS
             }
             // The corners are the first ring.
-            Operation::Insert(h) => {
+            Operation::Insert(h) | Operation::Split(h) => {
                 self.patch.extend([h, next(h), previous(h)].map(|h| mesh.origin(h)));
                 RINGS - 1
             }
@@ -210,44 +227,63 @@ impl Surgeon {
         sum
     }
 
-    /// Does the operation. Returns the change of Σ (valence − 6)² and the number of particles added.
-    fn operate(&mut self, layer: &mut Layer, operation: Operation) -> (i32, f32) {
+    /// Does the operation. Returns the particle at which it was done, the change of Σ (valence − wanted)² and the number of particles
+    /// added; one on the border counts half, as it has half the faces.
+    fn operate(&mut self, layer: &mut Layer, operation: Operation) -> (u32, i32, f32) {
         match operation {
             Operation::Collapse(h) => {
-                let mesh = &mut layer.mesh;
-                let (a, b) = (mesh.origin(h), mesh.target(h));
-                let around = [b, mesh.origin(previous(h)), mesh.origin(previous(mesh.twin(h)))];
-                let before = badness(layer, around) + badness(layer, [a]);
+                let mesh = &layer.mesh;
+                let (a, b, twin) = (mesh.origin(h), mesh.target(h), mesh.twin(h));
+                // At the border there is one face only.
+                let d = if twin == NONE { b } else { mesh.origin(previous(twin)) };
+                let around = [b, mesh.origin(previous(h)), d];
+                let around = &around[..if twin == NONE { 2 } else { 3 }];
+                let before = badness(layer, around) + badness(layer, &[a]);
+                let (position, planes) = layer.merged(a, b);
                 layer.mesh.collapse(h);
-                layer.position[b as usize] = (layer.position[a as usize] + layer.position[b as usize]) * 0.5;
-                (badness(layer, around) - before, -1.0)
+                layer.put(b, position, layer.normal[b as usize], planes);
+                (b, badness(layer, around) - before, if twin == NONE { -0.5 } else { -1.0 })
             }
             Operation::Insert(h) => {
                 let corners = [h, next(h), previous(h)].map(|h| layer.mesh.origin(h));
-                let before = badness(layer, corners);
+                let before = badness(layer, &corners);
                 let mean = |of: &[Vec3]| corners.iter().map(|&v| of[v as usize]).sum::<Vec3>() / 3.0;
                 let (position, normal) = (mean(&layer.position), mean(&layer.normal));
+                let normal = normal.normalize_or(layer.normal[corners[0] as usize]);
                 let size = corners.iter().map(|&v| layer.size_of(v)).sum::<f32>() / 3.0;
-                let is_graded = layer.is_graded();
                 let v = layer.mesh.insert(h);
-                let at = v as usize;
-                if layer.position.len() == at {
-                    layer.position.push(position);
-                    layer.normal.push(normal);
-                    layer.slots.push(Slots::default());
-                    layer.size.extend(is_graded.then_some(size));
-                }
-                if is_graded {
-                    layer.size[at] = size;
-                }
-                layer.position[at] = position;
-                layer.normal[at] = normal.normalize_or(layer.normal[corners[0] as usize]);
-                layer.slots[at] = Slots::default();
-                self.stamp[at] = self.trial;
-                self.patch.push(v);
-                (badness(layer, corners) + badness(layer, [v]) - before, 1.0)
+                self.add(layer, v, (position, normal), Planes::INNER, size);
+                (v, badness(layer, &corners) + badness(layer, &[v]) - before, 1.0)
+            }
+            Operation::Split(h) => {
+                let corners = [h, next(h), previous(h)].map(|h| layer.mesh.origin(h));
+                let before = badness(layer, &corners);
+                let planes = layer.planes_between(corners[0], corners[1]);
+                let middle = layer.middle(corners[0], corners[1]);
+                let size = layer.size_between(corners[0], corners[1]);
+                let v = layer.mesh.split(h);
+                self.add(layer, v, middle, planes, size);
+                (v, badness(layer, &corners) + badness(layer, &[v]) - before, 0.5)
             }
         }
+    }
+
+    /// Adds a new particle to the columns and to the patch.
+    fn add(
+        &mut self,
+        layer: &mut Layer,
+        v: u32,
+        (position, normal): (Vec3, Vec3),
+        planes: Planes,
+        size: f32,
+    ) {
+        layer.put(v, position, normal, planes);
+        if layer.is_graded() {
+            layer.size[v as usize] = size;
+        }
+        layer.slots[v as usize] = Slots::default();
+        self.stamp[v as usize] = self.trial;
+        self.patch.push(v);
     }
 
     fn collect_edges(&mut self, layer: &Layer) {
@@ -277,20 +313,20 @@ impl Surgeon {
                 continue;
             }
             let corners = [mesh.origin(h), mesh.origin(t), c, d];
-            let before = badness(layer, corners);
+            let before = badness(layer, &corners);
             layer.mesh.flip(h);
-            change += badness(layer, corners) - before;
+            change += badness(layer, &corners) - before;
         }
         change
     }
 }
 
-/// Σ (valence − 6)² over some particles.
-fn badness<const N: usize>(layer: &Layer, particles: [u32; N]) -> i32 {
+/// Σ (valence − wanted)² over some particles.
+fn badness(layer: &Layer, particles: &[u32]) -> i32 {
     particles
         .iter()
         .map(|&v| {
-            let excess = layer.mesh.valence(v) as i32 - SIX as i32;
+            let excess = layer.excess(v);
             excess * excess
         })
         .sum()

@@ -14,6 +14,8 @@ pub(super) struct Tally {
     fine: f64,
     /// Area of the faces in units of the faces that are wanted where they are.
     cells: f64,
+    /// Length of the border in units of the spacing that is wanted where it is.
+    border: f64,
     /// Faces that look against the normal of a corner.
     inverted: usize,
 }
@@ -21,6 +23,7 @@ pub(super) struct Tally {
 impl Tally {
     /// Adds the areas of some faces.
     pub(super) fn measure(&mut self, layer: &Layer, faces: Range<u32>) {
+        self.border += layer.border_of(faces.clone());
         let twice = |[a, b, c]: [Vec3; 3]| f64::from((b - a).cross(c - a).length());
         for face in faces.filter_map(|f| layer.mesh.face(f)) {
             let p = face.map(|v| layer.position[v as usize]);
@@ -59,6 +62,11 @@ impl Tally {
     /// Equilateral faces of the wanted sizes that cover the surface, where the spacing is 1.
     pub(super) fn cells(&self) -> f64 {
         self.cells * self.area() / self.flat_area()
+    }
+
+    /// Length of the border, where the spacing is 1.
+    pub(super) fn border(&self) -> f64 {
+        self.border
     }
 
     pub(super) fn inverted(&self) -> usize {

@@ -1,0 +1,145 @@
+//! Clipping and surgery along the border are held to the invariants of the mesh and of the frame.
+
+use super::super::frame::{Frame, Planes};
+use super::super::layer::{Block, Ground, Layer, Springs};
+use super::super::surgery::{Aim, Surgeon};
+use super::super::tally::Tally;
+use super::{clip, grown};
+use crate::field::Field;
+use crate::field::formula::FormulaField;
+use crate::math::Bounds;
+use crate::mesh::half_edge::{HalfEdges, NONE};
+use crate::particles::Slots;
+use glam::Vec3;
+use proptest::prelude::*;
+
+const SPACING: f32 = 0.2;
+
+fn saddle() -> FormulaField {
+    FormulaField::parse("z = 0.3*x*y", &[]).expect("a formula")
+}
+
+/// A hexagonal grid over z = 0.3xy that reaches beyond the box, moved by `shift`.
+fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
+    const COLUMNS: u32 = 22;
+    let point = |k: u32| {
+        let (i, j) = ((k % COLUMNS) as f32, (k / COLUMNS) as f32);
+        let x = (i - 11.0 + 0.5 * (j % 2.0)) * SPACING + shift[0] * SPACING;
+        let y = (j - 11.0) * 0.866 * SPACING + shift[1] * SPACING;
+        Vec3::new(x, y, 0.3 * x * y)
+    };
+    let position: Vec<Vec3> = (0..COLUMNS * COLUMNS).map(point).collect();
+    let (mut value, mut gradient) = (vec![0.0; position.len()], vec![Vec3::ZERO; position.len()]);
+    field.gradients(&position, &mut value, &mut gradient);
+    let squares = (0..COLUMNS - 1).flat_map(|j| (0..COLUMNS - 1).map(move |i| (i, j)));
+    let triangles: Vec<[u32; 3]> = squares
+        .flat_map(|(i, j)| {
+            let a = j * COLUMNS + i;
+            let (b, c, d) = (a + 1, a + COLUMNS, a + COLUMNS + 1);
+            if j % 2 == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] }
+        })
+        .collect();
+    let mut layer = Layer {
+        mesh: HalfEdges::from_triangles(position.len(), &triangles).expect("a grid is a surface"),
+        normal: gradient.iter().map(|g| g.normalize_or_zero()).collect(),
+        slots: vec![Slots::default(); position.len()],
+        size: Vec::new(),
+        frame: Frame::new(bounds, &position, SPACING),
+        position,
+    };
+    // Formulas are moved to one side: which way is up depends on that.
+    let mut tally = Tally::default();
+    tally.inspect(&layer, 0..triangles.len() as u32);
+    if tally.inverted() > 0 {
+        layer.normal.iter_mut().for_each(|n| *n = -*n);
+    }
+    layer
+}
+
+/// Holds a layer to what the rest of the refinement relies on.
+fn check(layer: &Layer, bounds: &Bounds) {
+    layer.mesh.check().expect("a manifold");
+    assert_eq!(layer.frame.planes.len(), layer.position.len());
+    for v in (0..layer.position.len() as u32).filter(|&v| layer.mesh.has_vertex(v)) {
+        let (p, planes) = (layer.position[v as usize], layer.frame.planes(v));
+        assert!(bounds.contains(p), "particle {v} at {p} is outside");
+        assert_eq!(layer.frame.pinned(p, planes), p, "particle {v} at {p} is off its faces");
+        assert_eq!(layer.mesh.is_border(v), planes != Planes::INNER, "particle {v} at {p}: {planes:?}");
+        assert!(!layer.has_face_along_border(v), "particle {v} at {p} has a triangle along the border");
+    }
+    for h in layer.mesh.edges().filter(|&h| layer.mesh.twin(h) == NONE) {
+        let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.frame.planes(v));
+        assert!(!a.common(b).is_none(), "a border edge runs between different faces");
+    }
+}
+
+#[test]
+fn the_box_of_a_coarse_front_is_three_spacings_larger() {
+    let box_of_front = grown(&Bounds::cube(1.0), 0.1);
+    assert!((box_of_front.max[0] - 1.6).abs() < 1e-12 && (box_of_front.min[2] + 1.6).abs() < 1e-12);
+}
+
+#[test]
+fn a_frame_lies_in_a_box_that_single_precision_cannot_tell() {
+    let bounds = Bounds { min: [0.1, -0.1, 1.0], max: [0.3, 0.7, 1.1] };
+    let frame = Frame::new(&bounds, &[Vec3::ONE], 1.0);
+    assert!(bounds.contains(frame.lo) && bounds.contains(frame.hi));
+    let beyond = |x: f32, up: bool| if up { x.next_up() } else { x.next_down() };
+    assert!(!bounds.contains(frame.lo.map(|x| beyond(x, false))));
+    assert!(!bounds.contains(frame.hi.map(|x| beyond(x, true))));
+}
+
+#[test]
+fn particles_slide_along_faces_and_corners_stay() {
+    let frame = Frame::new(&Bounds::cube(1.0), &[Vec3::X], 0.1);
+    let n = Vec3::new(0.6, 0.8, 0.0);
+    let step = frame.along(Planes::of(1), n, Vec3::ONE);
+    assert!(step.x == 0.0 && step.dot(n).abs() < 1e-6 && step.length() > 0.5, "{step}");
+    assert_eq!(frame.along(Planes::of(1).joined(Planes::of(5)), n, Vec3::ONE), Vec3::ZERO);
+    // The curve in the face is where f = y − 0.25 vanishes.
+    let landing = frame.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.1);
+    assert_eq!(landing, Some(Vec3::new(1.0, 0.25, 0.2)));
+    let too_far = frame.landing(Planes::of(1), Vec3::new(1.0, 0.3, 0.2), 0.05, Vec3::Y, 0.01);
+    assert_eq!(too_far, None);
+    let off_the_box = frame.landing(Planes::of(1), Vec3::new(1.0, 0.99, 0.2), -0.05, Vec3::Y, 0.1);
+    assert_eq!(off_the_box, None);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn clipping_and_surgery_keep_the_invariants(
+        shift in prop::array::uniform2(-0.5_f32..0.5),
+        half in prop::array::uniform2(0.6_f64..1.3),
+        places in prop::collection::vec((any::<u32>(), 0.7_f32..1.4), 1..40),
+    ) {
+        let bounds = Bounds::symmetric([half[0], half[1], 1.0]);
+        let mut field = saddle();
+        let mut layer = grid(&mut field, &bounds, shift);
+        let mut block = Block::default();
+        let mut ground = Ground { field: &mut field, block: &mut block };
+        clip(&mut layer, &mut ground, SPACING).expect("the saddle can be clipped");
+        check(&layer, &bounds);
+        prop_assert_eq!(layer.mesh.euler(), 1);
+        let corners = |layer: &Layer| {
+            let vertices = 0..layer.position.len() as u32;
+            vertices.filter(|&v| layer.mesh.has_vertex(v) && layer.frame.planes(v).is_corner()).count()
+        };
+        prop_assert_eq!(corners(&layer), 4);
+
+        let mut surgeon = Surgeon::default();
+        for (place, size) in places {
+            let springs = Springs { spacing: SPACING * size, theta: 0.8, omega: 1.5 };
+            let faces = layer.mesh.faces() as f32;
+            let aim = Aim { springs, delta: 0.03, faces, slack: f32::INFINITY };
+            let v = place % layer.position.len() as u32;
+            surgeon.mend(&mut layer, &mut ground, aim, v);
+            layer.relax(&mut ground, springs, 0..v);
+            layer.flip(0..layer.mesh.half_edge_slots() as u32);
+        }
+        check(&layer, &bounds);
+        prop_assert_eq!(layer.mesh.euler(), 1);
+        prop_assert_eq!(corners(&layer), 4);
+    }
+}

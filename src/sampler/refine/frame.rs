@@ -1,0 +1,168 @@
+//! The box that cuts a layer, and the faces of it on which the particles lie.
+
+use crate::math::Bounds;
+use glam::Vec3;
+
+/// Particles may be beyond a face by this share of the spacing before they are put back onto it: rounding and the last step of
+/// Newton's method move one that touches the box.
+const SLACK: f32 = 1e-4;
+
+/// The faces of the box on which a particle lies: bit 2k for the lower face of axis k, bit 2k + 1 for the upper one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Planes(u8);
+
+impl Planes {
+    /// No face.
+    pub(super) const INNER: Self = Self(0);
+    /// Number of faces of a box.
+    pub(super) const ALL: usize = 6;
+
+    pub(super) fn of(plane: usize) -> Self {
+        Self(1 << plane)
+    }
+
+    pub(super) fn is_none(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Number of faces.
+    pub(super) fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    pub(super) fn is_corner(self) -> bool {
+        self.count() > 1
+    }
+
+    /// The faces on which both lie.
+    pub(super) fn common(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// The faces on which one of them lies.
+    pub(super) fn joined(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    pub(super) fn each(self) -> impl Iterator<Item = usize> {
+        (0..Self::ALL).filter(move |plane| self.0 >> plane & 1 == 1)
+    }
+
+    /// 1 along the axes along which a particle may move, 0 along the others.
+    pub(super) fn free(self) -> Vec3 {
+        let share = |axis: u32| if self.0 >> (2 * axis) & 3 == 0 { 1.0 } else { 0.0 };
+        Vec3::new(share(0), share(1), share(2))
+    }
+}
+
+/// The box of a layer, and the faces on which its particles lie.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frame {
+    /// The largest box of single-precision numbers in the box that is sampled.
+    pub(super) lo: Vec3,
+    pub(super) hi: Vec3,
+    /// Largest distance beyond a face from which a particle is put back onto it.
+    pub(super) slack: f32,
+    /// The faces of each particle; empty where no particle is near the box.
+    pub(super) planes: Vec<Planes>,
+}
+
+impl Frame {
+    /// The frame of particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond it.
+    pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
+        let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
+        let at_most = |x: f64| -at_least(-x);
+        let (lo, hi) =
+            (Vec3::from_array(bounds.min.map(at_least)), Vec3::from_array(bounds.max.map(at_most)));
+        let farthest = lo.abs().max(hi.abs()).max_element();
+        let slack = SLACK * spacing + 4.0 * f32::EPSILON * farthest;
+        let is_near = position.iter().any(|&p| (p - lo).min(hi - p).min_element() <= spacing);
+        let planes = if is_near { vec![Planes::INNER; position.len()] } else { Vec::new() };
+        Self { lo, hi, slack, planes }
+    }
+
+    /// The frame of the next level, with planes still to be filled.
+    pub(super) fn finer(&self, count: usize) -> Self {
+        let planes = Vec::with_capacity(if self.is_near() { count } else { 0 });
+        Self { slack: 0.5 * self.slack, planes, ..*self }
+    }
+
+    /// Whether particles are near the faces of the box.
+    #[inline]
+    pub(super) fn is_near(&self) -> bool {
+        !self.planes.is_empty()
+    }
+
+    /// The faces on which a particle lies.
+    #[inline]
+    pub(super) fn planes(&self, v: u32) -> Planes {
+        if self.is_near() { self.planes[v as usize] } else { Planes::INNER }
+    }
+
+    /// Sets the faces of a particle, which may be the next new one.
+    pub(super) fn set(&mut self, v: u32, planes: Planes) {
+        if self.is_near() {
+            if self.planes.len() == v as usize {
+                self.planes.push(planes);
+            }
+            self.planes[v as usize] = planes;
+        }
+    }
+
+    /// Adds the faces of the next particle of a level under way.
+    pub(super) fn push(&mut self, planes: Planes) {
+        self.planes.push(planes);
+    }
+
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.planes.truncate(len);
+    }
+
+    /// Distance of a point from a face, negative beyond it.
+    pub(super) fn depth(&self, p: Vec3, plane: usize) -> f32 {
+        let axis = plane / 2;
+        if plane.is_multiple_of(2) { p[axis] - self.lo[axis] } else { self.hi[axis] - p[axis] }
+    }
+
+    /// The point with the coordinates of the faces.
+    pub(super) fn pinned(&self, mut p: Vec3, planes: Planes) -> Vec3 {
+        for plane in planes.each() {
+            p[plane / 2] = if plane.is_multiple_of(2) { self.lo } else { self.hi }[plane / 2];
+        }
+        p
+    }
+
+    pub(super) fn contains(&self, p: Vec3) -> bool {
+        p.cmpge(self.lo).all() && p.cmple(self.hi).all()
+    }
+
+    /// The part of a step that a particle with the normal `n` can make: along the surface and the faces on which it lies.
+    pub(super) fn along(&self, planes: Planes, n: Vec3, step: Vec3) -> Vec3 {
+        let (step, n) = (step * planes.free(), n * planes.free());
+        let slide = step - n * (step.dot(n) / n.length_squared());
+        if planes.is_corner() || !slide.is_finite() { Vec3::ZERO } else { slide }
+    }
+
+    /// Where a particle at `p` comes to lie by one step of Newton's method on its faces: on them to the last bit, and in the box.
+    /// None if the step is longer than `longest` or leads out of the box.
+    pub(super) fn landing(
+        &self,
+        planes: Planes,
+        p: Vec3,
+        value: f32,
+        gradient: Vec3,
+        longest: f32,
+    ) -> Option<Vec3> {
+        let step = if planes.is_none() {
+            let inverse_slope = 1.0 / gradient.length();
+            gradient * inverse_slope * (value * inverse_slope)
+        } else {
+            let slope = gradient * planes.free();
+            slope * (value / slope.length_squared())
+        };
+        let q = self.pinned(p - step, planes);
+        let inside = q.clamp(self.lo, self.hi);
+        // Written so that NaN fails.
+        (step.length() <= longest && (q - inside).abs().max_element() <= self.slack).then_some(inside)
+    }
+}

@@ -1,0 +1,237 @@
+//! Surfaces that the box cuts, by the second method: the border lies on the box, and nothing is lost without a word.
+
+use glam::Vec3;
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
+use marching_particles::mesh::build::{Options, Triangulation, triangulate};
+use marching_particles::particles::{Particles, SlotFate, Slots};
+use marching_particles::quality;
+use marching_particles::sampler::{Method, Refusal, Sampler, Settings, SizeMode};
+use proptest::prelude::*;
+
+fn settings(method: Method, count: u32, seed: u64) -> Settings {
+    Settings { method, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
+}
+
+fn sampled(field: &mut FormulaField, bounds: &Bounds, settings: &Settings, budget: u32) -> Sampler {
+    let mut sampler = Sampler::new();
+    sampler.start(field, bounds, settings).expect("valid settings");
+    // A run that hangs would never end.
+    let steps = (0..1_000_000).find(|_| sampler.step(field, budget).stop_reason.is_some());
+    assert!(steps.is_some(), "the run does not end");
+    sampler
+}
+
+fn refined(formula: &str, bounds: &Bounds, count: u32) -> Sampler {
+    let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+    sampled(&mut field, bounds, &settings(Method::Refined, count, 0), 10_000)
+}
+
+fn mesh_of(particles: &Particles, bounds: &Bounds) -> Triangulation {
+    let options = Options { bounds: Some(bounds), ..Options::default() };
+    triangulate(&particles.position, &particles.normal, &options)
+}
+
+fn assert_inside(particles: &Particles, bounds: &Bounds) {
+    let outside = particles.position.iter().find(|&&p| !bounds.contains(p));
+    assert_eq!(outside, None, "outside the box");
+}
+
+/// The triangles over the particles are a manifold with this Euler number, and its border lies on the box.
+fn assert_border_on_box(particles: &Particles, bounds: &Bounds, euler: i64, name: &str) {
+    let mesh = mesh_of(particles, bounds);
+    assert!(mesh.topology.is_manifold() && mesh.left_out.is_empty(), "{name}: {:?}", mesh.left_out);
+    assert_eq!(mesh.topology.euler(), euler, "{name}");
+    let slack = 1e-6 * bounds.diagonal();
+    for &v in mesh.topology.borders.iter().flatten() {
+        let p = particles.position[v as usize].as_dvec3();
+        let depth = (p - bounds.lo()).min(bounds.hi() - p).min_element();
+        assert!(depth <= slack, "{name}: {p} is on the border and not on the box");
+    }
+}
+
+fn half_space(z: f64) -> Bounds {
+    Bounds { min: [-2.0, -2.0, -2.0], max: [2.0, 2.0, z] }
+}
+
+#[test]
+fn gyroid_and_schwarz_surface_come_out_in_order() {
+    for id in ["gyroid", "schwarz-p"] {
+        let surface = gallery::find(id).expect("a surface of the gallery");
+        let mut field = surface.field();
+        let settings = settings(Method::Refined, 20_000, 0);
+        let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);
+        let (counts, particles) = (sampler.counts(), sampler.particles());
+        assert_eq!((counts.refusal, counts.refined_levels), (None, Some(2)), "{id}");
+        assert!((particles.len() as f64 / 20_000.0 - 1.0).abs() <= 0.01, "{id}: {}", particles.len());
+        let options = quality::Options::default();
+        let bounds = &surface.bounds;
+        let report =
+            quality::measure(&particles.position, &particles.normal, &mut field, Some(bounds), &options);
+        let f = report.figures;
+        assert!(f.six >= 0.96, "{id}: six {}", f.six);
+        assert!(f.ang_min_mean >= 55.5, "{id}: mean smallest angle {}", f.ang_min_mean);
+        assert!(f.ang_min >= 36.0 && f.gt90 <= 5e-4, "{id}: angles {} {}", f.ang_min, f.gt90);
+        assert!(f.rho >= 0.72 && f.cover <= 1.4, "{id}: rho {}, cover {}", f.rho, f.cover);
+        assert!(f.err_max <= 1e-5, "{id}: residual {}", f.err_max);
+    }
+}
+
+#[test]
+fn the_border_lies_on_the_box_and_the_topology_is_that_of_the_surface() {
+    let sphere = "x^2 + y^2 + z^2 = 1";
+    let gyroid = "sin(x) cos(y) + sin(y) cos(z) + sin(z) cos(x) = 0";
+    // Formula, box, particles, Euler number.
+    for (formula, bounds, count, euler) in [
+        (gyroid, Bounds::cube(6.2), 8_000, -53),
+        ("cos(x) + cos(y) + cos(z) = 0", Bounds::cube(6.3), 8_000, -32),
+        ("z = 0", Bounds::cube(1.0), 1_500, 1),
+        ("z = 0.1 sin(3 x)", Bounds::cube(1.0), 1_500, 1),
+        ("x + y + z = 0", Bounds::cube(1.0), 1_500, 1),
+        (sphere, half_space(0.3), 1_500, 1),
+        (sphere, Bounds { min: [0.0; 3], max: [2.0; 3] }, 1_500, 1),
+        (sphere, Bounds::cube(0.8), 3_000, -4),
+        (sphere, Bounds::cube(0.6), 4_000, 8),
+        ("x^2 + y^2 = 0.25", Bounds::cube(1.0), 1_500, 0),
+        ("sin(4 z) = 0", Bounds::cube(1.0), 4_000, 3),
+        // It lies in a face of the box.
+        ("z = 0", Bounds { min: [-1.0, -1.0, 0.0], max: [1.0; 3] }, 1_500, 1),
+        // It touches the faces of the box.
+        (sphere, Bounds::cube(1.0), 1_500, 2),
+    ] {
+        let name = format!("{formula} in {bounds:?}");
+        let sampler = refined(formula, &bounds, count);
+        assert_eq!(sampler.counts().refusal, None, "{name}");
+        let particles = sampler.particles();
+        assert!(
+            (particles.len() as f64 / f64::from(count) - 1.0).abs() <= 0.015,
+            "{name}: {}",
+            particles.len()
+        );
+        assert_inside(particles, &bounds);
+        assert_border_on_box(particles, &bounds, euler, &name);
+        let is_cut = |slots: &Slots| (0..6).any(|k| slots.get(k) == SlotFate::Outside);
+        let cut = particles.slots.iter().filter(|slots| is_cut(slots)).count();
+        let on_border = mesh_of(particles, &bounds).topology.borders.iter().map(Vec::len).sum::<usize>();
+        assert_eq!(cut, on_border, "{name}: particles with slots outside the box");
+    }
+}
+
+#[test]
+fn a_bad_box_ends_with_the_front_or_better() {
+    let sphere = "x^2 + y^2 + z^2 = 1";
+    for (formula, bounds, count) in [
+        // Eight specks, six holes smaller than a particle, necks, acute corners, a cap.
+        (sphere, Bounds::cube(0.578), 1_000),
+        (sphere, Bounds::cube(0.999), 1_500),
+        (sphere, Bounds::cube(core::f64::consts::FRAC_1_SQRT_2), 1_500),
+        (sphere, Bounds::cube(0.7), 1_500),
+        (sphere, half_space(-0.999), 1_500),
+        (sphere, Bounds::cube(0.5), 1_500),
+        ("z = 1", Bounds::cube(1.0), 1_500),
+        ("x + y + z = 2.999", Bounds::cube(1.0), 1_000),
+        ("sin(6 x) sin(6 y) sin(6 z) = 0.01", Bounds::cube(1.0), 1_500),
+        ("z = 0", Bounds { min: [-1.0, -1.0, -1e-7], max: [1.0, 1.0, 1e-7] }, 1_500),
+        ("z = 0", Bounds::cube(1.0), 1),
+        ("z = 0.1 x", Bounds::cube(1.0), 720),
+    ] {
+        let name = format!("{formula} in {bounds:?}");
+        let sampler = refined(formula, &bounds, count);
+        assert_inside(sampler.particles(), &bounds);
+        let counts = sampler.counts();
+        assert!(
+            sampler.particles().is_empty() || counts.refusal.is_some() != counts.refined_levels.is_some(),
+            "{name}: {counts:?}"
+        );
+    }
+}
+
+#[test]
+fn where_the_surface_ends_inside_the_box_the_front_stands_and_the_run_says_where() {
+    let bounds = Bounds::cube(1.0);
+    for formula in ["z = 0.3 x y + 0*ln(x^2 + y^2 - 0.4)", "z = 0.3 x y + 0*sqrt(0.5 - x)"] {
+        let refusal = refined(formula, &bounds, 2_000).counts().refusal;
+        let Some(Refusal::Border { at }) = refusal else { panic!("{formula}: {refusal:?}") };
+        let [x, y, _] = at;
+        assert!((x * x + y * y - 0.4).abs() < 0.3 || (x - 0.5).abs() < 0.2, "{formula}: {at:?}");
+        let message = Refusal::Border { at }.to_string();
+        assert!(message.contains(&format!("({x:.3}, {y:.3},")), "{message}");
+    }
+}
+
+#[test]
+fn a_field_that_ends_at_the_box_is_refined_to_its_end() {
+    // The front cannot grow beyond x = 1, and ends before it.
+    let bounds = Bounds::cube(1.0);
+    let sampler = refined("z = 0.3 x y + 0*sqrt(1.000001 - x)", &bounds, 2_000);
+    assert_eq!(sampler.counts().refusal, None);
+    assert_inside(sampler.particles(), &bounds);
+    assert_border_on_box(sampler.particles(), &bounds, 1, "a saddle");
+}
+
+#[test]
+fn any_cut_into_steps_gives_the_same_particles_at_a_border() {
+    let mut field = FormulaField::parse("z = 0.1 sin(3 x)", &[]).expect("a formula");
+    let bounds = Bounds::cube(1.0);
+    let mut digest = |budget: u32| {
+        let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 2_000, 1), budget);
+        assert_eq!(sampler.counts().refusal, None);
+        sampler.particles().digest()
+    };
+    let expected = digest(u32::MAX);
+    for budget in [1, 777] {
+        assert_eq!(digest(budget), expected, "in steps of {budget}");
+    }
+}
+
+#[test]
+fn what_is_cancelled_has_no_particle_outside_the_box() {
+    let gyroid = gallery::find("gyroid").expect("a surface of the gallery");
+    let mut field = gyroid.field();
+    let mut has_cut_front = false;
+    for steps in [5, 20, 60, 200, 600, 1_000] {
+        let mut sampler = Sampler::new();
+        let settings = settings(Method::Refined, 8_000, 0);
+        sampler.start(&mut field, &gyroid.bounds, &settings).expect("valid settings");
+        for _ in 0..steps {
+            sampler.step(&mut field, 1_000);
+        }
+        has_cut_front |= sampler.particles().position.iter().any(|&p| !gyroid.bounds.contains(p));
+        sampler.cancel();
+        assert!(sampler.step(&mut field, 0).stop_reason.is_some());
+        let particles = sampler.particles();
+        assert_inside(particles, &gyroid.bounds);
+        for i in 0..particles.len() {
+            let parent = particles.parent[i];
+            let level = if parent == Particles::NO_PARENT { 0 } else { particles.level[parent as usize] + 1 };
+            assert_eq!(particles.level[i], level, "particle {i} after {steps} steps");
+        }
+    }
+    assert!(has_cut_front, "no run was cancelled while its front was beyond the box");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_box_makes_a_hole_without_a_word(
+        lo in prop::array::uniform3(-1.2_f64..-0.2),
+        size in prop::array::uniform3(0.4_f64..1.8),
+    ) {
+        let bounds = Bounds { min: lo, max: core::array::from_fn(|k| lo[k] + size[k]) };
+        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let sampler = sampled(&mut field, &bounds, &settings(Method::Refined, 900, 0), 10_000);
+        assert_inside(sampler.particles(), &bounds);
+        if sampler.counts().refined_levels.is_some() {
+            let front = sampled(&mut field, &bounds, &settings(Method::Front, 900, 0), 10_000);
+            // Wherever the front has a particle, there is one.
+            let reach = 3.0 * sampler.radius() as f32;
+            for &p in &front.particles().position {
+                let is_near = |q: &&Vec3| q.distance(p) <= reach;
+                let found = sampler.particles().position.iter().find(is_near);
+                prop_assert!(found.is_some(), "nothing near {p} in {bounds:?}");
+            }
+        }
+    }
+}
