@@ -173,7 +173,7 @@ fn shade(disc: Disc) -> vec3<f32> {
     // The rim is darker, so that discs stand out from each other.
     light *= 1.0 - 0.24 * full * smoothstep(0.72, 1.0, rho);
     let front = disc.colour.rgb * light;
-    let seen = fade_to(front, frame.light.background.rgb, disc.key.w * frame.light.dim_backfaces);
+    let seen = inside(front, disc.key.w * frame.light.dim_backfaces);
     return fade_to(seen, frame.light.background.rgb, disc.faded);
 }
 

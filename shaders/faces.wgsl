@@ -152,6 +152,6 @@ fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec
     colour = marked(colour, point.mark_c, point.radii.z, distances.z, per_px.z, facing, light);
 
     let ground = frame.light.background.rgb;
-    let seen = fade_to(colour, ground, select(frame.light.dim_backfaces, 0.0, front));
+    let seen = inside(colour, select(frame.light.dim_backfaces, 0.0, front));
     return vec4<f32>(fade_to(seen, ground, point.faded), 1.0);
 }

@@ -59,7 +59,7 @@ pub struct Light {
     pub dim: f32,
     /// Unit direction to the sky of the hemispherical light, in world coordinates.
     pub sky: [f32; 3],
-    /// Fraction by which what is seen from behind fades to the background, 0 to 1.
+    /// Fraction by which what is seen from behind is drawn as an inside, 0 to 1.
     pub dim_backfaces: f32,
     /// Background colour, linear, not premultiplied by its opacity.
     pub background: [f32; 4],

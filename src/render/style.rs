@@ -19,7 +19,7 @@ pub struct Style {
     pub key_light_view: [f32; 3],
     /// Fraction by which the whole picture fades to the background, 0 to 1.
     pub dim: f32,
-    /// Fraction by which discs and faces seen from behind fade to the background, 0 to 1.
+    /// Fraction by which discs and faces seen from behind are drawn as an inside, darker and greyer, 0 to 1.
     pub dim_backfaces: f32,
     /// Duration in seconds of the appearance of a new particle; 0 shows it at once.
     pub fade_s: f32,
@@ -70,7 +70,7 @@ impl Default for Style {
             disc_scale: 0.92,
             key_light_view: [-0.45, 0.65, 0.62],
             dim: 0.0,
-            dim_backfaces: 0.55,
+            dim_backfaces: 1.0,
             fade_s: 0.12,
             level: None,
             mute: 0.5,

@@ -174,3 +174,48 @@ export function spots(page, width = 600, height = 450) {
     [width, height],
   );
 }
+
+/**
+ * Expects that a plane is darker and greyer from behind than from the front, and stands out from the ground on both sides.
+ * @param {Page} page @param {'discs' | 'mesh'} draw
+ */
+export async function expectInside(page, draw) {
+  for (const theme of /** @type {const} */ (['light', 'dark'])) {
+    const [front, behind, ground] = await page.evaluate(
+      async ({ draw, theme }) => {
+        const mp = /** @type {any} */ (window).marchingParticles;
+        // The colours of the levels cover all hues, so their mean says nothing of the shade of one.
+        mp.engine.setView({ draw, theme, size: 1.1, colour: 'plain', edges: false, marks: false });
+        const bytes = [];
+        for (const formula of ['x+y+z=0', '0=x+y+z']) {
+          await mp.set({ formula, bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, settings: { radius_share: 0.02 } });
+          for (let i = 0; i < 100 && draw === 'mesh' && !mp.status().mesh; i += 1)
+            await new Promise((go) => setTimeout(go, 50));
+          const { pixels } = await mp.pixels(160, 120);
+          const at = (/** @type {number} */ x, /** @type {number} */ y) => 4 * (160 * y + x);
+          // The mean of a patch in the middle, without what is ground between discs, and the ground of a corner.
+          const ground = [...pixels.subarray(0, 3)];
+          const sum = [0, 0, 0, 0];
+          for (let y = 52; y < 68; y += 1) {
+            for (let x = 72; x < 88; x += 1) {
+              const p = [...pixels.subarray(at(x, y), at(x, y) + 3)];
+              if (p.every((v, k) => Math.abs(v - ground[k]) < 8)) continue;
+              for (let k = 0; k < 3; k += 1) sum[k] += p[k];
+              sum[3] += 1;
+            }
+          }
+          bytes.push(sum.slice(0, 3).map((v) => v / sum[3]));
+          if (bytes.length === 2) bytes.push(ground);
+        }
+        return bytes;
+      },
+      { draw, theme },
+    );
+    const light = (/** @type {number[]} */ [r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    const spread = (/** @type {number[]} */ rgb) => Math.max(...rgb) - Math.min(...rgb);
+    const told = `${draw} on ${theme}: ${JSON.stringify([front, behind, ground])}`;
+    expect(light(behind), told).toBeLessThan(0.75 * light(front));
+    expect(spread(behind), told).toBeLessThan(spread(front));
+    expect(Math.abs(light(behind) - light(ground)), told).toBeGreaterThan(20);
+  }
+}

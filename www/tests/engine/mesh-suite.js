@@ -1,6 +1,6 @@
 /** The mesh in the picture: that it is drawn, how its edges, marks and colours look, and when it comes and goes. */
 import { expect, test } from '@playwright/test';
-import { atRest, coarse, link, open, picture, status } from './browser.js';
+import { atRest, coarse, expectInside, link, open, picture, status } from './browser.js';
 
 /** @typedef {import('@playwright/test').Page} Page */
 
@@ -76,6 +76,12 @@ export const suite = () => {
     }, shot.toString('base64'));
     await blank.close();
     expect(seen).toEqual(read);
+  });
+
+  test('what is seen from behind is darker and greyer, on a light and on a dark ground', async ({ page }) => {
+    await open(page);
+    await expectInside(page, 'discs');
+    await expectInside(page, 'mesh');
   });
 
   test('a mesh goes with its particles and comes back with the next ones', async ({ page }) => {

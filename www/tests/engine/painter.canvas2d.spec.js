@@ -1,6 +1,6 @@
 /** The page in a browser without any graphics API: dots on a 2-D canvas; everything else works as ever. */
 import { expect, test } from '@playwright/test';
-import { expectCanvasShown, expectSurface, open, spots, status } from './browser.js';
+import { expectCanvasShown, expectInside, expectSurface, open, spots, status } from './browser.js';
 
 test('the surface is painted without a graphics card', async ({ page }) => {
   const { errors } = await open(page);
@@ -8,6 +8,11 @@ test('the surface is painted without a graphics card', async ({ page }) => {
   await expectSurface(page);
   await expectCanvasShown(page);
   expect(errors).toEqual([]);
+});
+
+test('discs seen from behind are darker and greyer, on a light and on a dark ground', async ({ page }) => {
+  await open(page);
+  await expectInside(page, 'discs');
 });
 
 test('figures and files are there as well', async ({ page }) => {

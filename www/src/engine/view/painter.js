@@ -21,6 +21,9 @@ const POINT_PX = 0.7;
 const RIM_FROM_PX = 4;
 /** Share by which discs of earlier levels fade towards the background. */
 const MUTE = 0.5;
+/** What the inside keeps of its light and of its distance from grey, as in shaders/common.wgsl. */
+const INSIDE_LIGHT = 0.3;
+const INSIDE_CHROMA = 0.5;
 
 /**
  * @typedef {object} Style
@@ -28,7 +31,7 @@ const MUTE = 0.5;
  * @property {number} disc_scale
  * @property {[number, number, number]} key_light_view
  * @property {number} dim
- * @property {number} dim_backfaces  share by which discs seen from behind fade towards the background
+ * @property {number} dim_backfaces  share by which discs seen from behind are drawn as an inside, darker and greyer
  * @property {number} [fade_s]
  * @property {number | null} [level]  newest generation level drawn, null for all
  * @property {number} outline  index of the highlighted particle, −1 for none
@@ -293,18 +296,16 @@ export class Painter {
       const keyward = nx * key[0] + ny * key[1] + nz * key[2];
       const skyward = nx * up[0] + ny * up[1] + nz * up[2];
       const edgeOn = 1 - Math.abs(facing) / Math.hypot(ex - x, ey - y, ez - z);
-      const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 0.72 : 1);
-      const faded = older ? Math.max(dim, MUTE) : dim;
-      const away = back ? 1 - (1 - dim_backfaces) * (1 - faded) : faded;
+      const shade = shadeOf(keyward, skyward, edgeOn) * (back ? 1 - dim_backfaces * (1 - INSIDE_LIGHT) : 1);
+      const away = older ? Math.max(dim, MUTE) : dim;
+      const grey = back ? dim_backfaces * (1 - INSIDE_CHROMA) : 0;
       const colour = colours[i];
-      const mix = (/** @type {number} */ byte, /** @type {number} */ k, /** @type {number} */ lightHere) =>
-        Math.min(1, LINEAR[byte] * lightHere) * (1 - away) + ground[k] * away;
+      const [red, green, blue] = [LINEAR[colour & 255], LINEAR[(colour >> 8) & 255], LINEAR[(colour >> 16) & 255]];
+      const luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+      const mix = (/** @type {number} */ value, /** @type {number} */ k, /** @type {number} */ lightHere) =>
+        Math.min(1, (value + (luminance - value) * grey) * lightHere) * (1 - away) + ground[k] * away;
       const lit = (/** @type {number} */ lightHere) =>
-        packed(
-          mix(colour & 255, 0, lightHere),
-          mix((colour >> 8) & 255, 1, lightHere),
-          mix((colour >> 16) & 255, 2, lightHere),
-        );
+        packed(mix(red, 0, lightHere), mix(green, 1, lightHere), mix(blue, 2, lightHere));
       const value = i === outline ? packed(1 - ground[0], 1 - ground[1], 1 - ground[2]) : lit(shade);
       const rim = i === outline ? value : lit(shade * 0.78);
       // A rim of a tenth of the radius separates overlapping discs. On small discs it would look like noise.

@@ -10,8 +10,8 @@ import { PALETTES } from './palettes.js';
 export const FADE_S = 0.12;
 /** Width of the edges of faces, in page pixels. */
 const EDGE_PX = 1;
-/** Share by which discs seen from behind fade towards the background. */
-const DIM_BACKFACES = 0.55;
+/** Share by which what is seen from behind is drawn as an inside: darker and greyer. */
+const DIM_BACKFACES = 1;
 
 /**
  * @typedef {object} Look
@@ -66,8 +66,7 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
     dim,
     fade_s: calm ? 0 : FADE_S,
     level: shownLevel(look, lastLevel),
-    // While levels are stepped through, the surface is often open and its inside visible.
-    dim_backfaces: look.level === null ? DIM_BACKFACES : DIM_BACKFACES / 2,
+    dim_backfaces: DIM_BACKFACES,
     outline: look.highlight,
     box: look.box && { ...look.box, colour: [...rgbFromPacked(palette.box), 0.9] },
     pixel_ratio: pixelRatio,
