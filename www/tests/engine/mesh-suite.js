@@ -38,7 +38,8 @@ export const suite = () => {
       marks: false,
     });
     await look(page, plain);
-    expect((await picture(page)).drawn).toBeGreaterThan(1.4 * discs);
+    // Through the gaps the inside of the far side is seen, which is drawn, too.
+    expect((await picture(page)).drawn).toBeGreaterThan(1.25 * discs);
     const smooth = await pixels(page);
     for (const option of /** @type {const} */ ([
       { faces: 'flat' },
