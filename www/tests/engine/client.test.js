@@ -205,15 +205,48 @@ describe('a run', () => {
       expect(told.at(-1)).toBe('dim');
     }
     expect(columns.stale).toBe(true);
+    expect(store.empty.value).toBe(true);
     client.sample(request('x'));
     accept(5);
     expect(told.at(-1)).toBe('dim');
+    // Whether that one has a surface is not known until its first particle, or its end.
+    expect(store.empty.value).toBe(false);
     say(columnsMessage(5, 5));
     expect(store.empty.value).toBe(false);
     expect(told).toContain('clear');
     say(done(5, 'complete', 5));
     expect(columns).toMatchObject({ count: 5, stale: false });
     expect(told.slice(told.lastIndexOf('dim'))).toContain('clear');
+  });
+
+  test('of a drag says that there is no surface until it counts particles, so that the words do not flicker', () => {
+    const { client, store, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(done(1, 'complete', 0));
+    client.sample(request('y', { live: true }));
+    accept(2, 'y');
+    expect(store.empty.value).toBe(true);
+    say({ type: 'progress', id: 2, progress: progress(0, { phase: 'seeding' }) });
+    expect(store.empty.value).toBe(true);
+    say({ type: 'progress', id: 2, progress: progress(40) });
+    expect(store.empty.value).toBe(false);
+  });
+
+  test('that is stopped before its first particle counts none of the last surface where that is of no account', () => {
+    const { client, store, columns, say, accept } = page();
+    client.sample(request('x'));
+    accept(1);
+    say(columnsMessage(1, 7));
+    say(done(1, 'complete', 7));
+    client.sample(request('y'));
+    accept(2, 'y');
+    say(done(2, 'complete', 0));
+    client.sample(request('z'));
+    accept(3, 'z');
+    say(done(3, 'stopped', 0));
+    expect(columns).toMatchObject({ count: 7, stale: true });
+    expect([store.empty.value, store.progress.value.particles]).toEqual([false, 0]);
   });
 
   test('counts up with every range of columns that may change what is shown of the particles', () => {

@@ -232,7 +232,7 @@ test('more particles than the limit are asked for first, and the answer is heede
 test('no surface in the box is said in words, with a way out; the last surface stays, dimmed', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
-  await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
+  await expect(page.getByRole('heading', { name: 'No surface within ±10,000' })).toBeVisible();
   await expect(page.locator('.figures')).toBeHidden();
   await expect(page.locator('.empty')).toContainText('The last surface stays, dimmed');
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().dimmed)).toBe(true);
@@ -253,7 +253,7 @@ test('no surface in the box is said in words, with a way out; the last surface s
 
 test('a link to a formula without a surface shows its box, whole', async ({ page }) => {
   await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify({ formula: 'x^2 + 1' })).toString('base64url')}` });
-  await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
+  await expect(page.getByRole('heading', { name: 'No surface within ±10,000' })).toBeVisible();
   await expect(page.locator('.empty')).not.toContainText('The last surface');
   await atRest(page);
   const { distance } = (await state(page)).view.camera;
@@ -289,6 +289,49 @@ test('a stopped run is labelled and keeps what it has', async ({ page }) => {
   });
   await expect(page.locator('.caption')).toContainText('Stopped');
   expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.status().partial)).toBe(true);
+});
+
+test('while a run counts particles nothing says that there is no surface, and report and caption agree', async ({
+  page,
+}) => {
+  await open(page);
+  await typeFormula(page, '1 = 1');
+  await expect(page.locator('.empty')).toBeVisible();
+  const counting = (/** @type {number} */ share) =>
+    page.evaluate(async (share) => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      // Most of a million particles: long enough to be looked at on any machine.
+      engine.setSetting('max_particles', 3_000_000);
+      if (engine.empty.value) engine.setFormula('x^2 + y^2 + z^2 = 1');
+      engine.setSetting('radius_share', share);
+      const radius = share * 4;
+      const shown = (/** @type {string} */ selector) =>
+        document.querySelector(selector)?.checkVisibility() ? document.querySelector(selector)?.textContent : null;
+      for (;;) {
+        await new Promise((go) => setTimeout(go));
+        const { radius: present, particles } = engine.progress.value;
+        if (engine.busy.value && present > 0 && present < radius && particles > 1000) break;
+      }
+      const count = [...document.querySelectorAll('.figures tr')].find((row) =>
+        /^Particles/.test(row.textContent ?? ''),
+      );
+      const answer = {
+        empty: shown('.empty'),
+        waiting: shown('.waiting'),
+        caption: shown('.caption'),
+        count: count?.checkVisibility() ? (count.querySelector('.now')?.textContent ?? null) : null,
+      };
+      engine.stop();
+      return answer;
+    }, share);
+  const first = await counting(0.0006);
+  expect(first.empty).toBe(null);
+  expect(first.waiting ?? '').not.toContain('no surface');
+  await settled(page);
+  // From now on there are figures of a run before.
+  const second = await counting(0.0005);
+  expect(second.count).toMatch(/\d/);
+  expect(second.caption).toContain(second.count);
 });
 
 test('figures of a run without relaxation stand under the front, and go on to relaxed with the first step', async ({

@@ -36,23 +36,31 @@ export class Presenter {
     this.picture = picture;
   }
 
-  /** Shows that the worker has started another job. @param {number} id @param {RunRequest} request */
+  /**
+   * Shows that the worker has started another job. That the last one found no surface says nothing of this one. Runs of a
+   * drag are so short that the words would flicker; they stand until particles are counted.
+   * @param {number} id @param {RunRequest} request
+   */
   begin(id, request) {
+    if (!request.live) this.store.empty.value = false;
     const phase = request.kind === 'relax' ? 'relaxation' : 'seeding';
     this.store.progress.value = { ...idleProgress(), run: id, live: request.live, phase };
   }
 
   /** @param {import('../types.js').CoreProgress} progress @param {Run} run */
   progress(progress, { id, request }) {
+    if (progress.particles > 0) this.store.empty.value = false;
     this.store.progress.value = { ...progress, run: id, live: request.live };
   }
 
   /**
-   * Shows that no run is active. The progress then describes the particles on the page.
+   * Shows that no run is active. The progress then describes the particles on the page, unless they are those of a surface
+   * after which a run has found none.
    * @param {Partial<import('../types.js').Progress>} [more]
    */
   idle(more = {}) {
-    this.store.progress.value = { ...idleProgress(), particles: this.columns.count, ...more };
+    const { columns, store } = this;
+    store.progress.value = { ...idleProgress(), particles: columns.stale ? 0 : columns.count, ...more };
   }
 
   /**

@@ -22,14 +22,15 @@ const DRAWN = {
  * @param {import('../../engine/types.js').Description} description
  */
 export function mountReport(body, engine, description) {
-  // During a run the figures of the previous one stay, dimmed.
+  // During a run the figures of the previous one stay, dimmed, but for the count, which is that of the caption.
   let kept = engine.report.peek();
   const report = computed(() => {
     kept = engine.empty.value ? null : (engine.report.value ?? kept);
     return kept;
   });
+  const counted = computed(() => (engine.busy.value || !engine.report.value ? engine.progress.value.particles : 0));
   effect(() => {
-    body.classList.toggle('stale', engine.report.value === null);
+    body.classList.toggle('stale', engine.report.value === null || counted.value > 0);
   });
 
   const warnings = h('ul', { class: 'section warnings' });
@@ -45,7 +46,7 @@ export function mountReport(body, engine, description) {
   bindText(waiting, () =>
     engine.empty.value
       ? 'Nothing to measure: there is no surface inside the box.'
-      : 'The figures appear when the first run is done.',
+      : 'The figures appear when a run is done.',
   );
   effect(() => {
     waiting.hidden = report.value !== null;
@@ -61,7 +62,7 @@ export function mountReport(body, engine, description) {
     body,
     waiting,
     warnings,
-    createTable(report, description.report),
+    createTable(report, description.report, counted),
     createTiming(engine, report),
     createHistogram(report, engine),
     backend,

@@ -11,8 +11,9 @@ import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRa
  * Creates one table for all groups, so that the figures are aligned. Units are part of the labels.
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
+ * @param {import('@preact/signals-core').ReadonlySignal<number>} counted  particles of a run without a report yet, or 0
  */
-export function createTable(report, rows) {
+export function createTable(report, rows, counted) {
   const groups = [...groupRows(rows)];
   const headed = groups.findIndex(([, members]) => members.some(isPaired));
   const table = h(
@@ -32,7 +33,7 @@ export function createTable(report, rows) {
             return heading;
           }),
         ),
-        members.map((row) => createRow(report, row)),
+        members.map((row) => createRow(report, row, counted)),
       );
       effect(() => {
         body.hidden = !members.some((row) => isTold(report.value, row));
@@ -53,8 +54,9 @@ const isPaired = ({ key }) => key.startsWith('quality.');
 /**
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow} row
+ * @param {import('@preact/signals-core').ReadonlySignal<number>} counted
  */
-function createRow(report, row) {
+function createRow(report, row, counted) {
   const term = h(
     'button',
     { type: 'button', class: 'term' },
@@ -69,7 +71,8 @@ function createRow(report, row) {
   const now = h('td', { class: 'now' });
   effect(() => {
     const current = report.value;
-    const figures = current ? figuresOf(current, row.key) : null;
+    let figures = current ? figuresOf(current, row.key) : null;
+    if (figures && row.key === 'count') figures = { ...figures, now: counted.value || figures.now };
     before.textContent = writeFigure(row, figures?.before);
     now.textContent = current && row.to ? writeRange(row, current) : writeFigure(row, figures?.now);
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
