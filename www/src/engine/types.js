@@ -156,7 +156,11 @@
  * @property {string[]} colours
  * @property {boolean} [pending]
  */
-/** @typedef {{sampling: number, total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing */
+/**
+ * The times in seconds of the sampling and of its parts. With `steps` above 0 they are those of so many relaxation steps alone,
+ * which were made after it.
+ * @typedef {{steps: number, sampling: number, total: number, seconds: Seconds, us_per_particle: number, particles: number, live: boolean}} Timing
+ */
 /**
  * Measurements of the last slider drag: the runs requested and shown, and the median time from a request to its
  * picture.

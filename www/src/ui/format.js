@@ -56,6 +56,9 @@ export function formatCount(value) {
   return isNumber(value) ? write(value, { maximumFractionDigits: 0 }) : MISSING;
 }
 
+/** Names the relaxation steps whose time is given. @param {number} steps */
+export const lastSteps = (steps) => (steps === 1 ? 'the last step' : `the last ${formatCount(steps)} steps`);
+
 /** Formats the integers within a sentence. @param {string} text */
 export const withCounts = (text) => text.replace(/(?<![\d.])\d{4,}(?!\.?\d)/g, (digits) => formatCount(Number(digits)));
 

@@ -171,12 +171,19 @@ describe('the caption', () => {
     relax_steps: 10,
     stop_reason: null,
   });
-  const facts = { partial: false, empty: false, busy: true, seconds: null };
+  const facts = { partial: false, empty: false, busy: true, seconds: null, steps: 0 };
 
   it('names the phase and the count while a run is under way', () => {
     expect(captionOf(progress, facts)).toBe('Level 12 · 1,463 particles');
     expect(captionOf({ ...progress, phase: 'refinement' }, facts)).toBe('Refining, level 2 of 4 · 1,463 particles');
     expect(captionOf({ ...progress, phase: 'relaxation' }, facts)).toBe('Relaxation 4 of 10 · 1,463 particles');
+  });
+
+  it('says of which relaxation steps the time is, if it is not that of the sampling', () => {
+    const rest = { ...facts, busy: false, seconds: 0.05 };
+    const done = { ...progress, phase: 'done', stop_reason: 'complete' };
+    expect(captionOf(done, { ...rest, steps: 1 })).toBe('1,463 particles · 50\u202fms for the last step');
+    expect(captionOf(done, { ...rest, steps: 5 })).toBe('1,463 particles · 50\u202fms for the last 5 steps');
   });
 
   it('tells how far a model on its way is', () => {

@@ -354,6 +354,22 @@ test('the time under the picture is the time of the sampling in the report', asy
   await expect(page.locator('.caption')).toContainText(String(total));
 });
 
+test('after one step more the caption and the report say that the time is that of the step', async ({ page }) => {
+  await open(page);
+  await page.getByRole('button', { name: 'Relax one step' }).click();
+  await settled(page);
+  const [title, time] = await page
+    .locator('.timing thead th')
+    .evaluateAll(([first, , last]) => [first.textContent, last.textContent]);
+  expect(title).toBe('The last step');
+  await expect(page.locator('.caption')).toContainText(`${time} for the last step`);
+  await expect(page.locator('.timing tbody th')).toHaveText(['Relaxation']);
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await settled(page);
+  await expect(page.locator('.timing thead th').first()).toHaveText('Sampling');
+  await expect(page.locator('.caption')).not.toContainText('step');
+});
+
 test('no two sliders have the same name', async ({ page }) => {
   await open(page, { hash: link({ surface: 'sphere' }) });
   const names = await page

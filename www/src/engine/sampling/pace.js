@@ -10,6 +10,7 @@ import { CostModel, costKey, planLive, sizeOf } from './scheduler.js';
  * @typedef {import('../types.js').Settings} Settings
  * @typedef {import('../types.js').Timing} Timing
  * @typedef {import('./run-state.js').Run} Run
+ * @typedef {import('./run-state.js').RunRequest} RunRequest
  * @typedef {import('./run-state.js').SampleRequest} SampleRequest
  */
 /**
@@ -92,24 +93,27 @@ const samplingSeconds = ({ seeding, generation, refinement, relaxation }) =>
  * Returns the timing before the report has arrived.
  * @param {Seconds} seconds
  * @param {number} particles
- * @param {boolean} live
+ * @param {RunRequest} request
  * @returns {Timing}
  */
-export function timingOf(seconds, particles, live) {
+export function timingOf(seconds, particles, request) {
+  const steps = request.kind === 'relax' ? request.steps : 0;
   const sampling = samplingSeconds(seconds);
   const usPerParticle = particles > 0 ? (sampling * 1e6) / particles : 0;
-  return { sampling, total: sampling, seconds, us_per_particle: usPerParticle, particles, live };
+  return { steps, sampling, total: sampling, seconds, us_per_particle: usPerParticle, particles, live: request.live };
 }
 
 /**
  * Returns the timing once the report has arrived.
  * @param {{seconds: Seconds, count: number}} report
+ * @param {number} steps  as of the timing before the report
  * @returns {Timing}
  */
-export function timingOfReport({ seconds, count }) {
+export function timingOfReport({ seconds, count }, steps) {
   const sampling = samplingSeconds(seconds);
   const usPerParticle = (sampling * 1e6) / Math.max(1, count);
   return {
+    steps,
     sampling,
     total: sampling + seconds.quality,
     seconds,

@@ -155,7 +155,7 @@ export class Presenter {
     if (progress) {
       store.progress.value = { ...progress, run: id, live: request.live, phase: reportFollows ? 'quality' : 'done' };
     }
-    store.timing.value = timingOf(seconds, particles, request.live);
+    store.timing.value = timingOf(seconds, particles, request);
     if (request.fit && particles > 0) this.picture.fit();
   }
 
@@ -173,7 +173,7 @@ export class Presenter {
       store.report.value = report;
       store.revision.value += 1;
       store.progress.value = { ...store.progress.value, phase: 'done' };
-      store.timing.value = timingOfReport(report);
+      store.timing.value = timingOfReport(report, store.timing.value?.steps ?? 0);
     });
     this.picture.recolour(0, columns.count);
   }

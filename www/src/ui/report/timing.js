@@ -1,7 +1,7 @@
 /** Shows the times of the sampling, of each of its phases as figures and bars, and of the measurement. */
 import { effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { formatSeconds, formatSignificant } from '../format.js';
+import { formatSeconds, formatSignificant, lastSteps } from '../format.js';
 
 const PHASES = /** @type {const} */ ([
   ['seeding', 'Seeding'],
@@ -9,6 +9,9 @@ const PHASES = /** @type {const} */ ([
   ['refinement', 'Refinement'],
   ['relaxation', 'Relaxation'],
 ]);
+
+/** @param {string} words */
+const capital = (words) => words[0].toUpperCase() + words.slice(1);
 
 /**
  * @param {import('../../engine/types.js').Engine} engine
@@ -20,8 +23,11 @@ export function createTiming(engine, report) {
     const timing = engine.timing.value;
     section.hidden = timing === null || timing.particles === 0 || report.value === null;
     if (!timing || section.hidden) return;
-    const { sampling, seconds, particles } = timing;
-    const phases = PHASES.filter(([key]) => key !== 'refinement' || seconds[key] > 0);
+    const { steps, sampling, seconds, particles } = timing;
+    // Relaxation steps that are made after the sampling have no other phase.
+    const phases = PHASES.filter(([key]) =>
+      steps > 0 ? key === 'relaxation' : key !== 'refinement' || seconds[key] > 0,
+    );
     const longest = Math.max(...phases.map(([key]) => seconds[key]), 1e-9);
     fill(
       section,
@@ -34,7 +40,7 @@ export function createTiming(engine, report) {
           h(
             'tr',
             null,
-            h('th', { scope: 'col' }, 'Sampling'),
+            h('th', { scope: 'col' }, steps > 0 ? capital(lastSteps(steps)) : 'Sampling'),
             h('th', { scope: 'col' }, h('span', { class: 'visually-hidden' }, 'Share')),
             h('th', { scope: 'col' }, formatSeconds(sampling)),
           ),

@@ -1,5 +1,5 @@
 /** Returns the caption that describes the state of the run. */
-import { formatCount, formatSeconds, formatShare, plural } from '../format.js';
+import { formatCount, formatSeconds, formatShare, lastSteps, plural } from '../format.js';
 
 /** Returns the caption during a reveal. @param {{ level: number, particles: number }} reveal */
 export const revealOf = ({ level, particles }) => `Level ${formatCount(level)} · ${plural(particles, 'particle')}`;
@@ -9,9 +9,10 @@ export const loadingOf = ({ name, label, fraction }) => `${name} · ${label} · 
 
 /**
  * @param {import('../../engine/types.js').Progress} progress
- * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null }} facts
+ * @param {{ partial: boolean, empty: boolean, busy: boolean, seconds: number | null, steps: number }} facts  `seconds` are
+ *   those of the sampling or, with `steps` above 0, of so many relaxation steps after it
  */
-export function captionOf(progress, { partial, empty, busy, seconds }) {
+export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
   const particles = plural(progress.particles, 'particle');
   switch (progress.phase) {
     case 'seeding':
@@ -41,6 +42,7 @@ export function captionOf(progress, { partial, empty, busy, seconds }) {
     if (progress.stop_reason === 'cap') return `Stopped at the limit · ${particles}`;
     if (partial || progress.stop_reason === 'cancelled') return `Stopped · ${particles}`;
     if (progress.particles === 0) return '';
-    return seconds === null ? particles : `${particles} · ${formatSeconds(seconds)}`;
+    if (seconds === null) return particles;
+    return `${particles} · ${formatSeconds(seconds)}${steps > 0 ? ` for ${lastSteps(steps)}` : ''}`;
   }
 }

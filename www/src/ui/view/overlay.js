@@ -35,6 +35,7 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
             empty: engine.empty.value,
             busy: engine.busy.value,
             seconds: engine.timing.value?.sampling ?? null,
+            steps: engine.timing.value?.steps ?? 0,
           }),
   );
   // The field panel announces the loading.
