@@ -2,7 +2,8 @@
  * Draws the README's pictures with the program itself, from the built site: `npm run pictures:readme`.
  *
  * Writes readme/page-{light,dark}.webp (the whole page), readme/sizes-{light,dark}.webp (adaptive sampling and models from
- * points) and readme/levels-{light,dark}.webp (generation levels growing).
+ * points), readme/meshes-{light,dark}.webp (refined runs as meshes) and readme/levels-{light,dark}.webp (generation levels
+ * growing).
  */
 import { mkdir, writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -34,6 +35,16 @@ const SIZES = [
     view: { colour: 'curvature', points: false },
     zoom: 1,
   },
+];
+
+/** What the strip of meshes shows: the same count by both methods, where the front's grains meet in seams; then two refined runs. */
+const MESH_VIEW = { colour: 'valence', draw: 'mesh', faces: 'smooth', edges: true, marks: true, points: false };
+const MESH_SETTINGS = { size_mode: 'count', count: 3000 };
+const MESHES = [
+  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'front' }, view: MESH_VIEW, zoom: 1.2 },
+  { surface: 'ellipsoid', settings: { ...MESH_SETTINGS, method: 'refined' }, view: MESH_VIEW, zoom: 1.2 },
+  { surface: 'tanglecube', settings: { ...MESH_SETTINGS, count: 6000, method: 'refined' }, view: MESH_VIEW, zoom: 1.1 },
+  { surface: 'gyroid', settings: { ...MESH_SETTINGS, count: 9000, method: 'refined' }, view: MESH_VIEW, zoom: 1.1 },
 ];
 
 /** A frame of the strip, and device pixels per pixel of it. */
@@ -101,29 +112,39 @@ const onlyThePicture = (page) =>
     }
   });
 
-for (const theme of /** @type {const} */ (['light', 'dark'])) {
-  const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
-  await page.goto(base);
-  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
-  await onlyThePicture(page);
-  const frames = [];
-  for (const { zoom, ...state } of SIZES) {
-    await page.evaluate(
-      async ({ wanted, zoom }) => {
-        const mp = /** @type {any} */ (window).marchingParticles;
-        mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-        await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
-        mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
-        mp.engine.zoom(zoom);
-      },
-      { wanted: state, zoom },
-    );
-    await page.waitForTimeout(1500);
-    frames.push(await page.screenshot());
+/**
+ * Draws surfaces side by side in both themes.
+ * @param {string} name of the files
+ * @param {(typeof SIZES | typeof MESHES)[number][]} states
+ */
+async function strip(name, states) {
+  for (const theme of /** @type {const} */ (['light', 'dark'])) {
+    const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
+    await page.goto(base);
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.ready);
+    await onlyThePicture(page);
+    const frames = [];
+    for (const { zoom, ...state } of states) {
+      await page.evaluate(
+        async ({ wanted, zoom }) => {
+          const mp = /** @type {any} */ (window).marchingParticles;
+          mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+          await mp.set({ ...wanted, view: { ...wanted.view, camera: { ...mp.state.view.camera, fit: true } } });
+          mp.engine.setInsets({ left: 0, right: 0, top: 0, bottom: 0 });
+          mp.engine.zoom(zoom);
+        },
+        { wanted: state, zoom },
+      );
+      await page.waitForTimeout(1500);
+      frames.push(await page.screenshot());
+    }
+    await page.close();
+    await write(`${name}-${theme}.webp`, await webp(frames, 0.86));
   }
-  await page.close();
-  await write(`sizes-${theme}.webp`, await webp(frames, 0.86));
 }
+
+await strip('sizes', SIZES);
+await strip('meshes', MESHES);
 
 for (const theme of /** @type {const} */ (['light', 'dark'])) {
   const page = await browser.newPage({ viewport: LEVEL_PX, deviceScaleFactor: LEVEL_SCALE, colorScheme: theme });
