@@ -4,7 +4,7 @@ use super::values::{answer, to_js};
 use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
-use crate::session::{Fault, FaultKind, FieldAnswer, FieldRequest, Session, describe};
+use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
 use glam::Vec3;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
