@@ -275,11 +275,20 @@ fn nothing_to_sample_has_its_own_exit_code() {
 }
 
 #[test]
-fn a_run_that_would_exceed_the_limit_is_refused() {
-    let message = fails(4, &["sample", "--surface", "sphere", "--radius", "0.05%"]);
+fn a_run_that_meets_the_limit_prints_what_it_has_and_says_how_many_would_fit() {
+    let output = run(&["sample", "--surface", "plane", "--max-particles", "5", "--json"]);
+    assert_eq!(output.status.code(), Some(4));
+    let json: Value = serde_json::from_slice(&output.stdout).expect("a line of JSON");
+    assert_eq!((json["count"].as_u64(), json["stop_reason"].as_str()), (Some(5), Some("cap")));
+    let message = String::from_utf8_lossy(&output.stderr);
     let wanted = message.split("--max-particles ").nth(1).expect("advice");
-    assert!(wanted.trim().parse::<u64>().expect("a number") > 200_000, "{message}");
-    fails(4, &["sample", "--surface", "sphere", "--count", "2000", "--max-particles", "1000"]);
+    assert!(wanted.trim().parse::<u64>().expect("a number") > 1_000, "{message}");
+}
+
+#[test]
+fn a_comparison_that_would_exceed_the_limit_is_refused() {
+    let message = fails(4, &["compare", "--surface", "sphere", "--count", "2000", "--max-particles", "1000"]);
+    assert!(message.contains("limit of 1000"), "{message}");
 }
 
 #[test]

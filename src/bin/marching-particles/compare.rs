@@ -69,7 +69,11 @@ struct Comparison {
 
 pub(crate) fn run(arguments: &Compare) -> Result<ExitCode, Failure> {
     let begun = begin(&arguments.surface, &arguments.sampling, arguments.quiet)?;
-    let Begun { mut session, answer, settings, mut seconds, .. } = begun;
+    let Begun { mut session, answer, settings, predicted_count, mut seconds } = begun;
+    // Methods of which one is stopped cannot be compared.
+    if predicted_count > u64::from(settings.max_particles) {
+        return Err(Failure::Limit(sample::over_limit(predicted_count, &settings)));
+    }
     let other_settings = baseline::Settings {
         sizes: settings,
         max_iterations: arguments.iterations,

@@ -55,15 +55,6 @@ pub(crate) fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Resu
     let (answer, settings) = fit_box(&mut session, surface, sampling, answer);
     let start = session.start(&settings).map_err(|error| Failure::Usage(refusal(&error)))?;
     seconds.seeding += clock.seconds();
-    if start.predicted_count > u64::from(settings.max_particles) {
-        return Err(Failure::Limit(format!(
-            "about {} particles of this radius would fit on the surface, more than the limit of {}; \
-             choose a larger --radius, or allow them with --max-particles {}",
-            start.predicted_count,
-            settings.max_particles,
-            (start.predicted_count as f64 * COUNT_ROOM).ceil()
-        )));
-    }
     Ok(Begun { session, answer, settings, predicted_count: start.predicted_count, seconds })
 }
 
@@ -156,13 +147,22 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         summary::write(&mut out, &outcome)?;
     }
     if capped {
-        eprintln!(
-            "warning: stopped at the limit of {} particles; allow more with --max-particles",
-            settings.max_particles
-        );
+        eprintln!("warning: stopped: {}", over_limit(predicted_count, &settings));
         return Ok(ExitCode::from(LIMIT));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What to say of a run that meets the limit on particles.
+pub(crate) fn over_limit(predicted_count: u64, settings: &Settings) -> String {
+    // The prediction may be a little too low.
+    let count = predicted_count.max(u64::from(settings.max_particles) + 1);
+    format!(
+        "about {count} particles of this radius would fit on the surface, more than the limit of {}; \
+         choose a larger --radius, or allow them with --max-particles {}",
+        settings.max_particles,
+        (count as f64 * COUNT_ROOM).ceil()
+    )
 }
 
 /// Format of each file. It is checked before any work is done.

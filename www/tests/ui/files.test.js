@@ -63,10 +63,10 @@ describe('a model from points', () => {
     expect(factsOf({ ...info, points: 200, centres: 200 })[0]).toMatchObject({ label: 'Points', value: '200' });
   });
 
-  it("has a story and a credit, a file its name, and a formula of one's own neither", () => {
+  it("has a story and a credit, as a surface has; a file has its name, and a formula of one's own neither", () => {
     const description = /** @type {any} */ ({
       models: [{ id: 'bunny', name: 'Bunny', story: 'It hops.', credit: 'Stanford', points: 200 }],
-      surfaces: [{ id: 'sphere', name: 'Sphere', story: 'Round.', source: 'Euclid', degree: 2, genus: 0 }],
+      surfaces: [{ id: 'sphere', name: 'Sphere', story: 'Round.', source: 'Archimedes', degree: 2, genus: 0 }],
     });
     expect(storyOf(description, 'bunny', null)).toEqual({
       name: 'Bunny',
@@ -75,7 +75,7 @@ describe('a model from points', () => {
       credit: 'Stanford',
     });
     expect(storyOf(description, FILE_SURFACE, info)).toMatchObject({ name: 'dragon.ply', facts: '5,205 points' });
-    expect(storyOf(description, 'sphere', null)).toMatchObject({ facts: 'Degree 2 · genus 0', credit: 'Euclid' });
+    expect(storyOf(description, 'sphere', null)).toMatchObject({ facts: 'Degree 2 · genus 0', credit: 'Archimedes' });
     expect(storyOf(description, null, null).name).toBe('Your own formula');
   });
 });

@@ -30,7 +30,7 @@ test('the mesh that is downloaded is byte for byte that of the command line', as
 test('the way of drawing is chosen in the view options, and in words where there can be no mesh', async ({ page }) => {
   const { clean } = await open(page);
   await page.getByRole('button', { name: 'View options' }).click();
-  await expect(page.getByRole('group', { name: 'Faces' })).toBeHidden();
+  await expect(page.getByRole('group', { name: 'Faces', exact: true })).toBeHidden();
   await page.getByRole('button', { name: 'Mesh', exact: true }).click();
   await expect(page.getByRole('slider', { name: 'Disc size' })).toBeHidden();
   await page.getByRole('button', { name: 'Flat' }).click();

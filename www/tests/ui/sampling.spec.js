@@ -7,9 +7,11 @@ test('the settings are those that the core describes, each with its help', async
   const settings = await page.evaluate(
     () => /** @type {any} */ (window).marchingParticles.engine.description.value.settings,
   );
-  await expect(page.locator('.setting')).toHaveCount(settings.length);
+  // The mode of the box is set where the box is.
+  const shown = settings.filter((/** @type {{ name: string }} */ { name }) => name !== 'box_mode');
+  await expect(page.locator('.setting')).toHaveCount(shown.length);
   await page.getByRole('button', { name: 'Advanced' }).click();
-  for (const { name, label, help } of settings) {
+  for (const { name, label, help } of shown) {
     const setting = page.locator(`.setting[data-setting="${name}"]`);
     await expect(setting).toContainText(label);
     if (!(await setting.isVisible())) continue;
@@ -229,7 +231,7 @@ test('more particles than the limit are asked for first, and the answer is heede
   expect((await state(page)).settings.max_particles).toBeGreaterThan(before.count);
 });
 
-test('no surface in the box is said in words, with a way out; the last surface stays, dimmed', async ({ page }) => {
+test('no surface anywhere is said in words, with a way out; the last surface stays, dimmed', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'x^2 + y^2 + z^2 + 1');
   await expect(page.getByRole('heading', { name: 'No surface within ±10,000' })).toBeVisible();
@@ -251,9 +253,10 @@ test('no surface in the box is said in words, with a way out; the last surface s
   expect((await report(page)).count).toBeGreaterThan(100);
 });
 
-test('a link to a formula without a surface shows its box, whole', async ({ page }) => {
-  await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify({ formula: 'x^2 + 1' })).toString('base64url')}` });
-  await expect(page.getByRole('heading', { name: 'No surface within ±10,000' })).toBeVisible();
+test('a link to a formula without a surface in its box shows that box, whole', async ({ page }) => {
+  const wanted = { formula: 'x^2 + 1', settings: { box_mode: 'fixed' } };
+  await open(page, { hash: `#v1.j.${Buffer.from(JSON.stringify(wanted)).toString('base64url')}` });
+  await expect(page.getByRole('heading', { name: 'No surface inside the box' })).toBeVisible();
   await expect(page.locator('.empty')).not.toContainText('The last surface');
   await atRest(page);
   const { distance } = (await state(page)).view.camera;
