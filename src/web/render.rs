@@ -366,7 +366,7 @@ fn check_columns(
 }
 
 fn check_corners(first: u32, corners: u32, marks: &Uint32Array) -> Result<(), JsError> {
-    if corners % 3 != 0 || marks.length() != corners {
+    if !corners.is_multiple_of(3) || marks.length() != corners {
         return Err(JsError::new(&format!("{corners} corners and {} marks are no faces", marks.length())));
     }
     let end = u64::from(first) + u64::from(corners / 3);
