@@ -43,7 +43,7 @@ pub(super) enum Outcome {
     Undecided,
 }
 
-/// What a scan found.
+/// The result of a scan: how it ended, and the box around the surface that it met.
 pub(super) struct Scan {
     pub(super) outcome: Outcome,
     pub(super) hull: Option<[DVec3; 2]>,

@@ -21,7 +21,7 @@ pub struct Frame {
     pub camera: Camera,
     /// Light and background.
     pub light: Light,
-    /// What appears, and which levels are shown.
+    /// Progress of the particles that are appearing, and the range of levels shown.
     pub growth: Growth,
     /// How particles and faces look.
     pub look: Look,

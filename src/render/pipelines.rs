@@ -32,7 +32,7 @@ pub(super) struct Pipelines {
     pub(super) clip_box: wgpu::RenderPipeline,
 }
 
-/// What pipelines draw into.
+/// Format and sample count of the texture that a pipeline draws into.
 #[derive(Clone, Copy)]
 pub(super) struct TargetKind {
     /// An sRGB format, so that blending is linear.

@@ -35,11 +35,11 @@ pub struct Description {
     pub columns: &'static [Column],
     /// What a new parameter is, but for its name.
     pub new_parameter: Parameter,
-    /// What is accepted.
+    /// Largest and smallest values that the core accepts.
     pub limits: Limits,
 }
 
-/// What the core accepts.
+/// The limits of what the core accepts.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Limits {

@@ -3,7 +3,7 @@
 use super::error::{FormulaError, Mended};
 use super::{MAX_FORMULA_BYTES, syntax};
 
-/// Most places that are corrected together. Longer formulas than the largest have no more.
+/// Largest number of places that one repair corrects. It bounds the work of a repair.
 const MOST_PLACES: usize = 256;
 
 /// The error with all of its kind corrected, if there are several: each suggestion is taken until none follows, or a mistake of

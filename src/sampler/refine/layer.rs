@@ -54,7 +54,7 @@ pub(super) struct Block {
     points: Vec<Vec3>,
     value: Vec<f32>,
     gradient: Vec<Vec3>,
-    /// Of some particles, from which their sizes follow.
+    /// Principal curvatures at the particles of the block, from which their sizes follow.
     pub(super) curvature: Vec<Curvature>,
     /// Those that could not be brought back.
     pub(super) refused: Vec<u32>,

@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
 pub enum Refusal {
-    /// What is asked for, or the surface, is of another kind.
+    /// The wanted count, the curvature or a vanishing gradient rules refinement out from the start.
     #[error(
         "The front stands, and is not refined: that takes at least 720 particles and room for them below the limit, a \
          spacing of less than 0.45 of the smallest radius of curvature, and a gradient that vanishes nowhere on the surface."

@@ -82,7 +82,7 @@ export type Description = {
   columns: Array<Column>,
   /** What a new parameter is, but for its name. */
   new_parameter: Parameter,
-  /** What is accepted. */
+  /** Largest and smallest values that the core accepts. */
   limits: Limits,
 };
 
@@ -287,7 +287,7 @@ export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
 /** What the values of a setting are. */
 export type Kind = "number" | "integer" | "choice";
 
-/** What the core accepts. */
+/** The limits of what the core accepts. */
 export type Limits = {
   /** Longest formula, in bytes of UTF-8. */
   formula_bytes: number,

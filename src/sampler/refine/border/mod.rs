@@ -71,7 +71,7 @@ fn slide(ground: &mut Ground, free: Vec3, start: Vec3, reach: f32) -> Option<(Ve
 }
 
 impl Layer {
-    /// What the valence of a particle exceeds the one by that it has without a defect.
+    /// Difference between a particle's valence and the valence of a particle without a defect at that place.
     #[inline]
     pub(super) fn excess(&self, v: u32) -> i32 {
         /// The valence of an inner particle without a defect.
