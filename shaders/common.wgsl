@@ -46,6 +46,7 @@ struct Frame {
     growth: Growth,
     look: Look,
     clip_box: ClipBox,
+    plane: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -55,8 +56,9 @@ const NOTHING = 0.002;
 // Share of linear light by which each component of a linear sRGB colour adds to its luminance (Rec. 709).
 const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
 // What an inside keeps of its light and of its distance from grey. Chosen by comparing pictures of the gyroid, Klein bottle,
-// decocube and bunny as discs and as mesh on both grounds.
-const INSIDE_LIGHT = 0.30;
+// Neovius's and Clebsch's surfaces, decocube and bunny as discs and as mesh on both grounds: at a light of 0.3 the patterns on the
+// inside drown, at 0.5 it is hard to tell from the front.
+const INSIDE_LIGHT = 0.40;
 const INSIDE_CHROMA = 0.5;
 
 fn oct_decode(e: vec2<f32>) -> vec3<f32> {
@@ -72,6 +74,11 @@ fn linear_from_srgb(c: vec3<f32>) -> vec3<f32> {
 // Position outside of the view volume, which culls the quad.
 fn hidden() -> vec4<f32> {
     return vec4<f32>(0.0, 0.0, 2.0, 1.0);
+}
+
+// Distance from the cutting plane times the length of its normal: positive on the side that is hidden.
+fn beyond_plane(position: vec3<f32>) -> f32 {
+    return dot(frame.plane.xyz, position) - frame.plane.w;
 }
 
 // Mixes linear colours in steps that look even: the square root is close to the transfer function of sRGB.

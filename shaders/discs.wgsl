@@ -103,7 +103,8 @@ fn disc_vertex(vertex: u32, particle: Particle, point_depth: f32, side: f32) -> 
     let appear = age * age * (3.0 - 2.0 * age);
     let opacity = appear * particle.colour.a;
     let centre = frame.camera.clip_from_world * vec4<f32>(particle.position, 1.0);
-    if particle.radius <= 0.0 || particle.level > frame.growth.level || opacity <= NOTHING || centre.w <= 0.0 {
+    if particle.radius <= 0.0 || particle.level > frame.growth.level || opacity <= NOTHING || centre.w <= 0.0
+        || beyond_plane(particle.position) > 0.0 {
         return out;
     }
 

@@ -1,4 +1,4 @@
-// Draws the triangles of a mesh, with their edges and marks on vertices. See src/render/mod.rs.
+// Draws the triangles of a mesh, with their edges and marks on vertices, or as a ghost beneath discs. See src/render/mod.rs.
 
 // A triangle, counter-clockwise seen from outside, as FACE_ATTRIBUTES and TINT_ATTRIBUTES in src/render/layout.rs describe it.
 struct Face {
@@ -35,6 +35,8 @@ struct Point {
     @location(7) @interpolate(flat) mark_b: vec4<f32>,
     @location(8) @interpolate(flat) mark_c: vec4<f32>,
     @location(9) @interpolate(flat) faded: f32,
+    // See beyond_plane.
+    @location(10) beyond: f32,
 }
 
 // Share of the way to the ink that the colour of a face goes on its edges.
@@ -52,11 +54,34 @@ const MARK_MOST = 0.9;
 const MARK_CASING_PX = 1.0;
 const MARK_CASED_PX = vec2<f32>(2.5, 4.5);
 
+// A corner of a face: position and repulsion radius, normal, colour.
+struct Corner {
+    place: vec4<f32>,
+    normal_oct: vec2<f32>,
+    colour: vec4<f32>,
+}
+
+fn corner_of(face: Face, vertex: u32) -> Corner {
+    if vertex == 1u {
+        return Corner(face.b, face.normal_b, face.colour_b);
+    }
+    if vertex == 2u {
+        return Corner(face.c, face.normal_c, face.colour_c);
+    }
+    return Corner(face.a, face.normal_a, face.colour_a);
+}
+
+// Whether a face is not drawn at all, because a corner has no radius or because it is beyond the cutting plane.
+fn is_hidden(face: Face) -> bool {
+    let beyond = min(beyond_plane(face.a.xyz), min(beyond_plane(face.b.xyz), beyond_plane(face.c.xyz)));
+    return min(face.a.w, min(face.b.w, face.c.w)) <= 0.0 || beyond > 0.0;
+}
+
 @vertex
 fn vs_face(@builtin(vertex_index) vertex: u32, face: Face) -> Point {
     var out: Point;
     out.clip = hidden();
-    if min(face.a.w, min(face.b.w, face.c.w)) <= 0.0 || face.level > frame.growth.level {
+    if is_hidden(face) || face.level > frame.growth.level {
         return out;
     }
     let bc = face.c.xyz - face.b.xyz;
@@ -65,25 +90,14 @@ fn vs_face(@builtin(vertex_index) vertex: u32, face: Face) -> Point {
     out.sides_sq = vec3<f32>(dot(bc, bc), dot(ca, ca), dot(ab, ab));
     out.radii = vec3<f32>(face.a.w, face.b.w, face.c.w);
 
-    var position = face.a.xyz;
-    var normal_oct = face.normal_a;
-    var srgb = face.colour_a.rgb;
-    out.weights = vec3<f32>(1.0, 0.0, 0.0);
-    if vertex == 1u {
-        position = face.b.xyz;
-        normal_oct = face.normal_b;
-        srgb = face.colour_b.rgb;
-        out.weights = vec3<f32>(0.0, 1.0, 0.0);
-    } else if vertex == 2u {
-        position = face.c.xyz;
-        normal_oct = face.normal_c;
-        srgb = face.colour_c.rgb;
-        out.weights = vec3<f32>(0.0, 0.0, 1.0);
-    }
+    let corner = corner_of(face, vertex);
+    let position = corner.place.xyz;
+    out.weights = vec3<f32>(f32(vertex == 0u), f32(vertex == 1u), f32(vertex == 2u));
     out.clip = frame.camera.clip_from_world * vec4<f32>(position, 1.0);
+    out.beyond = beyond_plane(position);
     out.to_eye = toward_eye(position);
-    out.normal = oct_decode(normal_oct);
-    out.colour = linear_from_srgb(srgb);
+    out.normal = oct_decode(corner.normal_oct);
+    out.colour = linear_from_srgb(corner.colour.rgb);
     if frame.look.flat_faces > 0.5 {
         // A flat face has one normal, and the mean colour of its corners.
         let across = cross(ab, -ca);
@@ -123,8 +137,7 @@ fn marked(under: vec3<f32>, mark: vec4<f32>, radius: f32, distance: f32, per_px:
     return mix(mix(under, frame.light.background.rgb, casing), dot_shade, clamp(inside_px + 0.5, 0.0, 1.0));
 }
 
-@fragment
-fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn shade_face(point: Point, front: bool) -> vec3<f32> {
     // Derivatives are taken in uniform control flow.
     let along_x = dpdx(point.weights);
     let along_y = dpdy(point.weights);
@@ -153,5 +166,74 @@ fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec
 
     let ground = frame.light.background.rgb;
     let seen = inside(colour, select(frame.light.dim_backfaces, 0.0, front));
-    return vec4<f32>(fade_to(seen, ground, point.faded), 1.0);
+    return fade_to(seen, ground, point.faded);
+}
+
+@fragment
+fn fs_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return vec4<f32>(shade_face(point, front), 1.0);
+}
+
+// Share of a pixel that is on the side of the cutting plane that is shown. It takes derivatives, so call it in uniform control flow.
+fn shown_share(beyond: f32) -> f32 {
+    let per_px = max(length(vec2<f32>(dpdx(beyond), dpdy(beyond))), 1e-20);
+    return clamp(0.5 - beyond / per_px, 0.0, 1.0);
+}
+
+// A face that the cutting plane may cross. The opacity is the share of the pixel on the side that is shown.
+@fragment
+fn fs_cut_face(point: Point, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let colour = shade_face(point, front);
+    let shown = shown_share(point.beyond);
+    if shown < NOTHING {
+        discard;
+    }
+    return vec4<f32>(colour, shown);
+}
+
+// The surface as a ghost beneath its discs.
+struct Ghost {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) to_eye: vec3<f32>,
+    // See beyond_plane.
+    @location(2) beyond: f32,
+}
+
+// Depth in repulsion radii by which the ghost lies behind the surface. Between the corners of a face, the surface and the discs on it
+// bend away from the face by less than that.
+const GHOST_DEPTH = 1.0;
+// Linear grey of the ghost, and the share by which it fades to the background.
+const GHOST_GREY = 0.4;
+const GHOST_FADE = 0.72;
+
+@vertex
+fn vs_ghost(@builtin(vertex_index) vertex: u32, face: Face) -> Ghost {
+    var out: Ghost;
+    out.clip = hidden();
+    if is_hidden(face) {
+        return out;
+    }
+    let corner = corner_of(face, vertex);
+    let position = corner.place.xyz;
+    out.to_eye = toward_eye(position);
+    out.normal = oct_decode(corner.normal_oct);
+    out.beyond = beyond_plane(position);
+    out.clip = frame.camera.clip_from_world * vec4<f32>(position, 1.0);
+    let deeper = frame.camera.clip_from_world * vec4<f32>(position - GHOST_DEPTH * corner.place.w * out.to_eye, 1.0);
+    out.clip.z = deeper.z / deeper.w * out.clip.w;
+    return out;
+}
+
+@fragment
+fn fs_ghost(ghost: Ghost, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let shown = shown_share(ghost.beyond);
+    if shown < NOTHING {
+        discard;
+    }
+    let n = normalize(select(-ghost.normal, ghost.normal, front));
+    let facing = clamp(dot(n, normalize(ghost.to_eye)), 0.0, 1.0);
+    let light = brightness(dot(frame.light.key, n), dot(frame.light.sky, n), 1.0 - facing);
+    let seen = inside(vec3<f32>(GHOST_GREY * light), select(frame.light.dim_backfaces, 0.0, front));
+    return vec4<f32>(fade_to(seen, frame.light.background.rgb, max(GHOST_FADE, frame.light.dim)), shown);
 }

@@ -111,9 +111,9 @@
 //! * [`differential`]: principal curvatures and directions of the surface.
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `slices`: long work that can be left and gone on with, as measuring is.
-//! * [`trace`]: the log with which the adaptive front can be replayed.
 //! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
 //! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
+//! * [`reference`](mod@reference): the paper's algorithms written for reading, with a log of every event.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.
@@ -138,12 +138,12 @@ pub mod particles;
 #[cfg(feature = "points")]
 pub mod pointcloud;
 pub mod quality;
+pub mod reference;
 pub mod render;
 pub mod sampler;
 pub mod session;
 mod slices;
 pub mod spatial;
-pub mod trace;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 

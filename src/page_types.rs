@@ -2,6 +2,7 @@
 
 use crate::field::model::SolvedModel;
 use crate::pointcloud::job;
+use crate::reference::{self, LessonField};
 use crate::sampler::{Progress, Start};
 use crate::session::{Description, Fault, FieldAnswer, FieldRequest, MeshAnswer, Report};
 use std::collections::BTreeMap;
@@ -9,7 +10,7 @@ use std::path::Path;
 use ts_rs::{Config, TS, TypeVisitor};
 
 const HEAD: &str = "\
-// The types of what the core and the solver for points say and are told. Written from the Rust types by a test:
+// The types of what the core, the solver for points and the lesson say and are told. Written from the Rust types by a test:
 // UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** What a command is answered: the fields of the value, or the error. */
@@ -78,6 +79,13 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<SolvedModel>();
     declarations.add::<job::Progress>();
     declarations.add::<job::Fault>();
+    declarations.add::<LessonField>();
+    declarations.add::<reference::Settings>();
+    declarations.add::<reference::Progress>();
+    declarations.add::<reference::Chapter>();
+    declarations.add::<reference::Event>();
+    declarations.add::<reference::Life>();
+    declarations.add::<reference::Iterate>();
     let text: String = std::iter::once(HEAD.to_owned()).chain(declarations.found.into_values()).collect();
 
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/src/engine/core-types.d.ts");

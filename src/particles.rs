@@ -4,6 +4,7 @@
 
 use crate::math::Bounds;
 use glam::Vec3;
+use serde::Serialize;
 
 /// Particle columns. Index `i` of every column belongs to particle `i`.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +25,9 @@ pub struct Particles {
 
 /// Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
 /// where radii vary (§5).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum SlotFate {
     /// The front has not reached the slot.
@@ -144,6 +147,16 @@ impl Particles {
         self.slots.truncate(len);
     }
 
+    /// For each particle the seed from which its front grew.
+    pub(crate) fn fronts(&self) -> Vec<u32> {
+        let mut fronts: Vec<u32> = Vec::with_capacity(self.len());
+        for (i, &parent) in (0..).zip(&self.parent) {
+            // Parents come before their children.
+            fronts.push(fronts.get(parent as usize).copied().unwrap_or(i));
+        }
+        fronts
+    }
+
     /// Removes the particles outside a box. One whose parent is removed is a seed then, and levels are counted from it.
     pub(crate) fn keep_within(&mut self, bounds: &Bounds) {
         let mut place = vec![Self::NO_PARENT; self.len()];
@@ -164,6 +177,17 @@ impl Particles {
             kept += 1;
         }
         self.truncate(kept);
+    }
+
+    /// Takes the first `len` particles of others in place of its own.
+    pub(crate) fn copy_first(&mut self, len: usize, others: &Self) {
+        self.clear();
+        self.position.extend_from_slice(&others.position[..len]);
+        self.normal.extend_from_slice(&others.normal[..len]);
+        self.radius.extend_from_slice(&others.radius[..len]);
+        self.parent.extend_from_slice(&others.parent[..len]);
+        self.level.extend_from_slice(&others.level[..len]);
+        self.slots.extend_from_slice(&others.slots[..len]);
     }
 
     /// Removes all particles and keeps the memory.

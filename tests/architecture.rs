@@ -27,9 +27,8 @@ const ROOMS: [Room; 4] = [
             // Particles, meshes of them and the search among them know no field: they hold whatever made them.
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
-            ("trace", &["math", "particles"]),
             ("mesh", &["math", "slices", "spatial", "particles"]),
-            ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh", "trace"]),
+            ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh"]),
             // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
             ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
             // Figures about a set of particles must not depend on what made them.
@@ -46,20 +45,22 @@ const ROOMS: [Room; 4] = [
                     "spatial",
                     "particles",
                     "mesh",
-                    "trace",
                     "sampler",
                     "quality",
                     "export",
                 ],
             ),
+            // The paper written for reading, and the oracle of the fast fronts: it shares some words with the sampler, no algorithm.
+            ("reference", &["math", "field", "differential", "particles", "sampler"]),
             // Compiled for tests alone: the types of the page.
-            ("page_types", &["field", "pointcloud", "sampler", "session"]),
+            ("page_types", &["field", "pointcloud", "reference", "sampler", "session"]),
             // The renderer sees slices and camera numbers; the two sides meet in JavaScript only.
             ("render", &["math"]),
             // Each half of the bindings is compiled without the others' modules.
             ("web/values", &["answer"]),
             ("web/core", &["field", "export", "session"]),
             ("web/points", &["field", "pointcloud"]),
+            ("web/lesson", &["math", "field", "reference", "session"]),
             ("web/render", &["render"]),
         ],
     ),
@@ -89,6 +90,7 @@ const ROOMS: [Room; 4] = [
         &[
             ("figures", &[]),
             ("options", &[]),
+            ("places", &[]),
             ("moments", &[]),
             ("nearby", &[]),
             ("cell", &[]),
@@ -102,9 +104,9 @@ const ROOMS: [Room; 4] = [
             ("scene", &["figures", "accuracy", "one_rings", "triangles"]),
             ("components", &["scene", "triangles"]),
             ("order", &["figures", "moments", "one_rings", "scene"]),
-            ("spacing", &["figures", "moments", "scene"]),
-            ("sizes", &["options", "moments", "scene"]),
-            ("holes", &["nearby", "border", "projection", "probe", "triangles", "sizes"]),
+            ("spacing", &["figures", "moments", "places", "scene"]),
+            ("sizes", &["options", "moments", "places", "scene"]),
+            ("holes", &["nearby", "border", "places", "projection", "probe", "triangles", "sizes"]),
         ],
     ),
     ("field", &[("formula", &[]), ("gallery", &["formula"]), ("model", &[]), ("rbf", &[]), ("scaled", &[])]),

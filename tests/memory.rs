@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use marching_particles::field::gallery;
-use marching_particles::sampler::{Sampler, Sampling, Settings};
+use marching_particles::sampler::{Method, Sampler, Sampling, Settings};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -49,6 +49,10 @@ const MOST: f64 = 60.0;
 /// update.
 const MOST_ADAPTIVE: f64 = 64.0;
 
+/// The same for refined runs. While the particles of the last level are handed on, there are also its mesh, with positions and normals of
+/// its own, the walk that orders them, and the level before.
+const MOST_REFINED: f64 = 110.0;
+
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
 const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
 
@@ -87,4 +91,7 @@ fn run_takes_few_bytes_per_particle_beyond_its_output() {
         |chord_error| Settings { sampling: Sampling::Adaptive, chord_error, ..Settings::default() };
     let worst = beyond(adaptive(5e-4), &[1.5e-5, 1e-5, 7e-6, 5e-6, 3.5e-6].map(adaptive));
     assert!(worst <= MOST_ADAPTIVE, "{worst:.1} bytes per adaptive particle");
+    let refined = |radius_share| Settings { method: Method::Refined, ..uniform(radius_share) };
+    let worst = beyond(refined(0.02), &[0.004, 0.0035, 0.003, 0.0025, 0.0022, 0.0019].map(refined));
+    assert!(worst <= MOST_REFINED, "{worst:.1} bytes per refined particle");
 }

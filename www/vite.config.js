@@ -1,4 +1,7 @@
-import { defineConfig } from 'vite';
+import { createHash } from 'node:crypto';
+import { readdirSync, readFileSync, statSync } from 'node:fs';
+import { join } from 'node:path';
+import { build, defineConfig } from 'vite';
 
 /**
  * Has the built page ask for the core in its head, so that it comes at the same time as the scripts. The development server
@@ -20,11 +23,77 @@ const preloadCore = {
   },
 };
 
+/** Name of the service worker's file. It must not change: browsers look for a new version under the old name. */
+const SERVICE_WORKER = 'service-worker.js';
+/**
+ * Has the development server answer with a worker that removes itself, for browsers that have kept the built site's from the same
+ * port.
+ * @type {import('vite').Plugin}
+ */
+const noServiceWorker = {
+  name: 'no-service-worker',
+  apply: 'serve',
+  configureServer({ middlewares }) {
+    middlewares.use(`/${SERVICE_WORKER}`, (_request, response) => {
+      response.setHeader('content-type', 'text/javascript');
+      response.end(`addEventListener('install', () => skipWaiting());
+addEventListener('activate', async () => {
+  await registration.unregister();
+  for (const client of await clients.matchAll()) client.navigate(client.url);
+});`);
+    });
+  },
+};
+
+/**
+ * Builds the service worker, with the list of all files of the site. Workbox keeps a file until its revision changes; a name that
+ * Vite has made from the contents needs none.
+ * @type {import('vite').Plugin & {folder?: string}}
+ */
+const offline = {
+  name: 'offline',
+  apply: 'build',
+  configResolved({ root, build: { outDir } }) {
+    offline.folder = join(root, outDir);
+  },
+  closeBundle: {
+    sequential: true,
+    async handler() {
+      const folder = offline.folder ?? '';
+      const files = readdirSync(folder, { recursive: true, encoding: 'utf8' })
+        .map((file) => file.replaceAll('\\', '/'))
+        .filter((file) => file !== SERVICE_WORKER && statSync(join(folder, file)).isFile())
+        .sort();
+      const revisionOf = (/** @type {string} */ file) =>
+        createHash('sha256')
+          .update(readFileSync(join(folder, file)))
+          .digest('hex')
+          .slice(0, 16);
+      const manifest = files.map((url) => ({ url, revision: url.startsWith('assets/') ? null : revisionOf(url) }));
+      await build({
+        configFile: false,
+        logLevel: 'warn',
+        define: { 'import.meta.env.SITE_FILES': JSON.stringify(manifest), 'process.env.NODE_ENV': '"production"' },
+        build: {
+          outDir: folder,
+          emptyOutDir: false,
+          copyPublicDir: false,
+          target: 'es2022',
+          rollupOptions: {
+            input: join('src', SERVICE_WORKER),
+            output: { format: 'iife', entryFileNames: SERVICE_WORKER },
+          },
+        },
+      });
+    },
+  },
+};
+
 // Every address in the built page is relative, so `dist/` works at the root of a host and in any folder of one.
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
-  plugins: [preloadCore],
+  plugins: [preloadCore, offline, noServiceWorker],
   build: {
     outDir: '../dist',
     emptyOutDir: true,

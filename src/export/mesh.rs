@@ -3,6 +3,7 @@
 use super::glb;
 use crate::particles::Particles;
 use crate::quality;
+use core::ops::Range;
 use std::io::{self, Write};
 
 /// A file format for triangles over particles.
@@ -48,38 +49,77 @@ pub fn write_mesh(
     triangles: &[[u32; 3]],
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let all = rows(format, particles, triangles);
+    write_rows(format, particles, measured, triangles, 0..all, out)
+}
+
+/// Number of rows of a file: a row takes up to a microsecond to write, but for GLB, which is written as a whole.
+pub(crate) fn rows(format: MeshFormat, particles: &Particles, triangles: &[[u32; 3]]) -> usize {
     match format {
-        MeshFormat::Glb => glb::write(particles, triangles, out),
-        MeshFormat::Obj => obj(particles, triangles, out),
-        MeshFormat::Stl => stl(particles, triangles, out),
-        MeshFormat::Ply => super::ply(particles, measured, Some(triangles), out),
+        MeshFormat::Glb => 1,
+        MeshFormat::Obj => 2 * particles.len() + triangles.len(),
+        MeshFormat::Stl => triangles.len(),
+        MeshFormat::Ply => particles.len() + triangles.len(),
     }
 }
 
-fn obj(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "# Marching Particles")?;
-    for p in &particles.position {
-        writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+/// Writes some of the rows of a file, those at the start with what comes before them. One part after the other they make the file of
+/// [`write_mesh`], with its errors.
+pub(crate) fn write_rows(
+    format: MeshFormat,
+    particles: &Particles,
+    measured: &quality::Report,
+    triangles: &[[u32; 3]],
+    rows: Range<usize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    match format {
+        MeshFormat::Glb => glb::write(particles, triangles, out),
+        MeshFormat::Obj => obj(particles, triangles, rows, out),
+        MeshFormat::Stl => stl(particles, triangles, rows, out),
+        MeshFormat::Ply => super::ply(particles, measured, Some(triangles), rows, out),
     }
-    for n in &particles.normal {
-        writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
+}
+
+fn obj(
+    particles: &Particles,
+    triangles: &[[u32; 3]],
+    rows: Range<usize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if rows.start == 0 {
+        writeln!(out, "# Marching Particles")?;
     }
-    for triangle in triangles {
-        // Counted from 1; the normal has the number of the vertex.
-        let [a, b, c] = triangle.map(|v| v + 1);
-        writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
+    let n = particles.len();
+    for row in rows {
+        if let Some(p) = particles.position.get(row) {
+            writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+        } else if let Some(normal) = particles.normal.get(row - n) {
+            writeln!(out, "vn {} {} {}", normal.x, normal.y, normal.z)?;
+        } else {
+            // Counted from 1; the normal has the number of the vertex.
+            let [a, b, c] = triangles[row - 2 * n].map(|v| v + 1);
+            writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
+        }
     }
     Ok(())
 }
 
-fn stl(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
-    let mut header = [b' '; 80];
-    // It must not begin with "solid", which marks the text form.
-    header[..18].copy_from_slice(b"Marching Particles");
-    out.write_all(&header)?;
-    let count = u32::try_from(triangles.len()).map_err(io::Error::other)?;
-    out.write_all(&count.to_le_bytes())?;
-    for triangle in triangles {
+fn stl(
+    particles: &Particles,
+    triangles: &[[u32; 3]],
+    rows: Range<usize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if rows.start == 0 {
+        let mut header = [b' '; 80];
+        // It must not begin with "solid", which marks the text form.
+        header[..18].copy_from_slice(b"Marching Particles");
+        out.write_all(&header)?;
+        let count = u32::try_from(triangles.len()).map_err(io::Error::other)?;
+        out.write_all(&count.to_le_bytes())?;
+    }
+    for triangle in &triangles[rows] {
         let [a, b, c] = triangle.map(|v| particles.position[v as usize]);
         let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         // Four vectors, and two bytes that nobody uses.

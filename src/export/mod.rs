@@ -5,8 +5,11 @@ mod mesh;
 
 pub use mesh::{MeshFormat, write_mesh};
 
+pub(crate) use mesh::{rows, write_rows};
+
 use crate::particles::Particles;
 use crate::quality;
+use core::ops::Range;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -149,7 +152,7 @@ pub fn write(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     match format {
-        Format::Ply => ply(particles, measured, None, out),
+        Format::Ply => ply(particles, measured, None, 0..particles.len(), out),
         Format::Csv => csv(particles, measured, out),
         Format::Xyz => xyz(particles, out),
         Format::Npy => npy(particles, out),
@@ -160,10 +163,32 @@ fn ply(
     particles: &Particles,
     measured: &quality::Report,
     triangles: Option<&[[u32; 3]]>,
+    rows: Range<usize>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let n = particles.len();
+    if rows.start == 0 {
+        ply_header(n, triangles, out)?;
+    }
+    for i in rows.start.min(n)..rows.end.min(n) {
+        for column in COLUMNS {
+            (column.read)(particles, measured, i).write_binary(out)?;
+        }
+    }
+    let faces = rows.start.max(n) - n..rows.end.max(n) - n;
+    for triangle in &triangles.unwrap_or_default()[faces] {
+        let mut record = [3; 13];
+        for (bytes, index) in record[1..].chunks_exact_mut(4).zip(triangle) {
+            bytes.copy_from_slice(&index.to_le_bytes());
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}
+
+fn ply_header(count: usize, triangles: Option<&[[u32; 3]]>, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
-    writeln!(out, "element vertex {}", particles.len())?;
+    writeln!(out, "element vertex {count}")?;
     for column in COLUMNS {
         let kind = match column.kind {
             ColumnKind::Float => "float",
@@ -176,20 +201,7 @@ fn ply(
     if let Some(triangles) = triangles {
         write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", triangles.len())?;
     }
-    writeln!(out, "end_header")?;
-    for i in 0..particles.len() {
-        for column in COLUMNS {
-            (column.read)(particles, measured, i).write_binary(out)?;
-        }
-    }
-    for triangle in triangles.unwrap_or_default() {
-        let mut record = [3; 13];
-        for (bytes, index) in record[1..].chunks_exact_mut(4).zip(triangle) {
-            bytes.copy_from_slice(&index.to_le_bytes());
-        }
-        out.write_all(&record)?;
-    }
-    Ok(())
+    writeln!(out, "end_header")
 }
 
 fn csv(particles: &Particles, measured: &quality::Report, out: &mut dyn Write) -> io::Result<()> {

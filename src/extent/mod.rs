@@ -21,6 +21,8 @@ use serde::Serialize;
 const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
 /// Half-width of the box of a surface that goes on for ever and passes near the origin. A gyroid has one and a quarter periods in it.
 const USUAL_HALF: f64 = 4.0;
+/// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter one the box shows two.
+const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;
 /// Half-width of the box where there is no surface, or nothing is known of it.
 const FALLBACK_HALF: f64 = 2.0;
 /// Room around the bends of an endless surface, as a share of their box.
@@ -92,7 +94,15 @@ impl BoxFit {
     #[must_use]
     pub fn new<F: Field + 'static>(mut field: F, operations: usize) -> Self {
         let cells = (MOST_CELLS * SHORT / operations.max(SHORT)).max(LEAST_CELLS);
-        Self { work: Box::pin(async move { find(&mut field, cells).await }) }
+        Self {
+            work: Box::pin(async move {
+                let found = find(&mut field, cells).await;
+                match (found.reach, of_periods(field.periods())) {
+                    (Reach::Endless | Reach::Unknown, Some(bounds)) => Extent { bounds, reach: found.reach },
+                    _ => found,
+                }
+            }),
+        }
     }
 
     /// Does up to `budget` slices of the work, of some 32 cells each: the box, once it is found. It must not be called after that.
@@ -142,6 +152,17 @@ fn around(bends: Option<[DVec3; 2]>) -> Bounds {
     }
     let (middle, half) = (0.5 * (lo + hi), (0.5 + ROOM) * (hi - lo).max_element());
     placeable(middle - half, middle + half)
+}
+
+/// The box of a surface that comes again along every axis, of short periods two.
+fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
+    let [Some(x), Some(y), Some(z)] = periods else { return None };
+    let of = |period: f64| if period < SHORT_PERIOD { period } else { USUAL_HALF };
+    let longest = x.max(y).max(z);
+    let is_short = [x, y, z].into_iter().any(|period| period > 0.0 && period < SHORT_PERIOD);
+    // Along an axis along which nothing changes the box is as wide as along the widest other.
+    let half = [x, y, z].map(|period| of(if period > 0.0 { period } else { longest }));
+    is_short.then(|| placeable(-DVec3::from_array(half), DVec3::from_array(half)))
 }
 
 /// The box, made larger around its middle until particles can be put in it.

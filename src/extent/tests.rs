@@ -99,6 +99,31 @@ fn what_goes_on_for_ever_keeps_a_sensible_box_and_is_said_to() {
 }
 
 #[test]
+fn of_an_endless_surface_of_short_period_the_box_holds_two_periods() {
+    use core::f64::consts::TAU;
+    let tenth = TAU / 10.0;
+    for (text, half) in [
+        ("cos(10x)+cos(10y)+cos(10z)", [tenth; 3]),
+        ("sin(10x)cos(20y)+sin(20y)cos(5z)+sin(5z)cos(10x)", [tenth, 0.5 * tenth, 2.0 * tenth]),
+        // One axis of a long period, and one along which nothing changes.
+        ("cos(10x)+cos(y)+cos(10z)", [tenth, USUAL_HALF, tenth]),
+        ("cos(10x)+cos(10y)", [tenth; 3]),
+        // Long enough for the usual box.
+        ("cos(2x)+cos(2y)+cos(2z)", [USUAL_HALF; 3]),
+        // What does not come again along every axis keeps it too.
+        ("z = sin(10x)", [USUAL_HALF; 3]),
+    ] {
+        let Extent { bounds, reach } = extent(text);
+        assert_eq!(reach, Reach::Endless, "{text}");
+        for (axis, half) in half.into_iter().enumerate() {
+            assert!((bounds.max[axis] - half).abs() < 1e-9, "{text}: {bounds:?}");
+            assert!((bounds.min[axis] + half).abs() < 1e-9, "{text}: {bounds:?}");
+        }
+    }
+    assert_eq!(extent("cos(10x)+cos(10y)+cos(10z)=4").reach, Reach::Nowhere);
+}
+
+#[test]
 fn bounded_components_beside_an_endless_one_are_in_the_box() {
     // The sphere of radius 30, and the plane beyond it.
     let Extent { bounds, reach } = extent("(x^2 + y^2 + z^2 - 900)(z - 3000)");

@@ -66,6 +66,12 @@ impl Enclosure {
         may_vanish: true,
     };
 
+    /// Value and gradient in the middle of their bounds. Of a single point these are all but exact.
+    pub(crate) fn middle(&self) -> (f64, DVec3) {
+        let mean = |[lo, hi]: [f64; 2]| 0.5 * (lo + hi);
+        (mean(self.value), DVec3::from_array(self.gradient.map(mean)))
+    }
+
     /// The enclosure of a field that is defined nowhere in the box.
     pub const NOWHERE: Self =
         Self { value: [f64::INFINITY, f64::NEG_INFINITY], may_vanish: false, ..Self::UNKNOWN };
@@ -108,6 +114,13 @@ pub trait Field: Send {
         }
     }
 
+    /// Makes the batched methods compute in double precision and give arsinh(f/s) for f, where s is `scale`, a positive number; or f
+    /// again. [`Field::jet`] then gives f/s. It is for fields whose values or intermediate results are beyond single precision. The
+    /// default implementation does nothing.
+    fn use_double(&mut self, scale: Option<f64>) {
+        let _ = scale;
+    }
+
     /// Bounds of f over the box from `lo` to `hi`, rounded outward. If they exclude 0, the box holds no point of the
     /// surface.
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
@@ -116,6 +129,11 @@ pub trait Field: Send {
     /// [`Field::enclose`] is not called: the survey samples densely, and completeness is not proven.
     fn has_bounds(&self) -> bool {
         false
+    }
+
+    /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come again.
+    fn periods(&self) -> [Option<f64>; 3] {
+        [None; 3]
     }
 
     /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.

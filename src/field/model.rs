@@ -3,7 +3,13 @@
 //! The points themselves and the fitting are in the module `pointcloud`, which the core of the page is built without.
 
 use crate::math::Bounds;
+use core::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
+
+/// Numbers of centres that can be asked for.
+pub const CENTRES: RangeInclusive<u32> = 100..=800;
+/// Default number of centres, which is that of the paper's models (§6).
+pub const DEFAULT_CENTRES: u32 = 200;
 
 /// Origin of the normals of a model's points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,8 +39,11 @@ pub struct ModelInfo {
     pub centres: u32,
     /// Estimated condition number of the system.
     pub condition: f64,
-    /// Mean residual |f|/|∇f| of all points, as a share of the diagonal of their box.
+    /// Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface to
+    /// first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991).
     pub residual_mean: f64,
+    /// Residual that 95 % of them do not exceed, as a share of that diagonal.
+    pub residual_95: f64,
     /// Maximum residual, as a share of that diagonal.
     pub residual_max: f64,
     /// Origin of the normals.

@@ -1,6 +1,10 @@
 //! What a list of triangles adds up to, found from the list alone.
 
+use crate::slices::{self, pause, ranges};
 use core::ops::Range;
+
+/// Triangles or vertices that are looked at in one slice of work, for some 10 to 200 ns each.
+const SLICE: usize = 2048;
 
 /// A connected part of a mesh: vertices that edges join.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,21 +53,28 @@ struct Corners {
 }
 
 impl Corners {
-    fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
+    async fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
         let mut start = vec![0_u32; vertex_count + 2];
-        for &v in triangles.iter().flatten() {
-            start[v as usize + 2] += 1;
+        for slice in triangles.chunks(SLICE) {
+            for &v in slice.iter().flatten() {
+                start[v as usize + 2] += 1;
+            }
+            pause().await;
         }
         for v in 2..start.len() {
             start[v] += start[v - 1];
         }
+        pause().await;
         let mut ends = vec![[0; 2]; 3 * triangles.len()];
-        for &[a, b, c] in triangles {
-            for (v, next, previous) in [(a, b, c), (b, c, a), (c, a, b)] {
-                let end = &mut start[v as usize + 1];
-                ends[*end as usize] = [next, previous];
-                *end += 1;
+        for slice in triangles.chunks(SLICE) {
+            for &[a, b, c] in slice {
+                for (v, next, previous) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let end = &mut start[v as usize + 1];
+                    ends[*end as usize] = [next, previous];
+                    *end += 1;
+                }
             }
+            pause().await;
         }
         Self { start, ends }
     }
@@ -93,14 +104,22 @@ impl Topology {
     /// If a triangle names a vertex that is not below `vertex_count`.
     #[must_use]
     pub fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
-        let mut corners = Corners::new(triangles, vertex_count);
+        slices::complete(Self::in_slices(triangles, vertex_count))
+    }
+
+    /// [`Topology::new`] in slices of work.
+    pub(crate) async fn in_slices(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
+        let mut corners = Corners::new(triangles, vertex_count).await;
         let mut topology = Self::default();
         let mut stars = Vec::with_capacity(vertex_count);
-        for v in 0..vertex_count {
-            let range = corners.range(v);
-            stars.push(topology.add_vertex(v as u32, &mut corners.ends[range]));
+        for vertices in ranges(vertex_count, SLICE) {
+            for v in vertices {
+                let range = corners.range(v);
+                stars.push(topology.add_vertex(v as u32, &mut corners.ends[range]));
+            }
+            pause().await;
         }
-        topology.count_components(&corners, &stars);
+        topology.count_components(&corners, &stars).await;
         topology.trace_borders(&mut stars);
         topology
     }
@@ -168,9 +187,10 @@ impl Topology {
         }
     }
 
-    fn count_components(&mut self, corners: &Corners, stars: &[Star]) {
+    async fn count_components(&mut self, corners: &Corners, stars: &[Star]) {
         let mut seen = vec![false; stars.len()];
         let mut open = Vec::new();
+        let mut looked_at = 0_usize;
         for first in 0..stars.len() {
             if seen[first] || corners.range(first).is_empty() {
                 continue;
@@ -180,6 +200,10 @@ impl Topology {
             seen[first] = true;
             open.push(first as u32);
             while let Some(v) = open.pop() {
+                looked_at += 1;
+                if looked_at.is_multiple_of(SLICE) {
+                    pause().await;
+                }
                 let star = &stars[v as usize];
                 let corners = &corners.ends[corners.range(v as usize)];
                 component.vertices += 1;

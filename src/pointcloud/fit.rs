@@ -127,8 +127,7 @@ enum FitStage {
         field: Box<RbfField>,
         condition: f64,
         next: usize,
-        sum: f64,
-        largest: f64,
+        residuals: Vec<f32>,
     },
     /// Finished or failed.
     Over,
@@ -218,13 +217,13 @@ impl Fitter {
                         FitStage::Eliminating(elimination)
                     }
                 }
-                FitStage::Measuring { mut field, condition, next, mut sum, mut largest } => {
+                FitStage::Measuring { mut field, condition, next, mut residuals } => {
                     let end = (next + BATCH).min(self.given.len());
-                    measure(&mut field, &self.given[next..end], &mut sum, &mut largest);
+                    measure(&mut field, &self.given[next..end], &mut residuals);
                     if end == self.given.len() {
-                        return Ok(Some(self.measured(&field, condition, sum, largest)));
+                        return Ok(Some(self.measured(&field, condition, residuals)));
                     }
-                    FitStage::Measuring { field, condition, next: end, sum, largest }
+                    FitStage::Measuring { field, condition, next: end, residuals }
                 }
                 FitStage::Over => panic!("this fit is over"),
             };
@@ -268,23 +267,32 @@ impl Fitter {
             data.beta.push([1, 2, 3].map(|k| -x[4 * i + k] * scale));
         }
         match RbfField::new(data) {
-            Ok(field) => {
-                Ok(FitStage::Measuring { field: Box::new(field), condition, next: 0, sum: 0.0, largest: 0.0 })
-            }
+            Ok(field) => Ok(FitStage::Measuring {
+                field: Box::new(field),
+                condition,
+                next: 0,
+                residuals: Vec::with_capacity(self.given.len()),
+            }),
             Err(_) => Err(FitError::Singular { condition }),
         }
     }
 
     /// Fit with its report, after all distances are measured.
-    fn measured(&mut self, field: &RbfField, condition: f64, sum: f64, largest: f64) -> Fit {
+    fn measured(&mut self, field: &RbfField, condition: f64, mut residuals: Vec<f32>) -> Fit {
         let centres = field.data().centres.iter().map(|&c| DVec3::from_array(c));
         let (lo, hi) = corners(self.given.iter().copied().chain(centres));
         let diagonal = (hi - lo).length();
         let margin = DVec3::splat(MARGIN * diagonal);
         let mut info = core::mem::take(&mut self.info);
         info.condition = condition;
-        info.residual_mean = sum / self.given.len().max(1) as f64 / diagonal;
-        info.residual_max = largest / diagonal;
+        let sum: f64 = residuals.iter().copied().map(f64::from).sum();
+        info.residual_mean = sum / residuals.len().max(1) as f64 / diagonal;
+        residuals.sort_unstable_by(f32::total_cmp);
+        let of_share = |share: f64| {
+            let at = (share * residuals.len() as f64).ceil() as usize;
+            residuals.get(at.saturating_sub(1)).map_or(0.0, |&residual| f64::from(residual) / diagonal)
+        };
+        (info.residual_95, info.residual_max) = (of_share(0.95), of_share(1.0));
         if condition > WARN_CONDITION {
             info.warnings.push(format!(
                 "The points nearly contradict each other (condition {condition:.0e}); expect a rough surface."
@@ -345,17 +353,16 @@ fn assemble(matrix: &mut DMatrix<f64>, centres: &[DVec3], j: usize) {
     }
 }
 
-/// Adds the distances of the points from the surface to `sum` and includes them in the maximum `largest`.
-fn measure(field: &mut RbfField, points: &[DVec3], sum: &mut f64, largest: &mut f64) {
+/// Adds the residuals |f|/|∇f| of the points; there is none where ∇f vanishes.
+fn measure(field: &mut RbfField, points: &[DVec3], residuals: &mut Vec<f32>) {
     let points: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
     let mut value = vec![0.0; points.len()];
     let mut gradient = vec![Vec3::ZERO; points.len()];
     field.gradients(&points, &mut value, &mut gradient);
     for (value, gradient) in value.iter().zip(&gradient) {
-        let distance = f64::from(value.abs()) / f64::from(gradient.length());
-        if distance.is_finite() {
-            *sum += distance;
-            *largest = largest.max(distance);
+        let residual = value.abs() / gradient.length();
+        if residual.is_finite() {
+            residuals.push(residual);
         }
     }
 }

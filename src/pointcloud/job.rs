@@ -7,14 +7,9 @@ use super::read::{Mesh, ReadError, Reader};
 use super::thin::{Merger, Spreader, Thinner, check_spread, corners};
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::model;
-use core::ops::RangeInclusive;
+pub use crate::field::model::{CENTRES, DEFAULT_CENTRES};
 use glam::DVec3;
 use serde::Serialize;
-
-/// Numbers of centres that can be asked for.
-pub const CENTRES: RangeInclusive<u32> = 100..=800;
-/// Default number of centres, which is that of the paper's models (§6).
-pub const DEFAULT_CENTRES: u32 = 200;
 
 /// Rows of a file read per unit of work. This and the following numbers make a unit of work take up to about a tenth of
 /// a millisecond natively.
@@ -139,6 +134,8 @@ pub struct Job {
     info: ModelInfo,
     /// Number of centres to choose.
     wanted: u32,
+    /// All distinct points, once they are known; the fitter takes them.
+    given: Vec<DVec3>,
     /// The centres, once they are chosen.
     centres: Vec<DVec3>,
 }
@@ -169,24 +166,42 @@ impl Job {
         }
         let reader = Box::new(Reader::new(name, bytes)?);
         let info = ModelInfo { name: name.to_owned(), ..ModelInfo::default() };
-        Ok(Self { work: Work::Reading(reader), info, wanted: centres, centres: Vec::new() })
+        Ok(Self {
+            work: Work::Reading(reader),
+            info,
+            wanted: centres,
+            given: Vec::new(),
+            centres: Vec::new(),
+        })
     }
 
-    /// Job for a built-in model, all of whose points are interpolated.
+    /// Job for a built-in model. As many of its points as `centres` says (see [`CENTRES`]) will be interpolated, or all of them if
+    /// there are no more.
     ///
     /// # Errors
     ///
-    /// If there is no model with this identifier.
-    pub fn model(id: &str) -> Result<Self, JobError> {
+    /// If the number of centres is out of range, or if there is no model with this identifier.
+    pub fn model(id: &str, centres: u32) -> Result<Self, JobError> {
+        if !CENTRES.contains(&centres) {
+            return Err(JobError::Centres { count: centres });
+        }
         let unknown = || JobError::UnknownModel { id: id.to_owned() };
         let model = model::find(id).ok_or_else(unknown)?;
-        let centres = models::cloud(id).ok_or_else(unknown)?.position;
-        Ok(Self {
-            work: Work::Solving(Box::new(models::begin(model))),
-            info: ModelInfo::default(),
-            wanted: centres.len() as u32,
-            centres,
-        })
+        let cloud = models::cloud(id).ok_or_else(unknown)?;
+        let mut job = Self {
+            work: Work::Failed(unknown()),
+            info: models::info(model),
+            wanted: centres,
+            given: cloud.position.clone(),
+            centres: Vec::new(),
+        };
+        job.work = if centres as usize >= cloud.len() {
+            job.centres.clone_from(&cloud.position);
+            Work::Solving(Box::new(models::begin(model)))
+        } else {
+            job.spread(cloud)
+        };
+        Ok(job)
     }
 
     /// Current progress.
@@ -284,6 +299,7 @@ impl Job {
                     let (mut cloud, _) = merger.finish();
                     check_spread(&cloud.position)?;
                     self.bring_near(&mut cloud.position);
+                    self.given.clone_from(&cloud.position);
                     Work::Thinning(Thinner::new(cloud))
                 } else {
                     Work::Merging(merger)
@@ -313,7 +329,8 @@ impl Job {
                 if spreader.step(&cloud.position) {
                     let chosen = cloud.only(spreader.chosen());
                     self.centres.clone_from(&chosen.position);
-                    let fitter = Fitter::new(&chosen, cloud.position, self.info.clone())?;
+                    let given = core::mem::take(&mut self.given);
+                    let fitter = Fitter::new(&chosen, given, self.info.clone())?;
                     Work::Solving(Box::new(fitter))
                 } else {
                     Work::Spreading(cloud, spreader)
@@ -321,7 +338,7 @@ impl Job {
             }
             Work::Solving(mut fitter) => match fitter.step(1)? {
                 Some(mut fit) => {
-                    // The fit counts only the points that thinning has left.
+                    // The fit counts only distinct points.
                     fit.info.points = self.info.points.max(fit.info.points);
                     Work::Done(Box::new(fit))
                 }

@@ -38,8 +38,12 @@ pub fn cloud(id: &str) -> Option<Cloud> {
 pub fn begin(model: &Model) -> Fitter {
     let points = cloud(model.id).unwrap_or_default();
     let given = points.position.clone();
-    let info = ModelInfo { name: model.name.into(), credit: model.credit.into(), ..ModelInfo::default() };
-    Fitter::new(&points, given, info).unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
+    Fitter::new(&points, given, info(model)).unwrap_or_else(|error| panic!("model `{}`: {error}", model.id))
+}
+
+/// Report of a built-in model before it is solved.
+pub(super) fn info(model: &Model) -> ModelInfo {
+    ModelInfo { name: model.name.into(), credit: model.credit.into(), ..ModelInfo::default() }
 }
 
 /// Decodes a data file.

@@ -76,6 +76,13 @@ pub struct Figures {
     /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
     /// duplicates.
     pub overlap_min: f64,
+    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of their
+    /// wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where there
+    /// are no distances.
+    pub crowded: Option<usize>,
+    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which none has
+    /// its middle in a wider one. None where `cover` is undefined.
+    pub wide_holes: Option<usize>,
     /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
     pub dup: usize,
     /// Points with a non-finite coordinate; left out of everything.
@@ -125,6 +132,8 @@ impl Default for Figures {
             size_cv: undefined,
             cover_local: undefined,
             overlap_min: undefined,
+            crowded: None,
+            wide_holes: None,
             dup: 0,
             not_finite: 0,
             nrm_mean: undefined,

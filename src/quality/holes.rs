@@ -2,6 +2,7 @@
 
 use super::border::Border;
 use super::nearby::Nearby;
+use super::places::{Hole, WIDE};
 use super::probe;
 use super::projection::{BATCH, LAST_STEP, is_reached, project_batch};
 use super::sizes::Wanted;
@@ -16,6 +17,13 @@ use rand_pcg::Pcg32;
 
 /// Crossings of random lines that are looked at in one slice of work.
 const SLICE: usize = 256;
+
+/// [`WIDE`] squared.
+const WIDE_SQ: f32 = (WIDE * WIDE) as f32;
+
+fn hole(p: Vec3, radius: f64, ratio: f64) -> Hole {
+    Hole { position: p.to_array(), radius, ratio }
+}
 
 /// Returns the circumcentre and the circumradius of a triangle; `None` for one without area.
 fn circumcentre(position: &[Vec3], triangle: [u32; 3]) -> Option<(DVec3, f64)> {
@@ -33,6 +41,8 @@ pub(super) struct Cover<'a> {
     pub(super) mesh: &'a [[u32; 3]],
     pub(super) border: Option<&'a Border>,
     pub(super) wanted: Option<&'a Wanted>,
+    /// Radius of a hole in the perfect lattice, d_hex/√3.
+    pub(super) lattice: f32,
     /// Largest leash of a sample whose surroundings are gathered at once: farther ones hold too many points.
     pub(super) wide: f32,
 }
@@ -43,9 +53,9 @@ impl Cover<'_> {
         self.border.is_none_or(|border| !border.is_near(p))
     }
 
-    /// Returns the radius of an ideal hole between some points; NaN if there are no wanted radii.
+    /// Returns the radius of an ideal hole between some points: that of the perfect lattice, if there are no wanted radii.
     pub(super) fn ideal(&self, points: &[u32]) -> f32 {
-        self.wanted.map_or(f32::NAN, |wanted| wanted.hole_between(points))
+        self.wanted.map_or(self.lattice, |wanted| wanted.hole_between(points))
     }
 
     /// Returns the squared distance from `p` to the nearest of some points.
@@ -82,6 +92,8 @@ pub(super) struct HoleSearch {
     /// Sum of the squared distances of the random samples, and their number.
     sum_sq: f64,
     samples: usize,
+    /// The wide holes, and those that were the largest when they were found.
+    pub(super) found: Vec<Hole>,
 }
 
 impl HoleSearch {
@@ -98,14 +110,19 @@ impl HoleSearch {
         self.sum_sq / self.samples as f64
     }
 
-    /// Returns whether a distance is larger than those so far, in itself or relative to the ideal one.
-    fn exceeds(&self, gap_sq: f32, ideal_sq: f32) -> bool {
-        gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq
+    /// Returns whether a distance is that of a wide hole, or larger than those so far, in itself or relative to the ideal one.
+    fn matters(&self, gap_sq: f32, ideal_sq: f32) -> bool {
+        gap_sq > self.widest_sq || gap_sq > self.relative_sq * ideal_sq || gap_sq > WIDE_SQ * ideal_sq
     }
 
-    fn widen(&mut self, gap_sq: f32, ideal_sq: f32) {
+    /// Takes in an empty disc around `p`.
+    fn widen(&mut self, p: Vec3, gap_sq: f32, ideal_sq: f32) {
+        let relative_sq = gap_sq / ideal_sq;
+        if relative_sq > self.relative_sq.min(WIDE_SQ) {
+            self.found.push(hole(p, f64::from(gap_sq).sqrt(), f64::from(relative_sq).sqrt()));
+        }
         self.widest_sq = self.widest_sq.max(gap_sq);
-        self.relative_sq = self.relative_sq.max(gap_sq / ideal_sq);
+        self.relative_sq = self.relative_sq.max(relative_sq);
     }
 
     /// Takes in a batch of random samples.
@@ -120,7 +137,12 @@ impl HoleSearch {
                     cover.tree.nearest_sq(p, u32::MAX, bound_sq)
                 };
                 let ideal = cover.ideal(triangle);
-                self.widen(gap_sq, ideal * ideal);
+                let ideal_sq = ideal * ideal;
+                // On a triangle across a gap in the surface a sample may find no surface.
+                if self.matters(gap_sq, ideal_sq) && !is_reached(field, p, leash) {
+                    continue;
+                }
+                self.widen(p, gap_sq, ideal_sq);
                 self.sum_sq += f64::from(gap_sq);
                 self.samples += 1;
             }
@@ -145,14 +167,14 @@ impl HoleSearch {
     fn add_corner_batch(&mut self, field: &mut dyn Field, cover: &Cover, batch: &mut Batch) {
         project_batch(field, &mut batch.position, &batch.leash, LAST_STEP);
         for ((&p, &leash), triangle) in batch.position.iter().zip(&batch.leash).zip(&batch.triangle) {
-            // Corners that cannot exceed the largest distances so far are passed over.
+            // Corners that are no wide holes and cannot exceed the largest distances so far are passed over.
             let bound_sq = cover.nearest_of(p, triangle);
             let ideal = cover.ideal(triangle);
             let ideal_sq = ideal * ideal;
-            if self.exceeds(bound_sq, ideal_sq) {
+            if self.matters(bound_sq, ideal_sq) {
                 let gap_sq = cover.tree.nearest_sq(p, u32::MAX, bound_sq);
-                if self.exceeds(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, leash) {
-                    self.widen(gap_sq, ideal_sq);
+                if self.matters(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, leash) {
+                    self.widen(p, gap_sq, ideal_sq);
                 }
             }
         }
@@ -225,13 +247,15 @@ impl Batch {
 }
 
 /// The part of the surface that is farther from every point than any sample on the triangles.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Uncovered {
     /// Share of the area.
     pub(super) share: f64,
     /// Sum of the squared distances to the nearest point over the number of all samples.
     pub(super) sum_sq: f64,
     pub(super) largest: LargestHoles,
+    /// The holes among them that are wide.
+    pub(super) found: Vec<Hole>,
 }
 
 /// Measures what the triangles cannot show: components without a point, and regions where the points end. `spanned` are
@@ -262,6 +286,7 @@ pub(super) async fn uncovered(
             }
             if relative > 1.01 * spanned.relative {
                 uncovered.largest.relative = uncovered.largest.relative.max(relative);
+                uncovered.found.push(hole(p, gap, relative));
             }
         }
         pause().await;
@@ -289,7 +314,8 @@ mod tests {
         for (points, holes) in [(flat, 0.0..=0.0), (wide, 0.1..=0.15)] {
             let tree = Tree::new(&points);
             let mesh = [[0, 1, 2]];
-            let cover = Cover { tree: &tree, mesh: &mesh, border: None, wanted: None, wide: 1.0 };
+            let cover =
+                Cover { tree: &tree, mesh: &mesh, border: None, wanted: None, lattice: 1.0, wide: 1.0 };
             let mut search = HoleSearch::default();
             complete(search.add_corners(&mut field, &cover));
             assert!(holes.contains(&search.largest().widest), "{}", search.largest().widest);

@@ -25,6 +25,7 @@ mod nearby;
 mod one_rings;
 mod options;
 mod order;
+mod places;
 mod probe;
 mod projection;
 mod scene;
@@ -34,6 +35,7 @@ mod triangles;
 
 pub use figures::Figures;
 pub use options::{Options, Sizes};
+pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
 use crate::field::Field;
@@ -47,6 +49,7 @@ use glam::Vec3;
 use holes::{Cover, HoleSearch, Uncovered, uncovered};
 use moments::{Moments, share};
 use order::Order;
+use places::Pairs;
 use scene::{Prepared, Scene};
 use sizes::{EdgeRatios, Wanted};
 use triangles::{TriangleAngles, euler_number};
@@ -59,7 +62,7 @@ const HEXAGONAL_QUANT: f64 = 5.0 / (18.0 * SQRT_3);
 /// Points or triangles that are looked at in one slice of work.
 const SLICE: usize = 256;
 /// Size of a triangle, in d_hex, from which on it lies in a hole.
-const WIDE: f64 = 2.0;
+const SPREAD: f64 = 2.0;
 
 /// The figures of a set of particles, and a value of each kind for every particle, in the order given.
 #[derive(Clone, Debug, Default)]
@@ -79,6 +82,8 @@ pub struct Report {
     pub component: Vec<u32>,
     /// Histogram of `nearest` / d_hex.
     pub histogram: Histogram,
+    /// Where the spacing is worst.
+    pub places: Places,
 }
 
 /// Measures the particles at `position` with outward unit normals `normal` on the surface of `field`.
@@ -113,16 +118,16 @@ pub(crate) async fn in_slices(
     let factor = comfortable_factor(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, options.area).await;
-    let (figures, component) = figures_of(&prepared, field, bounds, options).await;
+    let Measured { mut figures, component, mut pairs, holes } =
+        figures_of(&prepared, field, bounds, options).await;
     let Prepared { scene, drop, .. } = &prepared;
     let n = position.len();
     let mut report = Report {
-        figures,
         valence: vec![0; n],
         nearest: (0..n).map(|i| if drop[i] && position[i].is_finite() { 0.0 } else { f32::NAN }).collect(),
         residual: vec![f32::NAN; n],
         component: vec![components::NO_LABEL; n],
-        histogram: Histogram::default(),
+        ..Report::default()
     };
     for (k, &i) in scene.tree.origin.iter().enumerate() {
         let i = i as usize;
@@ -136,7 +141,13 @@ pub(crate) async fn in_slices(
         report.residual[i] = first_order_distance(jet.value, jet.gradient.length()) as f32;
         let (_, equal) = scene.tree.nearest(position[i], u32::MAX, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(components::NO_LABEL);
+        if let Some(&twin) = scene.tree.origin.get(equal as usize) {
+            pairs.add(0.0, twin, i as u32);
+        }
     }
+    figures.crowded = (!scene.tree.position.is_empty()).then_some(pairs.crowded);
+    report.figures = figures;
+    report.places = Places { pairs: pairs.told(), holes };
     report.histogram = Histogram::new(&report.nearest, figures.d_hex);
     report
 }
@@ -155,18 +166,29 @@ pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> V
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
 
-/// Computes the figures, and the connected component of each point.
+/// What is measured of points without duplicates.
+#[derive(Default)]
+struct Measured {
+    figures: Figures,
+    /// Connected component of each point.
+    component: Vec<u32>,
+    pairs: Pairs,
+    holes: Vec<Hole>,
+}
+
+/// Measures the points; `crowded` is left for the duplicates to be added.
 async fn figures_of(
     prepared: &Prepared,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
     options: &Options<'_>,
-) -> (Figures, Vec<u32>) {
+) -> Measured {
     let Prepared { scene, mesh, duplicates, not_finite, .. } = prepared;
     let mut figures = Figures { dup: *duplicates, not_finite: *not_finite, ..Figures::default() };
+    let mut measured = Measured::default();
     let n = scene.tree.len();
     if n == 0 {
-        return (figures, Vec::new());
+        return Measured { figures, ..measured };
     }
     figures.area = options.area.unwrap_or_else(|| triangles::area(&scene.tree.position, mesh));
     figures.d_hex = hexagonal_spacing(figures.area, n + duplicates);
@@ -184,15 +206,15 @@ async fn figures_of(
     spacing::measure(scene, &inner, &mut figures);
     pause().await;
     let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
-    measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
-    let component = measure_triangles(prepared, &inner, options.euler, &mut figures).await;
+    measured.pairs = measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
+    measured.component = measure_triangles(prepared, &inner, options.euler, &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
-        let wide = (WIDE * figures.d_hex) as f32;
-        let cover = Cover { tree: &scene.tree, mesh, border, wanted, wide };
-        measure_holes(&cover, field, bounds, options, &mut figures).await;
+        let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
+        let cover = Cover { tree: &scene.tree, mesh, border, wanted, lattice, wide };
+        measured.holes = measure_holes(&cover, field, bounds, options, &mut figures).await;
     }
-    (figures, component)
+    Measured { figures, ..measured }
 }
 
 /// Returns, for each point, whether it is away from the border.
@@ -208,13 +230,13 @@ async fn points_away_from(border: Option<&Border>, scene: &Scene) -> Vec<bool> {
     inner
 }
 
-/// Measures valences, bond order and edges of the points that are `inner`.
+/// Measures valences, bond order and edges of the points that are `inner`, and returns the pairs of them.
 async fn measure_neighbourhoods(
     scene: &Scene,
     inner: &[bool],
     wanted: Option<&Wanted>,
     figures: &mut Figures,
-) {
+) -> Pairs {
     let mut order = Order::default();
     let mut edge = Moments::default();
     let mut ratios = EdgeRatios::default();
@@ -231,7 +253,10 @@ async fn measure_neighbourhoods(
     if wanted.is_some() {
         figures.size_cv = ratios.edge.variation();
         figures.overlap_min = if figures.dup > 0 { 0.0 } else { ratios.least };
+    } else {
+        spacing::add_pairs(scene, inner, figures.d_hex, &mut ratios.pairs).await;
     }
+    ratios.pairs
 }
 
 /// Measures angles, agreement and topology of the triangles. Returns the connected component of each point.
@@ -269,14 +294,14 @@ async fn measure_triangles(
     component
 }
 
-/// Measures the holes by samples on the triangles and, in a box, on random lines.
+/// Measures the holes by samples on the triangles and, in a box, on random lines. Returns the wide ones.
 async fn measure_holes(
     cover: &Cover<'_>,
     field: &mut dyn Field,
     bounds: Option<&Bounds>,
     options: &Options<'_>,
     figures: &mut Figures,
-) {
+) -> Vec<Hole> {
     let n = cover.tree.len();
     let samples = n.max(options.samples).min(MOST_SAMPLES);
     let mut search = HoleSearch::default();
@@ -293,4 +318,8 @@ async fn measure_holes(
     }
     let mean_sq = search.mean_sq() * (1.0 - uncovered.share) + uncovered.sum_sq;
     figures.quant = mean_sq / (HEXAGONAL_QUANT * figures.area / (n + figures.dup) as f64);
+    search.found.extend(uncovered.found);
+    let (wide, told) = places::distinct(search.found).await;
+    figures.wide_holes = Some(wide);
+    told
 }

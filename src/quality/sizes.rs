@@ -2,6 +2,7 @@
 
 use super::moments::Moments;
 use super::options::Sizes;
+use super::places::Pairs;
 use super::scene::Scene;
 use crate::differential::exact_curvature;
 use crate::field::Field;
@@ -90,11 +91,13 @@ pub(super) struct EdgeRatios {
     pub(super) edge: Moments,
     /// Smallest ratio of two natural neighbours.
     pub(super) least: f64,
+    /// Pairs of natural neighbours by their ratios.
+    pub(super) pairs: Pairs,
 }
 
 impl Default for EdgeRatios {
     fn default() -> Self {
-        Self { edge: Moments::default(), least: f64::NAN }
+        Self { edge: Moments::default(), least: f64::NAN, pairs: Pairs::default() }
     }
 }
 
@@ -106,6 +109,14 @@ impl EdgeRatios {
             .map(|j| wanted.ratio(scene, i, j))
             .filter(|ratio| ratio.is_finite())
             .for_each(|ratio| self.edge.add(ratio));
-        self.least = scene.rings.of(i).map(|j| wanted.ratio(scene, i, j)).fold(self.least, f64::min);
+        for j in scene.rings.of(i) {
+            let ratio = wanted.ratio(scene, i, j);
+            self.least = self.least.min(ratio);
+            // A pair of inner points that are neighbours of each other is seen from both; it is added at the earlier one.
+            let is_seen_again = j < i && inner[j] && scene.rings.adjacent(j, i);
+            if ratio.is_finite() && !is_seen_again {
+                self.pairs.add(ratio, scene.tree.origin[i], scene.tree.origin[j]);
+            }
+        }
     }
 }

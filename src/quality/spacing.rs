@@ -2,9 +2,14 @@
 
 use super::figures::Figures;
 use super::moments::Moments;
+use super::places::{CROWDED, Pairs};
 use super::scene::Scene;
+use crate::slices::{pause, ranges};
 use crate::spatial::tree::{key, unkey};
 use serde::Serialize;
+
+/// Points whose pairs are found in one slice of work.
+const SLICE: usize = 256;
 
 /// Histogram of the nearest-neighbour distances over d_hex. Bins are equal, and values outside fall into the outermost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -35,6 +40,36 @@ impl Histogram {
             }
         }
         Self { min, max, bins }
+    }
+}
+
+/// Adds the pairs of points by their distance over d_hex, of which at least one point is `inner`.
+pub(super) async fn add_pairs(scene: &Scene, inner: &[bool], d_hex: f64, pairs: &mut Pairs) {
+    let tree = &scene.tree;
+    let reach = (CROWDED * d_hex) as f32;
+    let mut near = Vec::new();
+    for range in ranges(inner.len(), SLICE) {
+        for i in range.filter(|&i| inner[i]) {
+            let nearest = f64::from(scene.rings.nearest[i]) / d_hex;
+            if !nearest.is_finite() || !pairs.matters(nearest) {
+                continue;
+            }
+            let p = tree.position[i];
+            near.clear();
+            if nearest < CROWDED {
+                tree.within_box(p - reach, p + reach, &mut near);
+            } else {
+                near.push(tree.nearest(p, i as u32, f32::INFINITY).1);
+            }
+            for &j in &near {
+                let j = j as usize;
+                // Of two inner points, the pair is added at the earlier one.
+                if j != i && (j > i || !inner[j] || nearest >= CROWDED) {
+                    pairs.add(scene.distance(i, j) / d_hex, tree.origin[i], tree.origin[j]);
+                }
+            }
+        }
+        pause().await;
     }
 }
 

@@ -27,6 +27,8 @@ pub struct Frame {
     pub look: Look,
     /// The clip box, drawn where a picture has one.
     pub clip_box: ClipBox,
+    /// Cutting plane: its normal and its offset. What has normal · p > offset is hidden; without a plane the normal is zero.
+    pub plane: [f32; 4],
 }
 
 /// Where the picture is seen from, and its size.
@@ -108,7 +110,7 @@ pub struct ClipBox {
 impl Frame {
     /// Every struct of the block with its fields, `Frame` first.
     pub const STRUCTS: &'static [(&'static str, Fields)] = &[
-        ("Frame", fields!(Self: camera, light, growth, look, clip_box)),
+        ("Frame", fields!(Self: camera, light, growth, look, clip_box, plane)),
         (
             "Camera",
             fields!(Camera: clip_from_world, eye, perspective, forward, pixel_ratio, viewport, padding),

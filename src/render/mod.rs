@@ -32,6 +32,11 @@
 //! * **Silhouettes** are antialiased by four samples per pixel, for which the pipelines are compiled when the first faces are
 //!   drawn.
 //!
+//! # How a plane cuts
+//!
+//! A disc whose centre is beyond the cutting plane is not drawn, so that discs stay whole. Faces are cut along the plane: their
+//! fragments beyond it are discarded, and those at the edge cover as many of the pixel's samples as lie on the side that is shown.
+//!
 //! # Colour
 //!
 //! Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.

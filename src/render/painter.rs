@@ -35,15 +35,25 @@ pub(super) struct Scene<'a> {
     pub(super) particles: &'a Store,
     /// Particles `0..count` are there.
     pub(super) count: u32,
-    /// Faces, their number, and the number of particles that they stand for: only those after them are drawn as discs.
-    pub(super) faces: Option<(&'a Store, u32, u32)>,
+    pub(super) faces: Option<Faces<'a>>,
     /// Index of a particle that is marked by a ring.
     pub(super) outline: Option<u32>,
     /// Whether the edges of the clip box are drawn.
     pub(super) clip_box: bool,
+    /// Whether a plane cuts the faces.
+    pub(super) is_cut: bool,
     pub(super) frame: Frame,
     /// Whether the background is left out.
     pub(super) transparent: bool,
+}
+
+/// Faces of a picture.
+pub(super) struct Faces<'a> {
+    pub(super) store: &'a Store,
+    pub(super) count: u32,
+    /// Number of particles that they stand for. Only those after them are drawn as discs, except above a ghost.
+    pub(super) particles: u32,
+    pub(super) is_ghost: bool,
 }
 
 /// Where a picture is drawn.
@@ -135,10 +145,14 @@ impl Scene<'_> {
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipelines: &Pipelines) {
         let mut first_disc = 0;
-        if let Some((faces, count, particles)) = self.faces {
-            pass.set_pipeline(&pipelines.faces);
-            draw_instances(pass, faces, 3, 0..count);
-            first_disc = particles;
+        if let Some(&Faces { store, count, particles, is_ghost }) = self.faces.as_ref() {
+            pass.set_pipeline(match (is_ghost, self.is_cut) {
+                (true, _) => &pipelines.ghost,
+                (false, true) => &pipelines.cut_faces,
+                (false, false) => &pipelines.faces,
+            });
+            draw_instances(pass, store, 3, 0..count);
+            first_disc = if is_ghost { 0 } else { particles };
         }
         let [behind, front] = &pipelines.rims;
         for pipeline in [&pipelines.core, behind, front] {

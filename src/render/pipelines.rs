@@ -26,6 +26,10 @@ pub(super) struct Pipelines {
     pub(super) rims: [wgpu::RenderPipeline; 2],
     /// Draws faces, with depth test and depth writes.
     pub(super) faces: wgpu::RenderPipeline,
+    /// The same for faces that a plane may cut, whose edge at the plane is antialiased by the samples of a pixel.
+    pub(super) cut_faces: wgpu::RenderPipeline,
+    /// Draws faces as a ghost beneath discs, with depth test and depth writes.
+    pub(super) ghost: wgpu::RenderPipeline,
     /// Blends a ring around a particle over everything.
     pub(super) ring: wgpu::RenderPipeline,
     /// Blends the edges of the clip box, with depth test, without depth writes.
@@ -52,6 +56,8 @@ struct Recipe<'a> {
     fragment: &'a str,
     buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     depth_write: bool,
+    /// Whether the opacity says how many samples of a pixel are covered, instead of being blended.
+    alpha_to_coverage: bool,
     depth_compare: wgpu::CompareFunction,
 }
 
@@ -72,7 +78,7 @@ impl Pipelines {
 
         let record = RECORD_ATTRIBUTES.map(vertex_attribute);
         let colour = COLOUR_ATTRIBUTES.map(vertex_attribute);
-        let face = FACE_ATTRIBUTES.map(vertex_attribute);
+        let corners = FACE_ATTRIBUTES.map(vertex_attribute);
         let tint = TINT_ATTRIBUTES.map(vertex_attribute);
         let instance = |stride: usize| wgpu::VertexBufferLayout {
             array_stride: stride as u64,
@@ -84,7 +90,7 @@ impl Pipelines {
             Some(wgpu::VertexBufferLayout { attributes: &colour, ..instance(COLOUR_STRIDE) }),
         ];
         let triangles = [
-            Some(wgpu::VertexBufferLayout { attributes: &face, ..instance(size_of::<FaceRecord>()) }),
+            Some(wgpu::VertexBufferLayout { attributes: &corners, ..instance(size_of::<FaceRecord>()) }),
             Some(wgpu::VertexBufferLayout { attributes: &tint, ..instance(size_of::<FaceTint>()) }),
         ];
         let disc = Recipe {
@@ -94,21 +100,37 @@ impl Pipelines {
             fragment: "fs_core",
             buffers: &particles,
             depth_write: true,
+            alpha_to_coverage: false,
             depth_compare: wgpu::CompareFunction::LessEqual,
+        };
+        let face = Recipe {
+            label: "face",
+            shader: &faces,
+            vertex: "vs_face",
+            fragment: "fs_face",
+            buffers: &triangles,
+            ..disc
         };
         let make = |recipe: Recipe<'_>| pipeline(device, &layout, target, &recipe);
         Self {
             rims: ["vs_rim_behind", "vs_rim_front"].map(|vertex| {
                 make(Recipe { label: "disc rim", vertex, fragment: "fs_rim", depth_write: false, ..disc })
             }),
-            faces: make(Recipe {
-                label: "face",
-                shader: &faces,
-                vertex: "vs_face",
-                fragment: "fs_face",
-                buffers: &triangles,
-                ..disc
+            cut_faces: make(Recipe {
+                label: "cut face",
+                fragment: "fs_cut_face",
+                // A single sample has no share to be covered.
+                alpha_to_coverage: target.samples > 1,
+                ..face
             }),
+            ghost: make(Recipe {
+                label: "ghost",
+                vertex: "vs_ghost",
+                fragment: "fs_ghost",
+                alpha_to_coverage: target.samples > 1,
+                ..face
+            }),
+            faces: make(face),
             ring: make(Recipe {
                 label: "ring",
                 vertex: "vs_ring",
@@ -188,14 +210,18 @@ fn pipeline(
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: target.samples, ..wgpu::MultisampleState::default() },
+        multisample: wgpu::MultisampleState {
+            count: target.samples,
+            alpha_to_coverage_enabled: recipe.alpha_to_coverage,
+            ..wgpu::MultisampleState::default()
+        },
         fragment: Some(wgpu::FragmentState {
             module: recipe.shader,
             entry_point: Some(recipe.fragment),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: target.format,
-                blend: Some(BLEND),
+                blend: (!recipe.alpha_to_coverage).then_some(BLEND),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

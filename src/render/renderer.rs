@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::gpu::{Callbacks, CreateError, Gpu};
 use super::layout::{COLOUR_STRIDE, FaceRecord, FaceTint, Record};
-use super::painter::{Canvas, Painter, Scene};
+use super::painter::{Canvas, Faces, Painter, Scene};
 use super::pixels::{padded_row, straight_rgba};
 use super::screen::Screen;
 use super::store::{Part, Store};
@@ -388,13 +388,20 @@ impl Renderer {
 
     fn paint(&mut self, canvas: &Canvas<'_>, frame: Frame, transparent: bool) {
         let Self { gpu, painter, content, style, .. } = self;
-        let has_faces = matches!(style.drawing, Drawing::Faces { .. }) && content.face_count > 0;
+        let faces = Faces {
+            store: &content.faces,
+            count: content.face_count,
+            particles: content.face_particles,
+            is_ghost: style.drawing == Drawing::Ghost,
+        };
+        let has_faces = style.drawing != Drawing::Discs && content.face_count > 0;
         let scene = Scene {
             particles: &content.particles,
             count: content.count,
-            faces: has_faces.then_some((&content.faces, content.face_count, content.face_particles)),
+            faces: has_faces.then_some(faces),
             outline: style.outline,
             clip_box: style.clip_box.is_some(),
+            is_cut: style.plane.is_some(),
             frame,
             transparent,
         };

@@ -32,6 +32,8 @@ pub struct Style {
     pub outline: Option<u32>,
     /// Clip box whose edges are drawn.
     pub clip_box: Option<ClipBox>,
+    /// Plane beyond which nothing is drawn of particles and faces.
+    pub plane: Option<CuttingPlane>,
     /// Canvas pixels per page pixel, the unit of line widths.
     pub pixel_ratio: f32,
 }
@@ -42,6 +44,8 @@ pub enum Drawing {
     /// As discs.
     #[default]
     Discs,
+    /// As discs above a ghost of the surface: the faces between them, in a faint grey.
+    Ghost,
     /// As the faces between them, as far as there are any.
     Faces {
         /// Whether each face has one normal and one colour.
@@ -62,6 +66,15 @@ pub struct ClipBox {
     pub colour: [f32; 4],
 }
 
+/// A plane that hides what is in front of it: particles by their centres, faces in part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CuttingPlane {
+    /// Normal, of any length, in world coordinates. It points to the side that is hidden. With a zero normal nothing is.
+    pub normal: [f32; 3],
+    /// A place p is hidden if normal · p > offset.
+    pub offset: f32,
+}
+
 impl Default for Style {
     fn default() -> Self {
         Self {
@@ -76,6 +89,7 @@ impl Default for Style {
             mute: 0.5,
             outline: None,
             clip_box: None,
+            plane: None,
             pixel_ratio: 1.0,
         }
     }
@@ -102,7 +116,7 @@ impl Style {
         let clip_box = self.clip_box.unwrap_or_default();
         let scale = target.size[1].max(1) as f32 / target.canvas[1].max(1) as f32;
         let (flat, edge_px) = match self.drawing {
-            Drawing::Discs => (false, 0.0),
+            Drawing::Discs | Drawing::Ghost => (false, 0.0),
             Drawing::Faces { flat, edge_px } => (flat, edge_px),
         };
         let corner = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
@@ -140,7 +154,20 @@ impl Style {
                 hi: corner(clip_box.max),
                 colour: linear(clip_box.colour),
             },
+            plane: self.plane.map_or(NO_PLANE, CuttingPlane::uniform),
         }
+    }
+}
+
+/// The uniform of a picture without a cutting plane, which hides nothing.
+const NO_PLANE: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+impl CuttingPlane {
+    /// Normal and offset; of a plane that is not finite, those that hide nothing.
+    fn uniform(self) -> [f32; 4] {
+        let [x, y, z] = self.normal;
+        let uniform = [x, y, z, self.offset];
+        if uniform.iter().all(|c| c.is_finite()) && self.normal != [0.0; 3] { uniform } else { NO_PLANE }
     }
 }
 
@@ -182,6 +209,7 @@ mod tests {
             mute: nan,
             outline: None,
             clip_box: None,
+            plane: Some(CuttingPlane { normal: [1.0, nan, 0.0], offset: 0.0 }),
             pixel_ratio: nan,
         };
         let target = Target { canvas: [0, 0], size: [0, 0], time: 0.0 };
@@ -189,6 +217,22 @@ mod tests {
         assert!(bytemuck::cast_slice::<Frame, f32>(&[frame]).iter().all(|c| c.is_finite()), "{frame:?}");
         assert_eq!((frame.light.dim, frame.light.dim_backfaces, frame.growth.mute), (0.0, 0.0, 0.0));
         assert!(frame.look.disc_scale > 0.0 && frame.look.edge_px == 0.0);
+    }
+
+    #[test]
+    fn a_cutting_plane_hides_what_its_normal_points_to_and_none_hides_nothing() {
+        let hides = |plane, p: [f32; 3]| {
+            let style = Style { plane, ..Style::default() };
+            let target = Target { canvas: [1, 1], size: [1, 1], time: 0.0 };
+            let [x, y, z, offset] = style.frame(&View::default(), target).plane;
+            x * p[0] + y * p[1] + z * p[2] > offset
+        };
+        let plane = |normal| Some(CuttingPlane { normal, offset: 0.5 });
+        assert!(hides(plane([1.0, 0.0, 0.0]), [0.6, 9.0, 9.0]));
+        assert!(!hides(plane([1.0, 0.0, 0.0]), [0.4, 9.0, 9.0]));
+        for nothing in [None, plane([0.0; 3]), plane([0.0, f32::INFINITY, 0.0])] {
+            assert!(!hides(nothing, [1e30, -1e30, 1e30]), "{nothing:?}");
+        }
     }
 
     #[test]

@@ -3,9 +3,10 @@
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::projection::{Tolerance, tolerance};
-use crate::sampler::refine;
+use crate::sampler::refine::{self, Refusal};
 use crate::sampler::settings::{Settings, SizeMode};
 use crate::sampler::sizing::Sizing;
+use glam::Vec3;
 
 /// Particles that a front places per hexagonal cell 2√3 r², as a first guess: rows squeezed by positive curvature make
 /// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
@@ -49,6 +50,8 @@ pub(super) struct Attempt {
     is_pilot: bool,
     /// Attempts completed before this one.
     completed: u32,
+    /// Where the surface bends most, if it was to be refined.
+    pub(super) bend: Vec3,
 }
 
 impl Default for Attempt {
@@ -62,6 +65,7 @@ impl Default for Attempt {
             levels: None,
             is_pilot: false,
             completed: 0,
+            bend: Vec3::ZERO,
         }
     }
 }
@@ -98,25 +102,39 @@ impl Attempt {
     }
 
     /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it, if
-    /// that can be. There is no pilot run: the refinement meets the wanted count by itself.
-    pub(super) fn refine(&mut self, settings: &Settings, mut curvature: Vec<f64>) {
+    /// that can be. There is no pilot run: the refinement meets the wanted count by itself. Returns why it cannot be; the front with
+    /// its relaxation is attempted then.
+    pub(super) fn refine(
+        &mut self,
+        settings: &Settings,
+        points: &[Vec3],
+        mut curvature: Vec<f64>,
+    ) -> Option<Refusal> {
         let count = self.predicted_count(settings);
         let radius = (self.count_times_radius_sq() / count).sqrt();
+        let most = (0..points.len()).max_by(|&i, &j| curvature[i].total_cmp(&curvature[j]));
+        self.bend = most.map_or(Vec3::ZERO, |i| points[i]);
         curvature.sort_by(f64::total_cmp);
-        let Some(&largest) = curvature.last() else { return };
+        let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
         let is_graded = self.sizing.is_some();
         let levels_at = |curvature: f64| refine::levels(curvature * 2.0 * radius, count, is_graded);
         // What bends too much may be a component of its own, beside which others can be refined.
         let is_mostly_smooth = || largest.is_finite() && levels_at(curvature[curvature.len() / 2]).is_some();
         let levels = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
         // There is no radius where there is no surface.
-        if levels.is_some() && radius > 0.0 && count <= f64::from(settings.max_particles) {
-            (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
-            self.graded = self.sizing.take();
-            if let Some(sizing) = &mut self.graded {
-                sizing.scale_to(count / self.packing);
-            }
+        let has_room = radius > 0.0 && count <= f64::from(settings.max_particles);
+        if !has_room || refine::levels(0.0, count, is_graded).is_none() {
+            return Some(Refusal::Few);
         }
+        if levels.is_none() {
+            return Some(Refusal::Bent { at: self.bend.into() });
+        }
+        (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
+        self.graded = self.sizing.take();
+        if let Some(sizing) = &mut self.graded {
+            sizing.scale_to(count / self.packing);
+        }
+        None
     }
 
     /// What a refinement of this attempt's front aims at.

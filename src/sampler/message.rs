@@ -44,6 +44,11 @@ impl Sampler {
             StopReason::Constant => {
                 "f has the same value wherever it is defined in the box, so there is no surface to sample.".into()
             }
+            StopReason::Undefined if self.survey.absence == Absence::TooLarge => {
+                "f is too large for double precision wherever it has a value in the box: enter it in a form with smaller \
+                 numbers, such as its logarithm, or make the box smaller."
+                    .into()
+            }
             StopReason::Undefined => "f has no value anywhere in the box.".into(),
             StopReason::OneParticle => {
                 "The radius is too large for this surface: only one particle fits. Choose a smaller radius."

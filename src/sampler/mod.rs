@@ -20,11 +20,11 @@ mod setting;
 mod settings;
 pub(crate) mod sizing;
 
-pub use discovery::completeness::Search;
+pub use discovery::completeness::{Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
-pub use refine::Refusal;
+pub use refine::{Place, Refusal};
 pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
 pub use settings::{
     BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode,
@@ -37,11 +37,12 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::trace::Trace;
 use attempt::Attempt;
+use discovery::precision;
 use discovery::seeds::Seeds;
-use discovery::survey::{Survey, survey};
+use discovery::survey::{Absence, Survey, survey};
 use front::Front;
+use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use projection::Projector;
@@ -70,6 +71,10 @@ pub struct Sampler {
     relaxation: Relaxation,
     neighbours: PackedNeighbours,
     particles: Particles,
+    /// Those of a coarse front that lie in the box, while it marches beyond.
+    inside: Option<Particles>,
+    /// The mesh that a refinement has led to, by the particles at the corners of its faces.
+    corners: Vec<u32>,
     counts: Counts,
     /// Whether particles have moved or gone since the last step.
     moved: bool,
@@ -100,16 +105,26 @@ impl Sampler {
             relaxation: Relaxation::new(),
             neighbours: PackedNeighbours::default(),
             particles: Particles::default(),
+            inside: None,
+            corners: Vec::new(),
             counts: Counts::default(),
             moved: false,
             memory_limit: usize::MAX,
         }
     }
 
-    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay.
+    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. What a coarse
+    /// front has placed beyond the box is not among them.
     #[must_use]
     pub fn particles(&self) -> &Particles {
-        &self.particles
+        self.inside.as_ref().unwrap_or(&self.particles)
+    }
+
+    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold whose
+    /// border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        self.corners.as_chunks().0
     }
 
     /// Counts of the run so far.
@@ -127,27 +142,23 @@ impl Sampler {
         self.relaxation.energy()
     }
 
-    /// Makes the adaptive front of the next run log what happens at the particle with this index, or at none.
-    pub fn follow(&mut self, particle: Option<u32>) {
-        self.front.follow(particle);
-    }
-
-    /// Returns the log of the particle that is followed.
-    #[must_use]
-    pub fn trace(&self) -> &Trace {
-        self.front.trace()
-    }
-
     /// Repulsion radius r of the run.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.attempt.radius
     }
 
-    /// Whether every connected component is proven to have been found.
+    /// Whether it is proven that there is a witness on every connected component, and of each witness that it is on the component of
+    /// a particle or [named](Sampled::without).
     #[must_use]
     pub fn search(&self) -> Search {
         self.seeds.verdict()
+    }
+
+    /// Which of the components hold particles.
+    #[must_use]
+    pub fn sampled(&self) -> Sampled {
+        self.seeds.sampled()
     }
 
     /// Number of cells of the box in which the proof could not decide whether they hold the first point of a component; `None`
@@ -162,6 +173,11 @@ impl Sampler {
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
         self.seeds.open_cells().map(|_| discovery::singular::places(self.seeds.singular()))
+    }
+
+    /// The scale at which the field of the last start is evaluated in double precision, if it is.
+    pub(crate) fn double(&self) -> Option<f64> {
+        self.survey.double
     }
 
     /// The settings of the run.
@@ -216,6 +232,8 @@ impl Sampler {
         self.settings = *settings;
         self.bounds = *bounds;
         self.particles.clear();
+        self.inside = None;
+        self.corners = Vec::new();
         self.fronts = Fronts::default();
         self.relaxation.clear();
         self.counts = Counts::default();
@@ -231,8 +249,7 @@ impl Sampler {
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.factor);
             let curvature = refine::largest_curvatures(field, &self.survey.position);
-            self.attempt.refine(settings, curvature);
-            self.counts.refusal = self.attempt.levels.is_none().then_some(Refusal::Unsuitable);
+            self.counts.refusal = self.attempt.refine(settings, &self.survey.position, curvature);
         }
         let predicted = self.attempt.predicted_count(settings);
         self.seeds.expect(predicted.min(f64::from(settings.max_particles)));
@@ -255,19 +272,27 @@ impl Sampler {
     fn look_over(&mut self, field: &mut dyn Field, is_known: bool) {
         self.seeds.begin(field, &self.bounds);
         self.seeds.expect(0.0);
-        if !is_known {
+        if is_known {
+            field.use_double(self.survey.double);
+        } else {
+            field.use_double(None);
+            let double = precision::double_scale(field, &self.bounds);
+            field.use_double(double);
             let factor = comfortable_factor(field, spread(&self.bounds));
             let is_dense = !field.has_bounds();
             let scaled = &mut Scaled::new(field, factor);
             self.survey = survey(scaled, &self.bounds, is_dense, &mut self.projector);
-            self.survey.factor = factor;
+            (self.survey.factor, self.survey.double) = (factor, double);
+            if self.survey.absence == Absence::Undefined && precision::overflows_double(field, &self.bounds) {
+                self.survey.absence = Absence::TooLarge;
+            }
         }
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.factor);
             let tolerance = self.survey.tolerance();
             while self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, u32::MAX) == 0 {}
             let found = self.seeds.points().iter().map(|seed| (seed.position, seed.normal));
-            self.survey.adopt(field, found, &self.bounds, self.seeds.verdict());
+            self.survey.adopt(field, found, &self.bounds, self.seeds.witnessed());
         }
     }
 
@@ -313,6 +338,7 @@ impl Sampler {
     /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its
     /// budget is 0.
     pub fn cancel(&mut self) {
+        self.inside = None;
         self.next(Input::Cancel);
     }
 
@@ -329,9 +355,28 @@ impl Sampler {
         if matches!(self.phase, PhaseState::Marking(_)) {
             self.next(Input::Work { field, left: &mut left });
         }
+        self.look_inside();
         let progress = self.progress();
         self.moved = false;
         progress
+    }
+
+    /// Finds the particles to be shown of a front that marches beyond the box.
+    fn look_inside(&mut self) {
+        let is_marching = match self.phase.name() {
+            Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.levels.is_some(),
+            _ => false,
+        };
+        let settled = self.settled();
+        let is_beyond = |p: &Vec3| !self.bounds.contains(*p);
+        if !is_marching || !self.particles.position[..settled].iter().any(is_beyond) {
+            self.inside = None;
+            return;
+        }
+        let mut inside = self.inside.take().unwrap_or_default();
+        inside.copy_first(settled, &self.particles);
+        inside.keep_within(&self.bounds);
+        self.inside = Some(inside);
     }
 
     fn is_under_way(&self) -> bool {

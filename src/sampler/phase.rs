@@ -56,10 +56,11 @@ pub enum StopReason {
 /// | `Generation` | the front has closed | `Seeding`; `Search` if the seed was a witness or the limit is reached |
 /// | `Search` | a witness is not covered | `Generation` |
 /// | `Search` | all witnesses are covered | `Filling` if there are gaps; else as after `Filling` |
-/// | `Filling` | no gap is left | `Relaxation`; `Seeding` if the wanted count is missed; `Refinement` of a coarse front; `Marking` if nothing is to be relaxed |
-/// | `Refinement` | the last level is done | `Marking` |
+/// | `Filling` | no gap is left | `Relaxation`; `Seeding` if the wanted count is missed; `Refinement` of a coarse front; `Audit` if nothing is to be relaxed |
+/// | `Refinement` | the last level is done | `Audit` |
 /// | `Refinement` | the front is refused | `Seeding`, with a finer front |
-/// | `Relaxation` | the last step is done | `Marking` |
+/// | `Relaxation` | the last step is done | `Audit` |
+/// | `Audit` | it is known which components hold particles | `Marking` |
 /// | `Marking` | the particles are marked | `Done` |
 /// | `Done` | the caller asks for more relaxation steps | `Relaxation` |
 /// | any before `Marking` | the caller cancels the run | `Marking` |
@@ -82,6 +83,8 @@ pub(super) enum PhaseState {
     Refinement(Box<Components>),
     /// Moves the particles to more even distances.
     Relaxation,
+    /// Asks which components hold particles.
+    Audit(StopReason),
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
     Marking(StopReason),
     /// The run has ended.
@@ -96,7 +99,7 @@ impl PhaseState {
             Self::Seeding(_) => Phase::Seeding,
             Self::Generation(_) | Self::Filling => Phase::Generation,
             Self::Refinement(_) => Phase::Refinement,
-            Self::Search => Phase::Search,
+            Self::Search | Self::Audit(_) => Phase::Search,
             Self::Relaxation => Phase::Relaxation,
             Self::Marking(_) | Self::Done(_) => Phase::Done,
         }

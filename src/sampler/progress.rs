@@ -1,6 +1,7 @@
 //! What a run tells its caller: the answer to the start, the state after a step, and the counts.
 
 use super::{Sampler, StopReason};
+use crate::particles::Particles;
 use crate::sampler::fates::FateCounts;
 use crate::sampler::phase::{Phase, PhaseState};
 use crate::sampler::refine::{self, Refusal};
@@ -74,6 +75,8 @@ pub struct Counts {
     pub seeds: u32,
     /// Seeds that stayed alone beside other particles and were taken back.
     pub left_out: u32,
+    /// Whether no more seeds were tried because too many had been taken back.
+    pub ended_early: bool,
     /// Times that the coarse front was refined, where it was.
     pub refined_levels: Option<u32>,
     /// Why the front stands, where a refinement was asked for.
@@ -84,10 +87,8 @@ impl Sampler {
     /// The state as of now. [`Progress::moved`] tells of what has changed since the last step.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let particles = match self.phase {
-            PhaseState::Generation(_) | PhaseState::Filling => self.front.active().level().settled,
-            _ => self.particles.len(),
-        };
+        let settled = self.settled();
+        let particles = self.inside.as_ref().map_or(settled, Particles::len);
         let (refine_level, refine_levels) = match &self.phase {
             PhaseState::Refinement(refinement) => refinement.levels(),
             _ => (0, 0),
@@ -95,17 +96,25 @@ impl Sampler {
         Progress {
             phase: self.phase.name(),
             particles,
-            level: self.particles.level[..particles].last().copied().unwrap_or(0),
+            level: self.particles.level[..settled].last().copied().unwrap_or(0),
             refine_level,
             refine_levels,
             relax_step: self.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
             evaluations: self.projector.evaluations,
-            fraction: self.fraction(particles),
+            fraction: self.fraction(settled),
             stop_reason: self.phase.stop_reason(),
             message: self.message(),
             radius: self.attempt.radius,
             moved: self.moved,
+        }
+    }
+
+    /// Particles in the columns that will stay.
+    pub(super) fn settled(&self) -> usize {
+        match self.phase {
+            PhaseState::Generation(_) | PhaseState::Filling => self.front.active().level().settled,
+            _ => self.particles.len(),
         }
     }
 
@@ -120,7 +129,7 @@ impl Sampler {
                 let relaxed = f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
-            PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
+            PhaseState::Audit(_) | PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run.

@@ -242,6 +242,43 @@ impl Projector {
         }
     }
 
+    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the centre
+    /// where others are near.
+    pub(crate) fn walk(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
+        /// Steps from the centre to the circle.
+        const STEPS: u32 = 8;
+        /// Newton steps in the plane of the circle after each.
+        const LANDINGS: u32 = 2;
+        let &Circle { centre, normal, direction, radius, .. } = circle;
+        let plane = |v: Vec3| direction * v.dot(direction) + normal * v.dot(normal);
+        let step = radius / STEPS as f32;
+        let (mut p, mut n) = (centre, normal);
+        // The turn of the normal over a step, as a rise: κ step²/2, with sin θ = −κ r on the circle of radius 2r.
+        let mut rise = circle.guess[1] * step / STEPS as f32;
+        for _ in 0..STEPS {
+            let ahead = direction * n.dot(normal) - normal * n.dot(direction);
+            let before = n;
+            p += ahead * step + n * rise;
+            for _ in 0..LANDINGS {
+                let (value, gradient) = self.evaluate(field, p);
+                let within = plane(gradient);
+                p -= within * (value / within.length_squared());
+                n = within.normalize_or_zero();
+            }
+            if n == Vec3::ZERO || !p.is_finite() || n.dot(before) <= 0.0 {
+                return Landing::NotConverged;
+            }
+            rise = -0.5 * step * (n - before).dot(ahead);
+        }
+        let offset = p - centre;
+        let [cos, sin] = [offset.dot(direction), offset.dot(normal)];
+        let length = (cos * cos + sin * sin).sqrt();
+        let mut landing = Vec::new();
+        let circle = Circle { guess: [cos / length, sin / length], ..*circle };
+        self.land_on_circles(field, &[circle], tolerance, &mut landing);
+        landing[0]
+    }
+
     /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois method.
     fn search_arc(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
         // θ runs over ±100° in equal steps from the tangent plane.

@@ -3,6 +3,7 @@
 use super::Sampler;
 use crate::field::Field;
 use crate::sampler::attempt::Attempt;
+use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::seeds::Cover;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
@@ -19,6 +20,8 @@ use rand_core::{Rng, SeedableRng};
 const SEARCH_SLICE: u32 = 8_192;
 /// The same for the relaxation, in whose stages the time of a unit differs by a factor of ten.
 const RELAXATION_SLICE: u32 = 16_384;
+/// Seeds that may be taken back in an attempt, and one more for every particle.
+const MOST_LEFT_OUT: usize = 256;
 
 /// The events that change the state.
 pub(super) enum Input<'a> {
@@ -63,6 +66,8 @@ impl Sampler {
                     self.moved |= self.relaxation.abandon(&mut self.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
+                // Nothing moves any more, but the audit has not come to its end.
+                PhaseState::Audit(_) => PhaseState::Marking(StopReason::Cancelled),
                 // The columns hold the last level that was finished, or the coarse front.
                 PhaseState::Refinement(_) => {
                     self.attempt.end_refinement();
@@ -77,6 +82,7 @@ impl Sampler {
                 PhaseState::Filling => self.fill(field, left),
                 PhaseState::Refinement(refinement) => self.refine(field, left, refinement),
                 PhaseState::Relaxation => self.relax_particles(field, left),
+                PhaseState::Audit(reason) => self.audit(field, left, reason),
                 PhaseState::Marking(reason) => self.mark(field, reason),
             },
         };
@@ -106,7 +112,7 @@ impl Sampler {
         });
         if self.fronts.seed().is_none() {
             self.counts.seeds = 0;
-            self.counts.left_out = 0;
+            (self.counts.left_out, self.counts.ended_early) = (0, false);
             self.counts.front_evaluations = 0;
             self.seeds.restart();
         }
@@ -120,6 +126,9 @@ impl Sampler {
             return self.begin_front(field, position, normal, None).unwrap_or(PhaseState::Search);
         }
         while *left > 0 {
+            if self.has_no_room() {
+                return PhaseState::Search;
+            }
             let Some(i) = cursor.next() else { return PhaseState::Search };
             *left -= 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
@@ -164,12 +173,38 @@ impl Sampler {
         if !self.front.active().is_done() {
             return PhaseState::Generation(after);
         }
-        let is_dropped = self.with_front(field, |front, context| front.drop_lone_seed(context));
+        let is_dropped = self.drop_lone_seed(field, after.is_none());
         self.counts.left_out += u32::from(is_dropped);
         match after {
             Some(cursor) if !self.front.is_capped() => PhaseState::Seeding(cursor),
             _ => PhaseState::Search,
         }
+    }
+
+    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own. Says
+    /// whether it was.
+    fn drop_lone_seed(&mut self, field: &mut dyn Field, is_witness: bool) -> bool {
+        let is_lone = self.with_front(field, |front, context| front.has_lone_seed(context.particles));
+        let is_kept = is_lone && is_witness && self.fronts.seed().is_none() && self.is_on_own_piece(field);
+        if is_lone && !is_kept {
+            self.with_front(field, |front, context| front.drop_last_seed(context));
+        }
+        is_lone && !is_kept
+    }
+
+    /// Whether the last particle, a witness, is the only one on a small piece of the surface that is closed in itself.
+    fn is_on_own_piece(&mut self, field: &mut dyn Field) -> bool {
+        /// The reach of a piece is measured along a few paths.
+        const ROOM: f64 = 1.05;
+        let last = self.particles.len() - 1;
+        let Some((seed, reach)) = self.seeds.small_piece(field, self.particles.radius[last]) else {
+            return false;
+        };
+        let reach = ROOM * reach;
+        let slack = f64::from(2.0 * self.attempt.tolerance(&self.survey).residual);
+        let others = self.front.active_mut().within(seed.position, reach as f32);
+        let others = others.iter().map(|near| near.index as usize).filter(|&j| j != last);
+        !holds_any(field, &self.particles, (seed, reach), others, slack)
     }
 
     /// Calls a method of the front with what it works on.
@@ -220,15 +255,20 @@ impl Sampler {
         }
         *left -= slice - unused;
         while *left > 0 {
+            if self.has_no_room() {
+                return self.begin_filling(field);
+            }
             let (witness, unused) = self.seeds.next(*left);
             *left = unused;
             let Some(seed) = witness else {
                 return self.begin_filling(field);
             };
+            let rule = self.front.active().rule();
             let mut near = self.seeds.take_near();
             self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
             let start = self.projector.evaluations;
-            let cover = self.seeds.cover(field, &mut self.projector, &self.particles, seed, near, tolerance);
+            let cover =
+                self.seeds.cover(field, &mut self.projector, &self.particles, seed, near, (tolerance, rule));
             self.counts.seeding_evaluations += self.projector.evaluations - start;
             if cover == Cover::Bare
                 && let Some(next) = self.begin_front(field, seed.position, seed.normal, None)
@@ -237,6 +277,15 @@ impl Sampler {
             }
         }
         PhaseState::Search
+    }
+
+    /// Whether so many seeds were taken back, because they stayed alone beside other particles, that no more are tried. A front
+    /// costs the same whether it places a particle or none: without a bound, a radius larger than the distances between
+    /// thousands of sheets makes a long run of few particles.
+    fn has_no_room(&mut self) -> bool {
+        let is_over = self.counts.left_out as usize > MOST_LEFT_OUT + self.particles.len();
+        self.counts.ended_early |= is_over;
+        is_over
     }
 
     fn begin_filling(&mut self, field: &mut dyn Field) -> PhaseState {
@@ -259,9 +308,9 @@ impl Sampler {
     fn end_generation(&mut self, field: &mut dyn Field) -> PhaseState {
         let count = self.particles.len();
         if count == 0 {
-            return PhaseState::Marking(match self.survey.absence {
+            return self.begin_audit(match self.survey.absence {
                 Absence::Constant => StopReason::Constant,
-                Absence::Undefined => StopReason::Undefined,
+                Absence::Undefined | Absence::TooLarge => StopReason::Undefined,
                 _ => StopReason::NoSurface,
             });
         }
@@ -272,9 +321,9 @@ impl Sampler {
             return self.begin_attempt();
         }
         if self.front.active().level().fates.added == 0 && !self.front.is_capped() {
-            PhaseState::Marking(StopReason::OneParticle)
+            self.begin_audit(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
-            PhaseState::Marking(self.reason_for_end())
+            self.begin_audit(self.reason_for_end())
         } else {
             self.begin_relaxation()
         }
@@ -282,18 +331,20 @@ impl Sampler {
 
     /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser.
     fn begin_refinement(&mut self, field: &mut dyn Field, target: Target) -> PhaseState {
-        let is_smooth = self.seeds.singular().is_empty() && !self.front.is_capped();
         let sizing = self.attempt.graded.as_ref();
-        let next = if is_smooth {
+        let next = if let Some(point) = self.seeds.singular().first() {
+            Err(Refusal::Singular { at: point.position.as_vec3().into() })
+        } else if self.front.is_capped() {
+            Err(Refusal::Few)
+        } else {
             let witnesses = self.seeds.points().iter().map(|seed| seed.position);
             let surface = Surface {
                 points: self.survey.position.iter().copied().chain(witnesses).collect(),
                 bounds: self.bounds,
                 sizing,
+                bend: self.attempt.bend,
             };
             self.fronts.take_in(field, &surface, &mut self.particles, target)
-        } else {
-            Err(Refusal::Unsuitable)
         };
         match next {
             Ok(Next::Front(levels)) => {
@@ -352,8 +403,9 @@ impl Sampler {
                     return PhaseState::Refinement(refinement);
                 }
                 self.counts.refined_levels = Some(refinement.times()[1]);
+                self.corners = refinement.into_corners();
                 self.attempt.end_refinement();
-                PhaseState::Marking(StopReason::Complete)
+                self.begin_audit(StopReason::Complete)
             }
         }
     }
@@ -368,6 +420,7 @@ impl Sampler {
     }
 
     fn begin_relaxation(&mut self) -> PhaseState {
+        self.corners = Vec::new();
         self.front.release();
         self.particles.shrink();
         self.neighbours.shrink();
@@ -382,7 +435,8 @@ impl Sampler {
             },
         };
         let (steps, count) = (self.settings.relax_steps, self.particles.len());
-        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.neighbours);
+        let sheets = if self.front.active().rule().is_fine() { self.particles.fronts() } else { Vec::new() };
+        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.neighbours, sheets);
         PhaseState::Relaxation
     }
 
@@ -404,10 +458,36 @@ impl Sampler {
         *left = 0;
         self.counts.relaxation_evaluations += self.projector.evaluations - start;
         if self.relaxation.is_done() {
-            PhaseState::Marking(self.reason_for_end())
+            self.begin_audit(self.reason_for_end())
         } else {
             PhaseState::Relaxation
         }
+    }
+
+    fn begin_audit(&mut self, reason: StopReason) -> PhaseState {
+        self.seeds.restart_audit();
+        PhaseState::Audit(reason)
+    }
+
+    /// Finds out which components hold particles.
+    fn audit(&mut self, field: &mut dyn Field, left: &mut u32, reason: StopReason) -> PhaseState {
+        let tolerance = self.attempt.tolerance(&self.survey);
+        let slice = (*left).min(SEARCH_SLICE);
+        let start = self.projector.evaluations;
+        let unused = self.seeds.audit(
+            field,
+            &mut self.projector,
+            &self.particles,
+            (self.attempt.radius, tolerance, self.front.active().rule()),
+            slice,
+        );
+        self.counts.seeding_evaluations += self.projector.evaluations - start;
+        if unused == 0 {
+            *left = 0;
+            return PhaseState::Audit(reason);
+        }
+        *left -= slice - unused;
+        PhaseState::Marking(reason)
     }
 
     fn reason_for_end(&self) -> StopReason {

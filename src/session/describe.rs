@@ -4,7 +4,7 @@
 use crate::export::{COLUMNS, Column};
 use crate::field::formula::{FUNCTIONS, FunctionInfo, MAX_FORMULA_BYTES, Parameter, name_pattern};
 use crate::field::gallery::{self, Group, Surface};
-use crate::field::model::{MODELS, Model};
+use crate::field::model::{self, MODELS, Model};
 use crate::math::Bounds;
 use crate::sampler::{COUNT_ROOM, Setting, Settings};
 use serde::Serialize;
@@ -55,6 +55,12 @@ pub struct Limits {
     pub farthest_corner: f64,
     /// Room for the particles that are expected, as a multiple of them.
     pub count_room: f64,
+    /// Smallest number of points of a model or a file that can be fitted, if it has as many.
+    pub centres_min: u32,
+    /// Largest number of points of a model or a file that can be fitted.
+    pub centres_max: u32,
+    /// Number of points that are fitted by default.
+    pub centres: u32,
 }
 
 /// A gallery surface.
@@ -108,6 +114,8 @@ pub struct ReportRow {
     pub better: Option<&'static str>,
     /// Definition and meaning.
     pub help: &'static str,
+    /// Path to the list of places in the picture that the figure is about.
+    pub places: Option<&'static str>,
 }
 
 /// What can become of a child.
@@ -158,6 +166,9 @@ pub fn describe() -> Description {
             diagonal_max: *Bounds::DIAGONALS.end(),
             farthest_corner: Bounds::FARTHEST_CORNER,
             count_room: COUNT_ROOM,
+            centres_min: *model::CENTRES.start(),
+            centres_max: *model::CENTRES.end(),
+            centres: model::DEFAULT_CENTRES,
         },
     }
 }
@@ -189,11 +200,13 @@ const fn row(
     (ideal, better): (&'static str, Option<&'static str>),
     help: &'static str,
 ) -> ReportRow {
-    ReportRow { key, to: None, unless: None, label, group, unit, digits, ideal, better, help }
+    ReportRow { key, to: None, unless: None, label, group, unit, digits, ideal, better, help, places: None }
 }
 
 const LOWER: Option<&str> = Some("lower");
 const HIGHER: Option<&str> = Some("higher");
+const PAIRS: Option<&str> = Some("places.pairs");
+const HOLES: Option<&str> = Some("places.holes");
 
 const REPORT: &[ReportRow] = &[
     row("count", "Particles", ("Run", "", 0), ("", None), "Particles on the surface."),
@@ -279,6 +292,7 @@ const REPORT: &[ReportRow] = &[
     ),
     ReportRow {
         unless: Some("quality.cover_local"),
+        places: HOLES,
         ..row(
             "quality.cover",
             "Largest hole",
@@ -288,13 +302,54 @@ const REPORT: &[ReportRow] = &[
         )
     },
     ReportRow {
+        places: HOLES,
+        ..row(
+            "quality.cover_local",
+            "Largest hole",
+            ("Spacing", "", 2),
+            ("1", LOWER),
+            "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it.",
+        )
+    },
+    ReportRow {
+        places: HOLES,
+        ..row(
+            "quality.wide_holes",
+            "Holes wider than 1.4",
+            ("Spacing", "", 0),
+            ("0", LOWER),
+            "Empty discs on the surface that are wider than 1.4, measured as the largest one. Of discs that overlap so far that the middle of one lies in the other, one counts. A missing particle leaves a hole of 1.73.",
+        )
+    },
+    ReportRow {
         unless: Some("quality.overlap_min"),
+        places: PAIRS,
         ..row(
             "quality.rho",
             "Closest pair",
             ("Spacing", "", 3),
             ("1", HIGHER),
             "Distance of the closest pair over the spacing of a perfect hexagonal lattice of as many particles: the normalised Poisson-disk radius.",
+        )
+    },
+    ReportRow {
+        places: PAIRS,
+        ..row(
+            "quality.overlap_min",
+            "Closest pair",
+            ("Spacing", "", 3),
+            ("1", HIGHER),
+            "Smallest distance of two neighbours over the sum of their radii.",
+        )
+    },
+    ReportRow {
+        places: PAIRS,
+        ..row(
+            "quality.crowded",
+            "Pairs nearer than 0.75",
+            ("Spacing", "", 0),
+            ("0", LOWER),
+            "Pairs of particles that are nearer to each other than 0.75, measured as the closest one.",
         )
     },
     ReportRow {
@@ -313,20 +368,6 @@ const REPORT: &[ReportRow] = &[
         ("Spacing", "%", 1),
         ("0 %", LOWER),
         "Standard deviation over mean of the distance between natural neighbours over the sum of their radii.",
-    ),
-    row(
-        "quality.cover_local",
-        "Largest hole",
-        ("Spacing", "", 2),
-        ("1", LOWER),
-        "Radius of the largest empty disc on the surface over that of a perfect hexagonal lattice of particles as large as those around it.",
-    ),
-    row(
-        "quality.overlap_min",
-        "Closest pair",
-        ("Spacing", "", 3),
-        ("1", HIGHER),
-        "Smallest distance of two neighbours over the sum of their radii.",
     ),
     ReportRow {
         unless: Some("quality.size_cv"),
@@ -362,16 +403,16 @@ const REPORT: &[ReportRow] = &[
     row(
         "quality.euler",
         "Euler number",
-        ("Surface", "", 0),
+        ("At this radius", "", 0),
         ("", None),
-        "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components.",
+        "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components. It is that of the sample: where the surface is as thin as a particle, a smaller radius may show another one.",
     ),
     row(
         "components",
         "Connected components",
-        ("Surface", "", 0),
+        ("At this radius", "", 0),
         ("", None),
-        "Components of the mesh of natural neighbours. Parts that are joined only at a singular point count separately.",
+        "Components of the graph of natural neighbours of the particles. It is that of the sample: a neck or a needle as thin as a particle may divide it. Parts that are joined only at a singular point count separately.",
     ),
     row(
         "border",
@@ -385,14 +426,21 @@ const REPORT: &[ReportRow] = &[
         "All components found",
         ("Surface", "", 0),
         ("proven", None),
-        "Proven: interval arithmetic shows that a front began on every component of the surface in the box. By dense search: the field was evaluated at the nodes of a grid, which can miss a component smaller than its cells.",
+        "Proven: interval arithmetic shows a witness on every component of the surface in the box, and that each witness is on the component of a particle or counted in the next row. By search: a component smaller than the cells of the search can be missing.",
+    ),
+    row(
+        "sampled.missing",
+        "Without particles",
+        ("Surface", "", 0),
+        ("0", LOWER),
+        "Witnesses without a particle on their component, which is too small or too near another one for this radius. The notes name their places and sizes.",
     ),
     row(
         "undecided_cells",
         "Undecided cells",
         ("Surface", "", 0),
         ("0", LOWER),
-        "Cells of the box in which the proof could neither find a component nor rule one out.",
+        "Cells of the box in which the proof could neither find a component nor rule one out, and witnesses of which it could not tell whether a particle is on their component.",
     ),
     row(
         "singular_points",

@@ -1,12 +1,15 @@
 //! The mesh over the particles of a session: joined when it is asked for, in slices, and dropped when they change.
 
 use super::Session;
-use crate::export::{MeshFormat, write_mesh};
+use crate::export::{MeshFormat, rows, write_rows};
 use crate::mesh::build::{self, Options, Triangulation};
 use crate::mesh::topology::Component;
 use crate::slices::{self, Work};
 use serde::Serialize;
 use std::io;
+
+/// Rows of a file that are written in one slice of work, at up to a microsecond each.
+const ROWS: usize = 1_000;
 
 /// What a mesh adds up to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -16,6 +19,9 @@ pub struct MeshAnswer {
     pub triangles: usize,
     /// Connected components, in the order of their first particles.
     pub components: Vec<MeshComponent>,
+    /// Border loops where the surface ends. The page shows the open edges.
+    #[serde(skip)]
+    pub borders: usize,
     /// Border loops where no manifold could be had, other than those where the surface ends.
     pub unfilled: usize,
     /// Particles in no triangle.
@@ -46,6 +52,20 @@ pub(super) enum Mesh {
     Joined(Triangulation),
 }
 
+/// A mesh file that is being written.
+pub(super) struct File {
+    format: MeshFormat,
+    /// Rows that are written.
+    next: usize,
+    bytes: Vec<u8>,
+}
+
+impl File {
+    fn new(format: MeshFormat) -> Self {
+        Self { format, next: 0, bytes: Vec::new() }
+    }
+}
+
 impl MeshAnswer {
     fn of(mesh: &Triangulation) -> Self {
         let component = |component: &Component| MeshComponent {
@@ -56,6 +76,7 @@ impl MeshAnswer {
         Self {
             triangles: mesh.triangles.len(),
             components: mesh.topology.components.iter().map(component).collect(),
+            borders: mesh.topology.borders.len() - mesh.unfilled.len(),
             unfilled: mesh.unfilled.len(),
             left_out: mesh.left_out.len(),
         }
@@ -64,18 +85,24 @@ impl MeshAnswer {
 
 impl Session {
     /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds each; what it adds up to, once
-    /// it is complete. Call it when the run has ended. The mesh stays until the particles change.
+    /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays until
+    /// the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         if let Mesh::None = self.mesh {
             let count = self.count();
-            let particles = self.sampler.particles();
-            let (position, normal) =
-                (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
-            let bounds = self.bounds;
-            self.mesh = Mesh::Joining(Box::pin(async move {
-                let options = Options { bounds: Some(&bounds), ..Options::default() };
-                build::in_slices(&position, &normal, &options).await
-            }));
+            let known = self.sampler.triangles().to_vec();
+            self.mesh = Mesh::Joining(if known.is_empty() {
+                let particles = self.sampler.particles();
+                let (position, normal) =
+                    (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
+                let bounds = self.bounds;
+                Box::pin(async move {
+                    let options = Options { bounds: Some(&bounds), ..Options::default() };
+                    build::in_slices(&position, &normal, &options).await
+                })
+            } else {
+                Box::pin(Triangulation::known(known, count))
+            });
         }
         if let Mesh::Joining(work) = &mut self.mesh {
             self.mesh = Mesh::Joined(slices::advance(work.as_mut(), budget)?);
@@ -93,14 +120,23 @@ impl Session {
         }
     }
 
-    /// The mesh as a file, with what was measured of the particles.
+    /// The mesh as a file, with what was measured of the particles: up to `budget` slices of the work, of a thousand rows each; the
+    /// file, once it is complete. Another format, or a change of the particles, begins a file anew.
     ///
     /// # Errors
     ///
     /// Where a format's own counters, of 32 bits, are too small.
-    pub fn mesh_file(&self, format: MeshFormat) -> io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        write_mesh(format, self.particles(), self.measured(), self.triangles(), &mut bytes)?;
-        Ok(bytes)
+    pub fn mesh_file(&mut self, format: MeshFormat, budget: u32) -> io::Result<Option<Vec<u8>>> {
+        let File { next, mut bytes, .. } =
+            self.file.take().filter(|file| file.format == format).unwrap_or(File::new(format));
+        let (particles, measured, triangles) = (self.particles(), self.measured(), self.triangles());
+        let all = rows(format, particles, triangles);
+        let end = all.min(next.saturating_add(ROWS.saturating_mul(budget as usize)));
+        write_rows(format, particles, measured, triangles, next..end, &mut bytes)?;
+        if end == all {
+            return Ok(Some(bytes));
+        }
+        self.file = Some(File { format, next: end, bytes });
+        Ok(None)
     }
 }

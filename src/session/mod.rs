@@ -21,10 +21,10 @@ use crate::field::model::ModelInfo;
 use crate::field::rbf::{DataError, RbfData, RbfField};
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::quality::{self, Figures, Histogram, Sizes};
+use crate::quality::{self, Figures, Histogram, Places, Sizes};
 use crate::sampler::{
-    BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampler, Sampling, Search, Settings, SettingsError,
-    SizeMode, Start, StopReason,
+    BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings,
+    SettingsError, SizeMode, Start, StopReason,
 };
 use crate::slices::{self, Work};
 use fitting::Fitting;
@@ -123,11 +123,14 @@ pub struct Report {
     pub levels: u32,
     /// Fronts started, each from a seed of its own.
     pub components_seeded: u32,
-    /// Number of components of the surface, by the natural neighbours of the particles.
+    /// Number of components at this radius: those of the graph of natural neighbours of the particles.
     pub components: usize,
-    /// Whether every component is proven to have been found.
+    /// Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
+    /// component of a particle or named in `sampled`.
     pub search: Search,
-    /// Cells of the box in which the proof could not decide; none where no proof was attempted.
+    /// Which of the witnessed components hold particles.
+    pub sampled: Sampled,
+    /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was attempted.
     pub undecided_cells: Option<u64>,
     /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
     pub singular_points: Option<u64>,
@@ -167,6 +170,8 @@ pub struct Report {
     pub quality_before: Option<Figures>,
     /// Nearest-neighbour distances.
     pub nearest_histogram: Histogram,
+    /// Where the spacing is worst now.
+    pub places: Places,
 }
 
 /// The field of a session.
@@ -214,6 +219,8 @@ pub struct Session {
     measuring: Option<Work<Measured>>,
     measured: quality::Report,
     mesh: Mesh,
+    /// A mesh file under way.
+    file: Option<mesh::File>,
 }
 
 /// What is kept of particles for a later look at them.
@@ -275,6 +282,7 @@ impl Session {
             measuring: None,
             measured: quality::Report::default(),
             mesh: Mesh::None,
+            file: None,
         }
     }
 
@@ -371,6 +379,12 @@ impl Session {
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
             Surface::declared,
         );
+        // What a parameter stands for is known in the surface's own formula alone.
+        if surface.is_some_and(|surface| surface.formula != text) {
+            for parameter in &mut declared {
+                parameter.label.clone_from(&parameter.name);
+            }
+        }
         for parameter in &request.declare {
             match declared.iter_mut().find(|known| known.name == parameter.name) {
                 Some(known) => *known = parameter.clone(),
@@ -381,6 +395,18 @@ impl Session {
             Some(field) if text == field.text() && declared == self.declared => field.clone(),
             _ => FormulaField::parse(text, &declared)?.without_powers(),
         };
+        // A named surface begins with its own values; without one the present field is changed.
+        if request.surface.is_some() {
+            let usual = |p: &Parameter| declared.iter().find(|d| d.name == p.name).map(|d| d.value);
+            let values: Vec<(String, f64)> = field
+                .parameters()
+                .iter()
+                .map(|p| (p.name.clone(), usual(p).unwrap_or_else(|| Parameter::automatic(&p.name).value)))
+                .collect();
+            for (name, value) in values {
+                field.set_parameter(&name, value)?;
+            }
+        }
         for (name, &value) in &request.parameters {
             match field.set_parameter(name, value) {
                 // A value for a name that the formula no longer has is of no consequence.
@@ -406,6 +432,9 @@ impl Session {
         }
         self.fitting.is_given = is_given;
         self.surface = surface;
+        if is_same {
+            field.use_double(self.sampler.double());
+        }
         self.source = Source::Formula(field);
         self.measuring = None;
         self.declared = declared;
@@ -485,7 +514,7 @@ impl Session {
         self.front_figures = None;
         self.measuring = None;
         self.measured = quality::Report::default();
-        self.mesh = Mesh::None;
+        (self.mesh, self.file) = (Mesh::None, None);
         Ok(start)
     }
 
@@ -525,7 +554,7 @@ impl Session {
 
     fn remember(&mut self, progress: Progress) -> Progress {
         self.measuring = None;
-        self.mesh = Mesh::None;
+        (self.mesh, self.file) = (Mesh::None, None);
         self.last = Some(progress.clone());
         progress
     }
@@ -599,7 +628,9 @@ impl Session {
         {
             warnings.extend(warnings::about_count(count, settings.count));
         }
-        warnings.extend(warnings::about(count, facing, &counts));
+        let sampled = self.sampler.sampled();
+        warnings.extend(warnings::about(count, facing, &counts, sampled.missing.is_some()));
+        warnings.extend(warnings::about_components(&sampled.without, self.sampler.radius()));
         let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
         Report {
@@ -608,6 +639,7 @@ impl Session {
             components_seeded: counts.seeds,
             components: self.measured.figures.components,
             search: self.sampler.search(),
+            sampled,
             undecided_cells: self.sampler.undecided_cells(),
             singular_points: self.sampler.singular_points(),
             gaps_filled: counts.gaps_filled,
@@ -628,6 +660,7 @@ impl Session {
             quality: (count > 0).then_some(self.measured.figures),
             quality_before: self.front_figures,
             nearest_histogram: self.measured.histogram.clone(),
+            places: self.measured.places.clone(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! What a user should know about a run, in words.
 
 use super::Kept;
-use crate::sampler::{COUNT_TOLERANCE, Counts, FateCounts};
+use crate::math::shortest_text;
+use crate::sampler::{COUNT_TOLERANCE, Counts, FateCounts, Unsampled};
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 
@@ -28,8 +29,9 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
     })
 }
 
-/// Warnings about what became of `total` particles, of which `close` face another sheet.
-pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> {
+/// Warnings about what became of `total` particles, of which `close` face another sheet. Where the run `is_audited`, components
+/// without particles are named elsewhere.
+pub(super) fn about(total: usize, close: usize, counts: &Counts, is_audited: bool) -> Vec<String> {
     let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
     // Those of a coarse front are no trouble once its mesh has been checked and refined.
@@ -54,7 +56,14 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> 
              too large to tell them apart by position alone: choose a smaller radius."
         ));
     }
-    if counts.left_out > 0 {
+    if counts.ended_early {
+        warnings.push(format!(
+            "The run was ended early: {} seeds had stayed alone beside other particles, because the particles are larger than the \
+             distances between the parts of the surface. Choose a smaller radius.",
+            counts.left_out
+        ));
+    }
+    if !is_audited && counts.left_out > 0 {
         warnings.push(format!(
             "Within 2r of other particles lie features too small for a particle of their own, {} in all: a smaller radius shows \
              whether they are components of their own.",
@@ -62,6 +71,32 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts) -> Vec<String> 
         ));
     }
     warnings
+}
+
+/// Names the places of the components `without` a particle.
+pub(super) fn about_components(without: &[Unsampled], radius: f64) -> Option<String> {
+    /// Places that are named in words; the report has all.
+    const NAMED: usize = 4;
+    let digits = (3.0 - libm::floor(libm::log10(radius))).clamp(0.0, 15.0) as usize;
+    let short = |x: f64| shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0);
+    let places: Vec<String> = without
+        .iter()
+        .take(NAMED)
+        .map(|&Unsampled { position, reach, goes_on }| {
+            let place = position.map(short).join(", ");
+            let about = if goes_on { "more than" } else { "about" };
+            format!("({place}), reaching {about} {} from there", short(reach))
+        })
+        .collect();
+    let more = without.len().saturating_sub(NAMED);
+    let rest = if more > 0 { format!("; and at {more} more places") } else { String::new() };
+    (!without.is_empty()).then(|| {
+        format!(
+            "No particle lies on the surface near {}{rest}. A component there, or a part of one, is too small or too near \
+             another one for this radius: choose a smaller radius.",
+            places.join("; near ")
+        )
+    })
 }
 
 /// Number of particles nearer than 2r to one that faces the other way.

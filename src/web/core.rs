@@ -164,9 +164,15 @@ impl Core {
         self.session.triangles().as_flattened().to_vec()
     }
 
-    /// The mesh as a file, by the extension of its format; nothing for another extension or if it is too large.
-    pub fn mesh_file(&self, extension: &str) -> Option<Vec<u8>> {
-        self.session.mesh_file(MeshFormat::of_extension(extension)?).ok()
+    /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete, undefined
+    /// before; null for another extension or if it is too large.
+    pub fn mesh_file(&mut self, extension: &str, budget: u32) -> JsValue {
+        let Some(format) = MeshFormat::of_extension(extension) else { return JsValue::NULL };
+        match self.session.mesh_file(format, budget) {
+            Ok(Some(bytes)) => js_sys::Uint8Array::from(&bytes[..]).into(),
+            Ok(None) => JsValue::UNDEFINED,
+            Err(_) => JsValue::NULL,
+        }
     }
 
     /// Digest of the particle columns, 16 hexadecimal digits.

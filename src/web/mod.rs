@@ -1,12 +1,18 @@
 //! What JavaScript sees: newtypes that copy, nothing else.
 //!
-//! One source makes four bundles. With the feature `render` it is the renderer (for WebGPU or for WebGL2), which lives on the
-//! main thread; with `points`, what makes fields from files, in a worker of its own; with neither the core, in another worker.
+//! One source makes five bundles. With the feature `render` it is the renderer (for WebGPU or for WebGL2), which lives on the
+//! main thread; with `points`, what makes fields from files, and with `lesson`, the paper's algorithms event by event, each in a
+//! worker of its own; with none of them the core, in another worker.
 
-#[cfg(not(any(feature = "render", feature = "points")))]
+#[cfg(not(any(feature = "render", feature = "points", feature = "lesson")))]
 mod core;
-#[cfg(not(any(feature = "render", feature = "points")))]
+#[cfg(not(any(feature = "render", feature = "points", feature = "lesson")))]
 pub use core::Core;
+
+#[cfg(feature = "lesson")]
+mod lesson;
+#[cfg(feature = "lesson")]
+pub use lesson::Lesson;
 
 #[cfg(not(feature = "render"))]
 mod values;

@@ -22,9 +22,10 @@ impl Points {
         Self::default()
     }
 
-    /// Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`.
-    pub fn model(&mut self, id: &str) -> JsValue {
-        self.begin(Job::model(id))
+    /// Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`. 0 centres are the default number
+    /// of them.
+    pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
+        self.begin(Job::model(id, if centres == 0 { DEFAULT_CENTRES } else { centres }))
     }
 
     /// Begins a file, and gives up what was begun before: an `Answer` with `Progress`. `name` is for reports. 0 centres are the

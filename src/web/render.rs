@@ -3,7 +3,7 @@
 //! Every method borrows the renderer for the length of the call only, also the asynchronous one, so that a
 //! picture may be on its way while the next frame is drawn.
 
-use crate::render::style::{ClipBox, Drawing, Style};
+use crate::render::style::{ClipBox, CuttingPlane, Drawing, Style};
 use crate::render::view::View;
 use crate::render::{Callbacks, Columns, Outcome, Renderer as Inner};
 use js_sys::{Array, Float32Array, Function, JSON, Promise, Reflect, Uint8Array, Uint32Array};
@@ -243,9 +243,9 @@ impl Renderer {
 
     /// Sets the look from a JSON object; missing keys take their defaults, unknown ones are ignored.
     ///
-    /// `background` [r, g, b, a] · `faces` {flat, edge_px} or null for discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
+    /// `background` [r, g, b, a] · `faces` {flat, edge_px}, {ghost: true} for discs above a ghost of the surface, or null for discs · `disc_scale` · `key_light_view` [x, y, z] · `dim` · `dim_backfaces` · `fade_s` ·
     /// `level` newest generation level drawn, null for all · `outline` index of the particle with a ring around it, negative for none · `box` {min, max, colour} or null ·
-    /// `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
+    /// `plane` {normal, offset} that hides what its normal points to, or null · `pixel_ratio`. Meaning, units and defaults: `render::style::Style`.
     ///
     /// # Errors
     ///
@@ -409,7 +409,9 @@ fn read_style(json: &str) -> Result<Style, JsError> {
     if faces.is_object() {
         let mut edge_px = 0.0;
         read(&faces, "edge_px", core::array::from_mut(&mut edge_px))?;
-        style.drawing = Drawing::Faces { flat: get(&faces, "flat")?.is_truthy(), edge_px };
+        let flat = get(&faces, "flat")?.is_truthy();
+        let is_ghost = get(&faces, "ghost")?.is_truthy();
+        style.drawing = if is_ghost { Drawing::Ghost } else { Drawing::Faces { flat, edge_px } };
     }
     style.level = get(&value, "level")?.as_f64().map(|level| level as u32);
     if let Some(index) = get(&value, "outline")?.as_f64() {
@@ -422,6 +424,13 @@ fn read_style(json: &str) -> Result<Style, JsError> {
         read(&clip_box, "max", &mut read_box.max)?;
         read(&clip_box, "colour", &mut read_box.colour)?;
         style.clip_box = Some(read_box);
+    }
+    let plane = get(&value, "plane")?;
+    if plane.is_object() {
+        let mut read_plane = CuttingPlane::default();
+        read(&plane, "normal", &mut read_plane.normal)?;
+        read(&plane, "offset", core::array::from_mut(&mut read_plane.offset))?;
+        style.plane = Some(read_plane);
     }
     Ok(style)
 }

@@ -10,7 +10,6 @@ use marching_particles::sampler::{
     GapPolicy, LawKind, Phase, Placement, Sampler, Sampling, Settings, SizeMode, StopReason,
 };
 use marching_particles::spatial::CellGrid;
-use marching_particles::trace::{Event, Step};
 
 const PLACEMENTS: [Placement; 2] = [Placement::Direct, Placement::Faithful];
 
@@ -340,94 +339,4 @@ fn levels_increase_along_the_columns() {
         assert!(particles.level.is_sorted());
         assert!(particles.parent[1..].is_sorted());
     }
-}
-
-#[test]
-fn a_particles_children_can_be_replayed_from_the_log() {
-    let surface = gallery::find("ellipsoid").expect("a gallery surface");
-    for placement in PLACEMENTS {
-        let settings = Settings { size_mode: SizeMode::Radius, chord_error: 2e-4, ..settings(placement) };
-        let mut field = surface.field();
-        let silent = run(&mut field, surface, &settings, 10_000);
-        assert!(silent.trace().events().is_empty());
-        for followed in [0, 40, 333] {
-            let mut sampler = Sampler::new();
-            sampler.follow(Some(followed));
-            sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-            while sampler.step(&mut field, 10_000).stop_reason.is_none() {}
-            let particles = sampler.particles();
-            assert_eq!(particles.digest(), silent.particles().digest(), "the log changes nothing");
-            replay(particles, followed, sampler.trace().events(), placement);
-        }
-    }
-}
-
-/// Replays the events in the order of Figures 7 and 8 and compares the result with the columns.
-fn replay(particles: &Particles, followed: u32, events: &[Event], placement: Placement) {
-    let i = followed as usize;
-    let Event::Parent { position, normal, radius, zero } = events[0] else { panic!("{:?}", events[0]) };
-    assert_eq!(position, particles.position[i]);
-    assert_eq!(radius, particles.radius[i]);
-    assert!(zero.dot(normal).abs() < 1e-5);
-    let neighbours = events.iter().filter(|event| matches!(event, Event::Neighbour { .. })).count();
-    assert_eq!(neighbours == 0, followed == 0, "only the first particle is alone");
-
-    let mut children: Vec<u32> = Vec::new();
-    let count = events.iter().filter(|e| matches!(e, Event::Child { step: Step::Start { .. }, .. })).count();
-    for number in 0..count as u32 {
-        let steps: Vec<Step> = events
-            .iter()
-            .filter_map(|event| match *event {
-                Event::Child { child, step } if child == number => Some(step),
-                _ => None,
-            })
-            .collect();
-        let Step::Start { position: start, .. } = steps[0] else { panic!("{steps:?}") };
-        let (mut at, mut size) = (start, 0.0);
-        let (mut pushes, mut fits, mut landed) = (0, false, None);
-        let mut overlap_before = f32::INFINITY;
-        for step in &steps[1..] {
-            match *step {
-                Step::Start { .. } => panic!("a child starts once: {steps:?}"),
-                Step::Push { position: p, radius: r } => {
-                    // The push is away from the parent, until the two touch.
-                    assert!(at.distance(position) < radius + r);
-                    assert!(p.distance(position) > at.distance(position));
-                    (at, size, pushes) = (p, r, pushes + 1);
-                }
-                Step::PushOnCircle { position: p, radius: r, overlap } => {
-                    assert!((p.distance(position) / (radius + r) - 1.0).abs() < 1e-4);
-                    assert!(overlap < overlap_before);
-                    (at, size, overlap_before) = (p, r, overlap);
-                }
-                Step::Room { phi_rad, tau_rad } => fits = tau_rad >= 0.5 * phi_rad,
-                Step::Landed { position: p, normal, radius: r } => {
-                    assert!((normal.length() - 1.0).abs() < 1e-5);
-                    landed = Some((p, r));
-                }
-                Step::Fate { fate, particle } => {
-                    assert_eq!(fate == SlotFate::Added, particle != Particles::NO_PARENT);
-                    if fate == SlotFate::Added {
-                        let (p, r) = landed.expect("a child lands before it is added");
-                        let k = particle as usize;
-                        assert_eq!(
-                            (p, r, followed),
-                            (particles.position[k], particles.radius[k], particles.parent[k])
-                        );
-                        assert!(fits, "{steps:?}");
-                        children.push(particle);
-                    }
-                }
-            }
-        }
-        assert!(matches!(steps.last(), Some(Step::Fate { .. })), "{steps:?}");
-        if placement == Placement::Faithful {
-            assert!(pushes > 5 && at.distance(position) >= (radius + size) * (1.0 - 1e-4), "{steps:?}");
-        }
-    }
-    let mut columns: Vec<u32> =
-        (0..particles.len() as u32).filter(|&k| particles.parent[k as usize] == followed).collect();
-    children.sort_unstable();
-    columns.sort_unstable();
-    assert_eq!(children, columns, "{placement:?}: every child of {followed}, and no other");
 }

@@ -7,7 +7,7 @@ use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Options, Triangulation, triangulate};
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality;
-use marching_particles::sampler::{Method, Refusal, Sampler, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
 use proptest::prelude::*;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {
@@ -153,7 +153,7 @@ fn where_the_surface_ends_inside_the_box_the_front_stands_and_the_run_says_where
     for formula in ["z = 0.3 x y + 0*ln(x^2 + y^2 - 0.4)", "z = 0.3 x y + 0*sqrt(0.5 - x)"] {
         let refusal = refined(formula, &bounds, 2_000).counts().refusal;
         let Some(Refusal::Border { at }) = refusal else { panic!("{formula}: {refusal:?}") };
-        let [x, y, _] = at;
+        let [x, y, _] = at.0;
         assert!((x * x + y * y - 0.4).abs() < 0.3 || (x - 0.5).abs() < 0.2, "{formula}: {at:?}");
         let message = Refusal::Border { at }.to_string();
         assert!(message.contains(&format!("({x:.3}, {y:.3},")), "{message}");
@@ -197,9 +197,12 @@ fn what_is_cancelled_has_no_particle_outside_the_box() {
         for _ in 0..steps {
             sampler.step(&mut field, 1_000);
         }
-        has_cut_front |= sampler.particles().position.iter().any(|&p| !gyroid.bounds.contains(p));
+        let is_marching = sampler.progress().phase == Phase::Generation;
         sampler.cancel();
-        assert!(sampler.step(&mut field, 0).stop_reason.is_some());
+        let last = sampler.step(&mut field, 0);
+        assert!(last.stop_reason.is_some());
+        // What was beyond the box is gone.
+        has_cut_front |= is_marching && last.moved;
         let particles = sampler.particles();
         assert_inside(particles, &gyroid.bounds);
         for i in 0..particles.len() {
@@ -234,4 +237,31 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn what_a_coarse_front_places_beyond_the_box_is_not_shown() {
+    let surface = gallery::find("gyroid").expect("a surface of the gallery");
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &surface.bounds, &settings(Method::Refined, 8_000, 0)).expect("valid settings");
+    let mut shown: Vec<Vec3> = Vec::new();
+    loop {
+        let progress = sampler.step(&mut field, 300);
+        let particles = sampler.particles();
+        assert_eq!(particles.position.len(), particles.slots.len());
+        assert!(progress.particles <= particles.len());
+        let now = &particles.position[..progress.particles];
+        let outside = now.iter().find(|&&p| !surface.bounds.contains(p));
+        assert_eq!(outside, None, "outside the box");
+        // What is shown stays, but where the run says that it has moved.
+        if !progress.moved {
+            assert!(now.starts_with(&shown), "{} of {}", now.len(), shown.len());
+        }
+        shown = now.to_vec();
+        if progress.stop_reason.is_some() {
+            break;
+        }
+    }
+    assert_eq!(sampler.counts().refusal, None);
 }

@@ -495,6 +495,14 @@ fn points_of_a_file_become_a_surface_that_is_sampled() {
         let message = fails(2, &["sample", "--points", "a.ply", "--centres", centres]);
         assert!(message.contains("100..=800"), "{message}");
     }
+    let message = fails(2, &["sample", "--surface", "torus", "--centres", "150"]);
+    assert!(message.contains("--centres is for --points and for the models"), "{message}");
+    let fewer = sample(&["--surface", "bunny", "--centres", "150", "--radius", "3%", "--relax", "0"]);
+    let model = &fewer["model"];
+    assert_eq!((model["centres"].as_u64(), model["points"].as_u64()), (Some(150), Some(200)));
+    let residual = |key: &str| model[key].as_f64().expect("a residual");
+    assert!(residual("residual_mean") < residual("residual_95"), "{model}");
+    assert!(residual("residual_95") < residual("residual_max"), "{model}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use marching_particles::field::gallery;
 use marching_particles::field::{Enclosure, Field};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
-use marching_particles::sampler::{Search, Settings, StopReason};
+use marching_particles::sampler::{Sampling, Search, Settings, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 fn session(formula: &str, bounds: Bounds, settings: &Settings) -> (Session, Report) {
@@ -399,4 +399,59 @@ fn cutting_a_run_into_steps_changes_nothing() {
     let whole = run(u32::MAX);
     assert_eq!(run(1), whole);
     assert_eq!(run(77), whole);
+}
+
+#[test]
+fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
+    // A thousandth of a radius apart on spheres, and a hundredth on planes.
+    let formula = "(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0002)*(x^2+y^2+z^2-1.0004)";
+    for share in [0.006, 0.0019] {
+        let (session, report) = sampled(formula, 1.5, share);
+        let mut counts = [0_usize; 3];
+        for p in &session.particles().position {
+            let sheet = (p.as_dvec3().length() - 1.0) * 1e4;
+            counts[(sheet + 0.5).clamp(0.0, 2.0) as usize] += 1;
+        }
+        let expected = 4.0 * core::f64::consts::PI / (2.0 * 3.0_f64.sqrt() * report.radius * report.radius);
+        for count in counts {
+            let cover = count as f64 / expected;
+            assert!((0.9..1.2).contains(&cover), "{formula} at {share}: {counts:?} for {expected}");
+        }
+        assert_ne!(report.sampled.missing, None);
+    }
+    for sampling in [Sampling::Adaptive, Sampling::Uniform] {
+        let settings = Settings { sampling, radius_share: 0.02, ..Settings::default() };
+        let (session, report) = session("z*(z-0.001)*(z-0.002)", Bounds::cube(1.0), &settings);
+        let on =
+            |height: f32| session.particles().position.iter().filter(|p| (p.z - height).abs() < 2e-4).count();
+        let counts = [0.0, 0.001, 0.002].map(on);
+        let alike =
+            counts.iter().all(|&count| (0.9..1.1).contains(&(3.0 * count as f64 / report.count as f64)));
+        assert!(alike && counts[0] > 50, "{sampling:?}: {counts:?}");
+        is_proven(&report, "planes");
+    }
+}
+
+#[test]
+fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
+    let r = 0.05;
+    let share = r / 12.0_f64.sqrt();
+    for size in [1.4 * r, 1.2 * r, 0.3 * r, 0.05 * r] {
+        let tiny = ([0.0, 0.0, 0.5 + 0.3 * r + size], size);
+        let formula = balls(&[([0.0; 3], 0.5), tiny]);
+        let (session, report) = sampled(&formula, 1.0, share);
+        is_proven(&report, &formula);
+        let on_it = |p: &Vec3| ((p.as_dvec3() - DVec3::from_array(tiny.0)).length() - size).abs() < 0.01 * r;
+        if session.particles().position.iter().any(on_it) {
+            assert_eq!((report.sampled.missing, report.sampled.above), (Some(0), Some(0.0)), "{formula}");
+        } else {
+            assert!(size < r, "{formula}: a piece as large as a particle holds one");
+            let [named] = report.sampled.without[..] else { panic!("{formula}: {:?}", report.sampled) };
+            assert!((named.reach / (2.0 * size) - 1.0).abs() < 0.1 && !named.goes_on, "{formula}: {named:?}");
+            let place = DVec3::from_array(named.position) - DVec3::from_array(tiny.0);
+            assert!((place.length() / size - 1.0).abs() < 0.01, "{formula}: {named:?}");
+            assert_eq!(report.sampled.above, Some(named.reach), "{formula}");
+            assert!(report.warnings.iter().any(|w| w.contains("No particle lies")), "{:?}", report.warnings);
+        }
+    }
 }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Phase, Placement, Progress, Sampling, Settings, StopReason};
+use marching_particles::sampler::{Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 /// Samples `formula` in the cube of half-width `half`.
@@ -394,4 +394,45 @@ fn a_formula_may_be_in_any_units() {
         let figures = report.quality.expect("there are particles");
         assert!(figures.cover < 1.4 && figures.euler == 2, "{formula}: {figures:?}");
     }
+}
+
+#[test]
+fn a_few_large_particles_on_many_sheets_take_little_work() {
+    // Twenty-six planes, on which two particles are wanted. Every other seed stays alone beside them.
+    let settings = Settings { size_mode: SizeMode::Count, count: 2, ..Settings::default() };
+    let (session, progress, report) = sampled("cos(z)", 40.0, &settings);
+    assert!(progress.stop_reason.is_some() && session.count() > 0);
+    // Four attempts of some 260 fronts, each of which takes no more than a few hundred evaluations.
+    assert!(report.evaluations < 1_000_000, "{} evaluations", report.evaluations);
+    assert!(report.components_seeded < 1_000, "{} fronts", report.components_seeded);
+    assert!(report.warnings.iter().any(|w| w.contains("ended early")), "{:?}", report.warnings);
+    assert_eq!(report.sampled.above, None, "components are without particles");
+}
+
+#[test]
+fn what_single_precision_cannot_hold_is_sampled_in_double_precision() {
+    let sphere = 4.0 * core::f64::consts::PI;
+    for (formula, half, area) in [
+        ("exp(100*(x^2+y^2+z^2))-exp(100)", 1.5, sphere),
+        ("1e-300*(x^2+y^2+z^2-1)", 1.5, sphere),
+        // Nearly a cube.
+        ("x^40+y^40+z^40-1", 15.0, 24.0),
+        ("(exp(100*(x^2+y^2+z^2-1))-1)*(exp(100*(x^2+y^2+z^2-0.25))-1)", 1.3, 1.25 * sphere),
+    ] {
+        let share = 0.05 / (2.0 * half * 3.0_f64.sqrt());
+        let (_, progress, report) = sampled(formula, half, &Settings { radius_share: share, ..coarse() });
+        assert_eq!(progress.stop_reason, Some(StopReason::Complete), "{formula}: {:?}", progress.message);
+        let share = report.count as f64 / expected(area, &report);
+        assert!(
+            (0.85..1.25).contains(&share),
+            "{formula}: {} particles are {share} of a cover",
+            report.count
+        );
+        let figures = report.quality.expect("there are particles");
+        assert!(figures.cover < 1.6 && figures.err_max < 1e-3, "{formula}: {figures:?}");
+    }
+    // Beyond double precision too.
+    let (_, progress, _) = sampled("exp(1000*(x^2+y^2+z^2)+1000)-2", 1.5, &coarse());
+    assert_eq!(progress.stop_reason, Some(StopReason::Undefined));
+    assert!(progress.message.is_some_and(|m| m.contains("double precision")));
 }

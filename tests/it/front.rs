@@ -1,17 +1,11 @@
-//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement, though it places whole
-//! levels at once, with the sequential algorithm.
-#![allow(
-    clippy::disallowed_methods,
-    clippy::needless_range_loop,
-    reason = "the naive sampler follows the paper slot by slot, and on a smooth surface the vectors it normalises are not zero"
-)]
+//! Tests of the uniform front (paper §4): its quality on smooth surfaces, and its agreement with the reference, particle by
+//! particle.
 
 use crate::smooth::smooth;
-use glam::Vec3;
-use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures};
+use marching_particles::reference::{self, Event, Reference};
 use marching_particles::sampler::{GapPolicy, Sampler, Settings, SizeMode, StopReason};
 
 /// Smallest share of particles with six neighbours and smallest mean minimum angle after the front, with 56,000
@@ -44,204 +38,75 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
         .figures
 }
 
-/// The sequential front of the paper: it treats one particle after the other, searches all particles for neighbours,
-/// and projects each child by itself as soon as it is proposed. Rules and arithmetic are those of the sampler; the
-/// order of work, the neighbour search and the batches are not.
-struct Naive {
-    position: Vec<Vec3>,
-    normal: Vec<Vec3>,
-    parent: Vec<u32>,
-    level: Vec<u32>,
-    slots: Vec<[SlotFate; 6]>,
+/// The reference with the rules of the fast front, from the same seed.
+fn reference_of(id: &str, sampler: &Sampler) -> Reference {
+    let surface = gallery::find(id).expect("a gallery surface");
+    assert_eq!(sampler.counts().seeds, 1, "{id}");
+    let settings = reference::Settings {
+        radius: f64::from(sampler.radius() as f32),
+        seeds: vec![sampler.particles().position[0].as_dvec3().to_array()],
+        relax_steps: 0,
+        ..reference::Settings::of_fast_front()
+    };
+    let mut run = Reference::new(Box::new(surface.field()), &surface.bounds, &settings)
+        .unwrap_or_else(|error| panic!("{id}: {error}"));
+    while !run.step(1_000).is_done {}
+    run.seek(u32::MAX);
+    run
 }
 
-struct NaiveChild {
-    parent: usize,
-    slot: usize,
-    direction: Vec3,
-    guess: [f32; 2],
-    place: Vec3,
-    normal: Vec3,
-}
-
-const DIRECTION: [[f32; 2]; 6] = [
-    [1.0, 0.0],
-    [0.5, 0.866_025_4],
-    [-0.5, 0.866_025_4],
-    [-1.0, 0.0],
-    [-0.5, -0.866_025_4],
-    [0.5, -0.866_025_4],
-];
-
-impl Naive {
-    fn run(field: &mut dyn Field, seed: Vec3, seed_normal: Vec3, radius: f32, match_tolerance: f32) -> Self {
-        let mut all = Self {
-            position: vec![seed],
-            normal: vec![seed_normal],
-            parent: vec![Particles::NO_PARENT],
-            level: vec![0],
-            slots: vec![[SlotFate::Open; 6]],
-        };
-        let match_radius = 2.0 * radius * match_tolerance;
-        let mut level = 0..1;
-        while !level.is_empty() {
-            let mut children: Vec<NaiveChild> = Vec::new();
-            for parent in level.clone() {
-                all.free_slots(field, parent, radius, match_radius, &mut children);
-            }
-            let first = all.position.len();
-            for child in &children {
-                let (p, n) = (all.position[child.parent], all.normal[child.parent]);
-                let (position, normal) = on_circle(field, p, n, child.direction, 2.0 * radius, child.guess);
-                let taken = (0..all.position.len()).any(|j| {
-                    let offset = all.position[j] - position;
-                    offset.length() <= match_radius && same_sheet(offset, normal, all.normal[j], match_radius)
-                });
-                all.slots[child.parent][child.slot] = if taken { SlotFate::Matched } else { SlotFate::Added };
-                if !taken {
-                    all.position.push(position);
-                    all.normal.push(normal);
-                    all.parent.push(child.parent as u32);
-                    all.level.push(all.level[child.parent] + 1);
-                    all.slots.push([SlotFate::Open; 6]);
-                    all.slots.last_mut().expect("just pushed")[0] = SlotFate::Parent;
-                }
-            }
-            level = first..all.position.len();
-        }
-        all
+/// Number of the first particle whose slots have other fates than in the reference, or of all; and the largest distance between
+/// a particle before it and that of the reference. Those must have the same parent and the same level.
+fn agreement(id: &str, fast: &Particles, reference: &[reference::Particle]) -> (usize, f64) {
+    let both = fast.len().min(reference.len());
+    let first = (0..both).find(|&i| fast.slots[i] != reference[i].slots).unwrap_or(both);
+    let mut apart = 0.0_f64;
+    for (i, particle) in reference[..first].iter().enumerate() {
+        assert_eq!(fast.parent[i], particle.parent.unwrap_or(Particles::NO_PARENT), "{id}: {i}");
+        assert_eq!(fast.level[i], particle.level, "{id}: {i}");
+        apart = apart.max(fast.position[i].as_dvec3().distance(particle.p()));
     }
-
-    fn free_slots(
-        &mut self,
-        field: &mut dyn Field,
-        parent: usize,
-        radius: f32,
-        match_radius: f32,
-        children: &mut Vec<NaiveChild>,
-    ) {
-        let (p, n) = (self.position[parent], self.normal[parent]);
-        let is_seed = self.parent[parent] == Particles::NO_PARENT;
-        let (u, w) = if is_seed {
-            marching_particles::math::tangent_frame(n)
-        } else {
-            let towards = self.position[self.parent[parent] as usize] - p;
-            let u = (towards - n * towards.dot(n)).normalize();
-            (u, n.cross(u))
-        };
-        let shape = if is_seed { from_hessian(field, p, u, w) } else { self.fitted(parent, radius, u, w) };
-        for slot in usize::from(!is_seed)..6 {
-            let [cos, sin] = DIRECTION[slot];
-            let direction = u * cos + w * sin;
-            let turn = u * (shape[0] * cos + shape[1] * sin) + w * (shape[1] * cos + shape[2] * sin);
-            let sin_theta = (-turn.dot(direction) * radius).clamp(-0.9, 0.9);
-            let cos_theta = (1.0 - sin_theta * sin_theta).sqrt();
-            let place = p + (direction * cos_theta + n * sin_theta) * (2.0 * radius);
-            let normal = (n + turn * (2.0 * radius * cos_theta)).normalize();
-            let occupied = |q: Vec3, m: Vec3| {
-                (q - place).length() <= match_radius && same_sheet(q - place, normal, m, match_radius)
-            };
-            let taken = (0..self.position.len()).any(|j| occupied(self.position[j], self.normal[j]))
-                || children.iter().any(|child| occupied(child.place, child.normal));
-            if taken {
-                self.slots[parent][slot] = SlotFate::Matched;
-            } else {
-                let guess = [cos_theta, sin_theta];
-                children.push(NaiveChild { parent, slot, direction, guess, place, normal });
-            }
-        }
-    }
-
-    /// Second fundamental form fitted to the normals around `parent` by least squares, with slight regularisation
-    /// towards isotropy.
-    fn fitted(&self, parent: usize, radius: f32, u: Vec3, w: Vec3) -> [f32; 3] {
-        let (p, n) = (self.position[parent], self.normal[parent]);
-        let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-        let (mut xa, mut ya, mut xb, mut yb) = (0.0, 0.0, 0.0, 0.0);
-        for j in (0..self.position.len()).filter(|&j| j != parent) {
-            let (offset, turn) = (self.position[j] - p, self.normal[j] - n);
-            if offset.length_squared() > (2.6 * radius) * (2.6 * radius) || turn.length_squared() > 1.0 {
-                continue;
-            }
-            let [x, y, a, b] = [offset.dot(u), offset.dot(w), turn.dot(u), turn.dot(w)];
-            (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
-            (xa, ya, xb, yb) = (xa + x * a, ya + y * a, xb + x * b, yb + y * b);
-        }
-        let pull = 0.005 * (xx + yy);
-        let m = [[xx + pull, xy, -pull], [xy, xx + yy + pull, xy], [-pull, xy, yy + pull]];
-        let right = [xa, ya + xb, yb];
-        // The symmetric matrix is inverted by cofactors.
-        let cofactor = |i: usize, k: usize| {
-            let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (k + 1) % 3, (k + 2) % 3);
-            m[a][c] * m[b][d] - m[a][d] * m[b][c]
-        };
-        let determinant = m[0][0] * cofactor(0, 0) + m[0][1] * cofactor(0, 1) + m[0][2] * cofactor(0, 2);
-        let inverse = 1.0 / determinant;
-        [0, 1, 2].map(|i| {
-            (cofactor(i, 0) * right[0] + cofactor(i, 1) * right[1] + cofactor(i, 2) * right[2]) * inverse
-        })
-    }
-}
-
-fn same_sheet(offset: Vec3, normal: Vec3, other: Vec3, match_radius: f32) -> bool {
-    let rise = offset.dot(normal);
-    normal.dot(other) > 0.0
-        && rise * rise <= 0.5 * (offset.length_squared() + 0.25 * match_radius * match_radius)
-}
-
-fn from_hessian(field: &mut dyn Field, p: Vec3, u: Vec3, w: Vec3) -> [f32; 3] {
-    let jet = field.jet(p.as_dvec3());
-    let (u, w) = (u.as_dvec3(), w.as_dvec3());
-    [(u, u), (u, w), (w, w)].map(|(a, b)| (a.dot(jet.hessian.apply(b)) / jet.gradient.length()) as f32)
-}
-
-/// Point of the surface on the circle around `p` that Newton's method finds from `guess`.
-fn on_circle(
-    field: &mut dyn Field,
-    p: Vec3,
-    n: Vec3,
-    direction: Vec3,
-    distance: f32,
-    guess: [f32; 2],
-) -> (Vec3, Vec3) {
-    let [mut cos, mut sin] = guess;
-    for _ in 0..12 {
-        let q = p + (direction * cos + n * sin) * distance;
-        let (mut value, mut gradient) = ([0.0], [Vec3::ZERO]);
-        field.gradients(&[q], &mut value, &mut gradient);
-        let slope = gradient[0].length();
-        if value[0].abs() <= 0.5e-4 * distance * slope {
-            return (q, gradient[0] / slope);
-        }
-        let derivative = gradient[0].dot((n * cos - direction * sin) * distance);
-        // Tangent of half the rotation angle.
-        let t = (-0.5 * value[0] / derivative).clamp(-0.2, 0.2);
-        let scale = 1.0 / (1.0 + t * t);
-        let (c, s) = ((1.0 - t * t) * scale, 2.0 * t * scale);
-        (cos, sin) = (cos * c - sin * s, sin * c + cos * s);
-    }
-    panic!("the naive front needs a radius at which Newton's method converges everywhere");
+    (first, apart)
 }
 
 #[test]
-fn the_front_places_the_particles_of_the_sequential_algorithm() {
-    for (surface, share) in [("sphere", 0.02), ("ellipsoid", 0.02), ("torus", 0.02), ("tanglecube", 0.008)] {
-        let sampler = front(surface, share);
-        let fast = sampler.particles();
-        assert_eq!(sampler.counts().seeds, 1, "{surface}");
-        let mut field = gallery::find(surface).expect("a gallery surface").field();
-        let naive = Naive::run(&mut field, fast.position[0], fast.normal[0], sampler.radius() as f32, 0.7);
-        assert_eq!(fast.len(), naive.position.len(), "{surface}");
-        assert_eq!(fast.parent, naive.parent, "{surface}");
-        assert_eq!(fast.level, naive.level, "{surface}");
-        let slots: Vec<_> = fast.slots.iter().map(|s| [0, 1, 2, 3, 4, 5].map(|k| s.get(k))).collect();
-        assert_eq!(slots, naive.slots, "{surface}");
-        // The positions differ by rounding, since the curvature fit has another order of operations. If rounding
-        // decides whether a child passes the residual of 10⁻⁴ r, the difference is of that size and grows from level to
-        // level, to 0.9 % of r on the tanglecube.
-        let apart =
-            fast.position.iter().zip(&naive.position).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
-        assert!(apart < 0.02 * sampler.radius() as f32, "{surface}: {apart} apart");
+fn the_front_places_the_particles_of_the_reference() {
+    for (id, share) in [("sphere", 0.01), ("ellipsoid", 0.008), ("torus", 0.01), ("torus", 0.02)] {
+        let sampler = front(id, share);
+        let (fast, run) = (sampler.particles(), reference_of(id, &sampler));
+        assert_eq!(fast.len(), run.particles().len(), "{id}");
+        let (first, apart) = agreement(id, fast, run.particles());
+        assert_eq!(first, fast.len(), "{id}: the first particle with other fates");
+        // The front is in single precision. Where rounding decides whether a child passes the residual of 10⁻⁴ r, the difference
+        // is of that size, and it grows from level to level.
+        assert!(apart < 0.01 * sampler.radius(), "{id}: {apart} apart");
+    }
+}
+
+#[test]
+fn where_the_front_leaves_the_reference_rounding_has_decided() {
+    // Where the curvature changes its sign, differences grow until one decides a comparison. What follows is another front.
+    for share in [0.006, 0.007, 0.008] {
+        let sampler = front("tanglecube", share);
+        let (fast, mut run) = (sampler.particles(), reference_of("tanglecube", &sampler));
+        let (first, apart) = agreement("tanglecube", fast, run.particles());
+        let context = format!("{share}: {first} of {} particles, {apart} apart", fast.len());
+        assert!(2 * first > fast.len() && apart < 0.03 * sampler.radius(), "{context}");
+        let (fates, of_reference) = (fast.slots[first], run.particles()[first].slots);
+        let slot = (0..6).find(|&k| fates.get(k) != of_reference.get(k)).expect("a slot with another fate");
+        let margin = run
+            .events(0, u32::MAX)
+            .iter()
+            .filter_map(|event| match *event {
+                Event::Compared { parent, slot: k, distance: Some(distance), limit, .. }
+                    if (parent as usize, k as usize) == (first, slot) =>
+                {
+                    Some((distance - limit).abs())
+                }
+                _ => None,
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(margin < apart, "{context}: slot {slot} was no close call: {margin}");
     }
 }
 

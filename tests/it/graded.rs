@@ -101,7 +101,9 @@ fn any_cut_into_steps_gives_the_same_graded_particles() {
 fn where_it_cannot_be_had_the_adaptive_front_stands() {
     for settings in [graded(0), counted(10_000, 0)] {
         let (refused, _) = run("heart", &settings);
-        assert_eq!(refused.counts().refusal, Some(Refusal::Unsuitable));
+        let refusal = refused.counts().refusal;
+        let is_right = |refusal| matches!(refusal, Refusal::Bent { .. } | Refusal::Singular { .. });
+        assert!(refusal.is_some_and(is_right), "{refusal:?}");
         let (front, _) = run("heart", &Settings { method: Method::Front, ..settings });
         assert_eq!(refused.particles().digest(), front.particles().digest(), "{:?}", settings.size_mode);
     }

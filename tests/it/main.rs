@@ -14,9 +14,11 @@ mod formula;
 mod formula_functions;
 mod formula_properties;
 mod front;
+mod fuzz;
 mod gallery;
 mod graded;
 mod half_edge;
+mod holes;
 mod mesh;
 mod mesh_export;
 mod mesh_parity;
@@ -30,10 +32,12 @@ mod pointcloud;
 mod pointcloud_job;
 #[cfg(feature = "points")]
 mod pointcloud_read;
+mod proof;
 mod quality;
 #[cfg(feature = "points")]
 mod rbf;
 mod readme;
+mod reference;
 mod refine;
 mod relax;
 mod session;

@@ -4,7 +4,7 @@
 //!
 //! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
 
-use marching_particles::export::MeshFormat;
+use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, MeshAnswer, Session};
 use serde::{Deserialize, Serialize};
@@ -42,6 +42,15 @@ fn joined(case: &Run, budget: u32) -> (Session, MeshAnswer) {
     }
 }
 
+/// The mesh of a session as a file, written with `budget` slices a call.
+fn written(session: &mut Session, format: MeshFormat, budget: u32) -> Vec<u8> {
+    loop {
+        if let Some(bytes) = session.mesh_file(format, budget).expect("a file of less than 4 GiB") {
+            return bytes;
+        }
+    }
+}
+
 /// FNV-1a, 64 bits.
 fn digest(bytes: &[u8]) -> String {
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
@@ -65,11 +74,11 @@ fn mesh_files_have_the_digests_that_other_platforms_give() {
     assert!(golden.runs.len() >= 2);
     let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
     for case in &mut golden.runs {
-        let (session, _) = joined(case, u32::MAX);
+        let (mut session, _) = joined(case, u32::MAX);
         let files: BTreeMap<String, String> = MeshFormat::ALL
             .iter()
             .map(|&(extension, format)| {
-                let bytes = session.mesh_file(format).expect("a file of less than 4 GiB");
+                let bytes = written(&mut session, format, u32::MAX);
                 assert!(bytes.len() > 10_000, "{}, {extension}: {} bytes", case.name, bytes.len());
                 (extension.to_owned(), digest(&bytes))
             })
@@ -85,6 +94,26 @@ fn mesh_files_have_the_digests_that_other_platforms_give() {
             serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
         std::fs::write(path(), text).expect("the golden file can be written");
     }
+}
+
+#[test]
+fn a_file_written_slice_by_slice_is_the_one_written_at_once() {
+    let (mut session, _) = joined(&golden().runs[0], u32::MAX);
+    for (extension, format) in MeshFormat::ALL {
+        let whole = written(&mut session, format, u32::MAX);
+        let first = session.mesh_file(format, 1).expect("a file of less than 4 GiB");
+        assert_eq!(first.is_some(), format == MeshFormat::Glb, "{extension}: one slice is not all of it");
+        assert!(written(&mut session, format, 1) == whole, "{extension}");
+        let mut direct = Vec::new();
+        write_mesh(format, session.particles(), session.measured(), session.triangles(), &mut direct)
+            .expect("writing to memory does not fail");
+        assert!(direct == whole, "{extension}");
+    }
+    // Another format begins anew.
+    assert!(session.mesh_file(MeshFormat::Obj, 1).expect("a small file").is_none());
+    let ply = written(&mut session, MeshFormat::Ply, 1);
+    assert!(ply.starts_with(b"ply"));
+    assert!(written(&mut session, MeshFormat::Obj, 2).starts_with(b"# Marching Particles"));
 }
 
 #[test]

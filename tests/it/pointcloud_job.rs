@@ -10,6 +10,7 @@ use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
 use marching_particles::pointcloud::fit::Fit;
 use marching_particles::pointcloud::job::{DEFAULT_CENTRES, Job, JobError, JobStage};
+use marching_particles::pointcloud::thin::KEPT;
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
@@ -98,7 +99,7 @@ fn systems_have_the_digests_that_other_platforms_give() {
     let mut faults = Vec::new();
     for case in &mut golden.runs {
         let job = match &case.model {
-            Some(id) => Job::model(id),
+            Some(id) => Job::model(id, DEFAULT_CENTRES),
             None => Job::file("points.xyz", ellipsoid(case.steps, case.normals).into(), case.centres),
         };
         let fit = job.and_then(|job| run(job, 100)).unwrap_or_else(|error| panic!("{}: {error}", case.name));
@@ -184,10 +185,45 @@ fn points_far_from_the_origin_are_moved_to_it_by_round_numbers() {
 #[test]
 fn every_built_in_model_becomes_a_field() {
     for model in MODELS {
-        let fit = run(Job::model(model.id).expect("a model of the list"), 10).expect("a good model");
+        let fit = run(Job::model(model.id, 800).expect("a model of the list"), 10).expect("a good model");
         assert_eq!((fit.info.centres, fit.info.points), (model.points, model.points), "{}", model.id);
         assert_eq!((fit.info.name.as_str(), fit.info.credit.as_str()), (model.name, model.credit));
+        assert!(fit.info.residual_max < 1e-5, "{:?}", fit.info);
     }
+}
+
+#[test]
+fn fewer_points_of_a_model_can_be_fitted_and_the_others_are_measured() {
+    let fit = run(Job::model("bunny", 120).expect("a model"), 10).expect("a good model");
+    let info = &fit.info;
+    assert_eq!((info.centres, info.points, info.name.as_str()), (120, 200, "Stanford bunny"));
+    assert!(info.residual_max > 1e-3, "80 points are not fitted: {info:?}");
+    assert!(
+        info.residual_mean < info.residual_95 && info.residual_95 < info.residual_max,
+        "40 % of the points are not fitted: {info:?}"
+    );
+    for count in [99, 801] {
+        let error = Job::model("bunny", count).map(|_| ()).expect_err("a number out of range");
+        assert_eq!(error, JobError::Centres { count });
+    }
+}
+
+/// Thinning leaves at most 20,000 points, among which the centres are chosen; the residuals are those of all points.
+#[test]
+fn the_points_that_thinning_leaves_out_are_measured_too() {
+    let mut text = ellipsoid(42, true);
+    let count = text.lines().count();
+    assert!(count > 2 * KEPT, "{count} points");
+    let of = |text: &str| file(text, 100).expect("a good cloud").info;
+    let before = of(&text);
+    // A point 0.001 from another, which shares its cell and stands before it in the file, so that thinning leaves this one out.
+    let first: Vec<f64> =
+        text.lines().next().expect("points").split(' ').map(|word| word.parse().expect("a number")).collect();
+    let [x, y, z] = [0, 1, 2].map(|k| first[k] * 1.001);
+    text += &format!("{x} {y} {z} {} {} {}\n", first[3], first[4], first[5]);
+    let after = of(&text);
+    assert_eq!((after.points, after.centres), (before.points + 1, 100));
+    assert!(after.residual_mean != before.residual_mean, "one more point is measured: {after:?}");
 }
 
 #[test]
@@ -204,7 +240,7 @@ fn a_failed_job_returns_its_error_in_every_later_step() {
         format!("all points lie in a plane{tail}")
     );
     assert_eq!(message(file("1 2 3\n", 20)), "20 centres: choose 100 to 800");
-    let unknown = Job::model("teapot").map(|_| ()).expect_err("no such model");
+    let unknown = Job::model("teapot", 200).map(|_| ()).expect_err("no such model");
     assert!(unknown.to_string().starts_with("there is no model `teapot`; known are bunny, "), "{unknown}");
     let mut job = Job::file("points.xyz", b"1 2 3\n4 5 x\n".to_vec(), 200).expect("a good beginning");
     for _ in 0..2 {

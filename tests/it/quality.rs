@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::{Field, Interval, Jet};
 use marching_particles::math::{Bounds, Sym3};
-use marching_particles::quality::{Options, Report, Sizes, measure, triangles};
+use marching_particles::quality::{CROWDED, Options, Report, Sizes, measure, triangles};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -547,6 +547,78 @@ fn duplicates_are_counted_and_do_not_break_the_triangulation() {
     assert_eq!((report.nearest[17], report.nearest[500]), (0.0, 0.0));
     assert_eq!(report.valence[500], 0);
     assert_eq!(report.valence[..500], clean.valence[..]);
+    // A duplicate is a crowded pair with the particle that it equals.
+    assert_eq!(f.crowded, clean.figures.crowded.map(|crowded| crowded + 3));
+    let [a, b, c] = [0, 1, 2].map(|k| report.places.pairs[k]);
+    assert_eq!([a.ratio, b.ratio, c.ratio], [0.0; 3]);
+    assert_eq!([a.particles, b.particles, c.particles], [[3, 502], [17, 500], [17, 501]]);
+}
+
+#[test]
+fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
+    let mut random = Random::new(5);
+    let points: Vec<Vec3> = (0..700).map(|_| random.on_sphere()).collect();
+    let report = measure(&points, &[], &mut sphere(), None, &Options::default());
+    let limit = CROWDED * report.figures.d_hex;
+    let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
+    for j in 0..points.len() {
+        for i in 0..j {
+            let distance = (points[i].as_dvec3() - points[j].as_dvec3()).length();
+            if distance < limit {
+                pairs.push((distance, [i as u32, j as u32]));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(pairs.len() > 64, "{} pairs", pairs.len());
+    assert_eq!(report.figures.crowded, Some(pairs.len()));
+    assert_eq!(report.places.pairs.len(), 64);
+    for (told, (distance, particles)) in report.places.pairs.iter().zip(&pairs) {
+        assert_eq!(told.particles, *particles);
+        close("ratio", told.ratio, distance / report.figures.d_hex, 1e-6);
+    }
+}
+
+#[test]
+fn a_missing_and_a_moved_particle_are_found_where_they_are() {
+    let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
+    let of = |points: &[Vec3], sizes| {
+        let options = Options { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+        measure(points, &[], &mut plane(), Some(&bounds), &options)
+    };
+    let perfect = of(&whole, Sizes::None);
+    assert_eq!((perfect.figures.crowded, perfect.figures.wide_holes), (Some(0), Some(0)));
+    // Of a perfect lattice one place of each kind is told.
+    assert_eq!((perfect.places.pairs.len(), perfect.places.holes.len()), (1, 1));
+
+    let at = |p: Vec3| {
+        let from = |i: &usize| whole[*i].distance(p);
+        (0..whole.len()).min_by(|a, b| from(a).total_cmp(&from(b))).expect("a point")
+    };
+    let (moved, still) = (at(Vec3::new(-0.2, -0.2, 0.0)), at(Vec3::new(-0.2 + 1.0 / 32.0, -0.2, 0.0)));
+    let mut points = whole.clone();
+    points[moved] = 0.4 * whole[moved] + 0.6 * whole[still];
+    // Of the two that are missing, one is near the border, where nothing is measured.
+    let gone = [at(Vec3::new(0.1, 0.2, 0.0)), at(Vec3::new(0.2, -0.1, 0.0)), at(Vec3::new(0.49, 0.0, 0.0))];
+    let holes = [gone[0], gone[1]].map(|i| whole[i]);
+    let kept: Vec<usize> = (0..points.len()).filter(|i| !gone.contains(i)).collect();
+    let position: Vec<Vec3> = kept.iter().map(|&i| points[i]).collect();
+    let radii = vec![1.0 / 64.0; position.len()];
+    for sizes in [Sizes::None, Sizes::Given(&radii)] {
+        let report = of(&position, sizes);
+        assert_eq!((report.figures.crowded, report.figures.wide_holes), (Some(1), Some(2)), "{sizes:?}");
+        let [pair] = report.places.pairs[..] else { panic!("{:?}", report.places.pairs) };
+        let mut particles = pair.particles.map(|i| kept[i as usize]);
+        particles.sort_unstable();
+        assert_eq!(particles, [moved.min(still), moved.max(still)]);
+        close("pair", pair.ratio, 0.4, 0.01);
+        for hole in &report.places.holes {
+            let middle = Vec3::from(hole.position);
+            assert!(holes.iter().any(|p| p.distance(middle) < 1e-3), "{middle}");
+            close("hole", hole.ratio, 3.0_f64.sqrt(), 0.02);
+            close("radius", hole.radius, 1.0 / 32.0, 1e-4);
+        }
+    }
 }
 
 fn degenerate(points: &[Vec3], normals: &[Vec3]) -> Report {

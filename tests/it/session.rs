@@ -149,6 +149,46 @@ fn a_report_is_begun_anew_after_a_change() {
 }
 
 #[test]
+fn a_parameter_has_the_label_of_its_surface_in_the_formula_of_that_surface_alone() {
+    let mut session = Session::new();
+    let mut label = |field: &str| {
+        let answer = session.set_field(&request(field)).expect("a field");
+        let parameter = answer.parameters.iter().find(|parameter| parameter.name == "a");
+        parameter.expect("the formula has `a`").label.clone()
+    };
+    assert_eq!(label(r#"{"surface":"ellipsoid"}"#), "Semi-axis along x");
+    assert_eq!(label(r#"{"surface":"ellipsoid","formula":"x^2+y^2+a*z^2=1"}"#), "a");
+    let declared = r#"{"surface":"ellipsoid","formula":"x^2+y^2+a*z^2=1",
+        "declare":[{"name":"a","label":"Flatness","value":1,"min":0,"max":2,"step":0.1}]}"#;
+    assert_eq!(label(declared), "Flatness");
+    assert_eq!(label(r#"{"surface":"ellipsoid"}"#), "Semi-axis along x");
+}
+
+#[test]
+fn a_parameter_that_is_no_longer_given_has_its_value_of_the_beginning_again() {
+    let mut session = Session::new();
+    let mut value = |field: &str| {
+        let answer = session.set_field(&request(field)).expect("a field");
+        answer.parameters[0].value
+    };
+    for (given, not_given) in [
+        (r#"{"surface":"ellipsoid","parameters":{"a":0.5}}"#, r#"{"surface":"ellipsoid"}"#),
+        (
+            r#"{"surface":"ellipsoid","formula":"x^2+y^2+k*z^2=1","parameters":{"k":0.5}}"#,
+            r#"{"surface":"ellipsoid","formula":"x^2+y^2+k*z^2=1"}"#,
+        ),
+    ] {
+        let usual = value(not_given);
+        assert_ne!(usual, 0.5);
+        assert_eq!(value(given), 0.5);
+        assert_eq!(value(not_given), usual);
+    }
+    // A change of the present field keeps the values that it does not name.
+    assert_eq!(value(r#"{"surface":"ellipsoid","parameters":{"a":0.5}}"#), 0.5);
+    assert_eq!(value(r#"{"parameters":{"b":0.25}}"#), 0.5);
+}
+
+#[test]
 fn a_session_can_be_used_again_with_the_same_result() {
     let mut session = Session::new();
     run(&mut session, &sized(500), 1000);

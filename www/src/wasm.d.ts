@@ -62,6 +62,52 @@ declare module '*/wasm/points/points.js' {
   }
 }
 
+declare module '*/wasm/lesson/lesson.js' {
+  export interface InitOutput {
+    readonly memory: WebAssembly.Memory;
+  }
+  type Started = import('./engine/core-types.js').Answer<
+    import('./engine/core-types.js').LessonProgress,
+    import('./engine/core-types.js').Fault
+  >;
+  export default function init(options: { module_or_path: WebAssembly.Module }): Promise<InitOutput>;
+  /** The paper's algorithms, event by event. */
+  export class Lesson {
+    start(
+      field: import('./engine/core-types.js').LessonField,
+      settings: Partial<import('./engine/core-types.js').LessonSettings>,
+    ): Started;
+    start_points(
+      system: Uint8Array,
+      bounds: import('./engine/core-types.js').Bounds,
+      settings: Partial<import('./engine/core-types.js').LessonSettings>,
+    ): Started;
+    step(budget: number): import('./engine/core-types.js').LessonProgress | null;
+    chapters(first: number): import('./engine/core-types.js').LessonChapter[];
+    events(first: number, count: number): import('./engine/core-types.js').LessonEvent[];
+    seek(event: number): number;
+    life(particle: number): import('./engine/core-types.js').LessonLife | null;
+    positions(): Float32Array<ArrayBuffer>;
+    normals(): Float32Array<ArrayBuffer>;
+    radii(): Float32Array<ArrayBuffer>;
+    levels(): Uint32Array<ArrayBuffer>;
+    parents(): Uint32Array<ArrayBuffer>;
+    fronts(): Uint32Array<ArrayBuffer>;
+    slots(): Uint32Array<ArrayBuffer>;
+    done(): Uint8Array<ArrayBuffer>;
+    section(
+      centre: Float64Array,
+      right: Float64Array,
+      up: Float64Array,
+      half: number,
+      cells: number,
+    ): Float32Array<ArrayBuffer>;
+    newton(start: Float64Array, reach: number): import('./engine/core-types.js').LessonIterate[];
+    digest(): string;
+    free(): void;
+  }
+}
+
 declare module '*/render.js' {
   export default function init(options?: object): Promise<unknown>;
   export class Renderer {

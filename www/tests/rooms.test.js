@@ -16,16 +16,19 @@ const ENGINE_FACE = ['engine/types', 'engine/columns'];
  */
 const MAY_USE = {
   main: ['engine', 'ui'],
+  'service-worker': [],
   // The words that everything shares.
   'engine/core-types': [],
-  'engine/types': ['engine/columns', 'engine/core-types'],
+  'engine/types': ['engine/columns', 'engine/core-types', 'engine/lesson'],
   'engine/columns': ['engine/types'],
   'engine/store': ['engine/types', 'engine/share'],
   'engine/view': ['engine/types', 'engine/columns'],
   // The state holds the camera's.
   'engine/share': ['engine/types', 'engine/columns', 'engine/view'],
-  // What both workers need to bring in a bundle and to keep its pace.
+  // What the workers need to bring in a bundle and to keep its pace.
   'engine/bundle': [],
+  // The lesson runs beside the sampler and knows nothing of it.
+  'engine/lesson': ['engine/core-types', 'engine/bundle'],
   'engine/points': ['engine/types', 'engine/store', 'engine/share', 'engine/bundle'],
   'engine/sampling': [
     'engine/types',
@@ -42,7 +45,9 @@ const MAY_USE = {
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],
   'ui/field': ['ui/*', ...ENGINE_FACE],
+  'ui/lesson': ['ui/*', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
+  'ui/picture': ['ui/*', ...ENGINE_FACE],
   'ui/report': ['ui/*', ...ENGINE_FACE],
   'ui/sampling': ['ui/*', ...ENGINE_FACE],
   'ui/view': ['ui/*', ...ENGINE_FACE],

@@ -3,13 +3,12 @@
  *
  * Usage: node tests/server.js [port]
  */
-import { createReadStream, existsSync, statSync } from 'node:fs';
+import { existsSync, readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 
 const root = fileURLToPath(new URL('../../dist/', import.meta.url));
-const port = Number(process.argv[2] ?? 4517);
 
 /** @type {Record<string, string>} */
 const types = {
@@ -27,17 +26,24 @@ const types = {
   '.webmanifest': 'application/manifest+json',
 };
 
-createServer((request, response) => {
-  const { pathname } = new URL(request.url ?? '/', 'http://localhost');
-  const inside = pathname.startsWith('/sub/path/') ? pathname.slice('/sub/path'.length) : pathname;
-  let file = join(root, normalize(decodeURIComponent(inside)));
-  if (!file.startsWith(root)) return response.writeHead(403).end();
-  if (existsSync(file) && statSync(file).isDirectory()) file = join(file, 'index.html');
-  if (!existsSync(file)) return response.writeHead(404, { 'content-type': 'text/plain' }).end('not found');
-  response.writeHead(200, {
-    'content-type': types[extname(file)] ?? 'application/octet-stream',
-    'cache-control': 'no-store',
+/**
+ * Creates a server of the site.
+ * @param {(name: string, content: Buffer) => Buffer | string} [change]  what is sent for a file, by its path in the site
+ */
+export const createSite = (change = (_name, content) => content) =>
+  createServer((request, response) => {
+    const { pathname } = new URL(request.url ?? '/', 'http://localhost');
+    const inside = pathname.startsWith('/sub/path/') ? pathname.slice('/sub/path'.length) : pathname;
+    let file = join(root, normalize(decodeURIComponent(inside)));
+    if (!file.startsWith(root)) return response.writeHead(403).end();
+    if (existsSync(file) && statSync(file).isDirectory()) file = join(file, 'index.html');
+    if (!existsSync(file)) return response.writeHead(404, { 'content-type': 'text/plain' }).end('not found');
+    response.writeHead(200, {
+      'content-type': types[extname(file)] ?? 'application/octet-stream',
+      'cache-control': 'no-store',
+    });
+    return response.end(change(file.slice(root.length), readFileSync(file)));
   });
-  createReadStream(file).pipe(response);
-  return undefined;
-}).listen(port, 'localhost');
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href)
+  createSite().listen(Number(process.argv[2] ?? 4517), 'localhost');

@@ -1,4 +1,4 @@
-//! The WebAssembly bundles: the core, what makes fields from points, and the renderer for WebGPU and for WebGL2.
+//! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer for WebGPU and for WebGL2.
 //!
 //! One bundle is: cargo (release, SIMD) → wasm-bindgen → wasm-opt → `www/src/wasm/NAME/`. A bundle is skipped when a
 //! hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding and
@@ -24,6 +24,8 @@ pub(crate) enum Bundle {
     Core,
     /// What makes fields from files of points, which runs in a worker of its own when it is asked for.
     Points,
+    /// The paper's algorithms event by event, which run in a worker of their own when the lesson is asked for.
+    Lesson,
     /// The renderer on WebGPU.
     Webgpu,
     /// The renderer on WebGL2.
@@ -32,13 +34,14 @@ pub(crate) enum Bundle {
 
 impl Bundle {
     /// All of them, the one that everything needs first.
-    pub(crate) const ALL: [Self; 4] = [Self::Core, Self::Points, Self::Webgpu, Self::Webgl];
+    pub(crate) const ALL: [Self; 5] = [Self::Core, Self::Points, Self::Lesson, Self::Webgpu, Self::Webgl];
 
     /// The folder under `www/src/wasm`.
     pub(crate) fn folder(self) -> &'static str {
         match self {
             Self::Core => "core",
             Self::Points => "points",
+            Self::Lesson => "lesson",
             Self::Webgpu => "render-webgpu",
             Self::Webgl => "render-webgl",
         }
@@ -49,6 +52,7 @@ impl Bundle {
         match self {
             Self::Core => "core",
             Self::Points => "points",
+            Self::Lesson => "lesson",
             Self::Webgpu | Self::Webgl => "render",
         }
     }
@@ -63,6 +67,7 @@ impl Bundle {
         match self {
             Self::Core => "Core",
             Self::Points => "Points",
+            Self::Lesson => "Lesson",
             Self::Webgpu | Self::Webgl => "Renderer",
         }
     }
@@ -72,16 +77,18 @@ impl Bundle {
         match self {
             Self::Core => "",
             Self::Points => "points",
+            Self::Lesson => "lesson",
             Self::Webgpu => "webgpu",
             Self::Webgl => "webgl",
         }
     }
 
     /// The core and the solver are built for speed: at level s the solver weighs 1.4 kB less and takes 1.7 times as long.
-    /// The renderers work on the GPU, so what counts is the time to load them.
+    /// The renderers work on the GPU and the lesson is slow for a reader's sake, so what counts is the time to load them.
     fn opt_level(self) -> &'static str {
         match self {
             Self::Core | Self::Points => "3",
+            Self::Lesson => "z",
             Self::Webgpu | Self::Webgl => "z",
         }
     }
@@ -90,7 +97,7 @@ impl Bundle {
     /// nothing of it (`tests/architecture.rs` holds them to that), so that a change to the sampler leaves them alone.
     fn sources(self) -> &'static [&'static str] {
         match self {
-            Self::Core | Self::Points => &["src"],
+            Self::Core | Self::Points | Self::Lesson => &["src"],
             Self::Webgpu | Self::Webgl => &["src/math", "src/render", "src/web", "shaders"],
         }
     }
@@ -98,7 +105,7 @@ impl Bundle {
     fn wasm_opt(self) -> &'static [&'static str] {
         match self {
             Self::Core | Self::Points => &["-O3", "--strip-debug", "--strip-producers"],
-            Self::Webgpu | Self::Webgl => &["-Oz", "--strip-debug", "--strip-producers"],
+            Self::Lesson | Self::Webgpu | Self::Webgl => &["-Oz", "--strip-debug", "--strip-producers"],
         }
     }
 }

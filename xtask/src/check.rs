@@ -7,6 +7,7 @@ use clap::ValueEnum as _;
 
 use crate::bundle::{self, Bundle};
 use crate::chromium;
+use crate::engines;
 use crate::node;
 use crate::project::{Project, cargo};
 use crate::site;
@@ -28,18 +29,20 @@ pub(crate) enum Part {
     Native,
     /// The shader tests alone (also part of `native`).
     Shaders,
-    /// The core and the solver for points as WebAssembly, in Node, against the digests of the native ones.
+    /// The core, the solver for points and the lesson as WebAssembly, in Node, against the digests of the native ones.
     Parity,
     /// Mesh files against Khronos' glTF validator.
     Gltf,
     /// The page: format, lint, types and unit tests.
     Page,
-    /// The built site in a browser, at / and in a sub-path.
+    /// The built site in Chromium, at / and in a sub-path.
     Browser,
+    /// A core of the browser tests in Firefox and WebKit; skipped, with the reason, where they cannot be had.
+    Engines,
 }
 
 /// Everything, the quick checks first.
-const ALL: [Part; 9] = [
+const ALL: [Part; 10] = [
     Part::Format,
     Part::Lint,
     Part::Native,
@@ -49,6 +52,7 @@ const ALL: [Part; 9] = [
     Part::Gltf,
     Part::Page,
     Part::Browser,
+    Part::Engines,
 ];
 
 /// Without WebAssembly and a browser.
@@ -81,7 +85,10 @@ impl Options {
 pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     let parts = options.parts();
     // What may be missing is looked for before the long builds start.
-    if parts.iter().any(|part| matches!(part, Part::Parity | Part::Gltf | Part::Page | Part::Browser)) {
+    if parts
+        .iter()
+        .any(|part| matches!(part, Part::Parity | Part::Gltf | Part::Page | Part::Browser | Part::Engines))
+    {
         node::prepare(project)?;
     }
     let chromium = if parts.contains(&Part::Browser) { Some(chromium::find(project)?) } else { None };
@@ -102,6 +109,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
                     chromium.as_deref().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
                 browser(project, &path)
             }
+            Part::Engines => site::build(project).and_then(|()| engines::test(project)),
         };
         if let Err(error) = result {
             eprintln!("\nerror: {error:#}\n");
@@ -161,34 +169,36 @@ fn docs(project: &Project) -> Result<()> {
     step::run("documentation", &mut command, "").map(drop)
 }
 
+/// What is tested natively. Every test command names it, because another choice has cargo compile everything again.
+const TESTED: [&str; 7] = [
+    "--package",
+    "marching-particles",
+    "--package",
+    "xtask",
+    "--features",
+    "marching-particles/cli",
+    "--locked",
+];
+
 fn native(project: &Project) -> Result<()> {
-    let packages = [
-        "--package",
-        "marching-particles",
-        "--package",
-        "xtask",
-        "--features",
-        "marching-particles/cli",
-        "--locked",
-    ];
     let mut build = cargo_at_root(project, &["test", "--no-run"]);
-    step::run("native tests: compile", build.args(packages), "")?;
+    step::run("native tests: compile", build.args(TESTED), "")?;
     let mut tests = cargo_at_root(project, &["test", "--no-fail-fast"]);
-    step::run("native tests", tests.args(packages), "").map(drop)
+    step::run("native tests", tests.args(TESTED), "").map(drop)
 }
 
 fn shaders(project: &Project) -> Result<()> {
     step::run(
         "shader tests",
-        &mut cargo_at_root(project, &["test", "--locked", "--test", "it", "shaders::"]),
+        cargo_at_root(project, &["test"]).args(TESTED).args(["--test", "it", "shaders::"]),
         "",
     )
     .map(drop)
 }
 
 fn parity(project: &Project) -> Result<()> {
-    bundle::build(project, &[Bundle::Core, Bundle::Points])?;
-    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs"] {
+    bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson])?;
+    for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/lesson.mjs"] {
         let mut command = Command::new(node::node()?);
         command.current_dir(&project.root).arg(script);
         step::run(&format!("the same digests in WebAssembly as natively ({script})"), &mut command, "")?;
@@ -197,9 +207,8 @@ fn parity(project: &Project) -> Result<()> {
 }
 
 fn gltf(project: &Project) -> Result<()> {
-    // As in `native`, so that the tests are not compiled again.
-    let mut tests = cargo_at_root(project, &["test", "--locked", "--features", "cli", "--test", "it"]);
-    step::run("mesh files", tests.arg("mesh_export::"), "")?;
+    let mut tests = cargo_at_root(project, &["test"]);
+    step::run("mesh files", tests.args(TESTED).args(["--test", "it", "mesh_export::"]), "")?;
     let mut command = Command::new(node::node()?);
     command.current_dir(&project.root).arg("tests/gltf/validate.mjs").arg(project.target.join("tmp"));
     step::run("mesh files: Khronos' glTF validator", &mut command, "").map(drop)

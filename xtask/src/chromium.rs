@@ -1,12 +1,12 @@
 //! A Chromium for the browser tests and the browser bench.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Result, bail};
 
+use crate::debian;
 use crate::node;
 use crate::project::{Project, on_path};
 use crate::step;
@@ -37,31 +37,20 @@ pub(crate) fn find(project: &Project) -> Result<PathBuf> {
     if let Some(path) = installed(project) {
         return Ok(path);
     }
-    let mut attempts = Vec::new();
     let mut playwright = Command::new(node::node()?);
     playwright.current_dir(&project.www).args([
         "node_modules/@playwright/test/cli.js",
         "install",
         "chromium",
     ]);
-    attempt(&mut attempts, "Chromium (Playwright's download)", &mut playwright);
+    let mut attempts = Vec::new();
+    attempts.extend(step::run("Chromium (Playwright's download)", &mut playwright, "").err());
     if let Some(path) = installed(project) {
         return Ok(path);
     }
-    if on_path("apt-get").is_some() && is_root() {
-        attempt(
-            &mut attempts,
-            "Debian's package index (apt-get update)",
-            Command::new("apt-get").arg("update"),
-        );
-        let mut install = Command::new("apt-get");
-        install
-            .args(["install", "--yes", "--no-install-recommends", "chromium"])
-            .env("DEBIAN_FRONTEND", "noninteractive");
-        attempt(&mut attempts, "Chromium (Debian's package)", &mut install);
-        if let Some(path) = installed(project) {
-            return Ok(path);
-        }
+    attempts.extend(debian::install("Chromium", &["chromium"]).err());
+    if let Some(path) = installed(project) {
+        return Ok(path);
     }
     // What helps stands last: the output of the attempts is long.
     bail!(
@@ -70,7 +59,7 @@ pub(crate) fn find(project: &Project) -> Result<PathBuf> {
          \x20 cd www && npx playwright install chromium    (Playwright's own)\n\
          \x20 CHROME=/path/to/chrome cargo xtask test      (one that is installed elsewhere)\n\
          \x20 cargo xtask test --fast                      (the tests that need no browser)",
-        attempts.join("\n\n")
+        attempts.iter().map(|error| format!("{error:#}")).collect::<Vec<_>>().join("\n\n")
     )
 }
 
@@ -94,20 +83,4 @@ fn playwrights(project: &Project) -> Option<PathBuf> {
 fn starts(path: &Path) -> bool {
     // Chrome on Windows prints no version; that it is there has to do.
     cfg!(windows) && path.is_file() || step::capture(Command::new(path).arg("--version"), "").is_ok()
-}
-
-fn attempt(failures: &mut Vec<String>, label: &str, command: &mut Command) {
-    if let Err(error) = step::run(label, command, "") {
-        failures.push(format!("{error:#}"));
-    }
-}
-
-/// Whether this process may install system packages.
-fn is_root() -> bool {
-    fs::read_to_string("/proc/self/status").is_ok_and(|status| {
-        status
-            .lines()
-            .find_map(|line| line.strip_prefix("Uid:"))
-            .is_some_and(|ids| ids.split_whitespace().nth(1) == Some("0"))
-    })
 }

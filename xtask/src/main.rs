@@ -4,6 +4,8 @@ mod bench;
 mod bundle;
 mod check;
 mod chromium;
+mod debian;
+mod engines;
 mod fingerprint;
 mod node;
 mod project;

@@ -3,7 +3,7 @@
 use crate::options::Sampling;
 use clap::{Args, Parser, Subcommand};
 use marching_particles::math::Bounds;
-use marching_particles::pointcloud::job::{CENTRES, DEFAULT_CENTRES};
+use marching_particles::pointcloud::job::CENTRES;
 use std::path::PathBuf;
 
 /// Sample implicit surfaces f(x, y, z) = 0 with evenly spaced particles
@@ -164,12 +164,13 @@ pub(crate) struct Surface {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["surface", "formula", "parameters"], help_heading = "Surface")]
     pub(crate) points: Option<PathBuf>,
 
-    /// Points of --points that the surface goes through, 100 to 800: more follow finer details and take longer
+    /// Points of --points, or of a model, that the surface goes through, 100 to 800: more follow finer details and take longer
+    /// [default: 200]
     #[arg(
-        long, value_name = "N", requires = "points", default_value_t = DEFAULT_CENTRES, help_heading = "Surface",
+        long, value_name = "N", help_heading = "Surface",
         value_parser = clap::value_parser!(u32).range(i64::from(*CENTRES.start())..=i64::from(*CENTRES.end()))
     )]
-    pub(crate) centres: u32,
+    pub(crate) centres: Option<u32>,
 
     /// Value of a parameter; once for each
     #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parameter, help_heading = "Surface")]

@@ -1,8 +1,6 @@
-//! `--mesh`: the triangles over the particles, and what is told of them.
+//! What is told of the triangles of `--mesh`.
 
-use marching_particles::math::Bounds;
-use marching_particles::mesh::build::{Options, Triangulation, triangulate};
-use marching_particles::particles::Particles;
+use marching_particles::session::MeshAnswer;
 use serde::Serialize;
 
 /// What the output tells of a mesh.
@@ -20,21 +18,15 @@ pub(crate) struct Mesh {
     pub(crate) left_out: usize,
 }
 
-/// The triangles over the particles, whose surface the box cuts.
-pub(crate) fn of(particles: &Particles, bounds: &Bounds) -> Triangulation {
-    let options = Options { bounds: Some(bounds), ..Options::default() };
-    triangulate(&particles.position, &particles.normal, &options)
-}
-
 impl Mesh {
-    pub(crate) fn new(mesh: &Triangulation) -> Self {
+    pub(crate) fn new(mesh: &MeshAnswer) -> Self {
         Self {
-            triangles: mesh.triangles.len(),
-            components: mesh.topology.components.len(),
-            euler: mesh.topology.euler(),
-            borders: mesh.topology.borders.len() - mesh.unfilled.len(),
-            holes: mesh.unfilled.len(),
-            left_out: mesh.left_out.len(),
+            triangles: mesh.triangles,
+            components: mesh.components.len(),
+            euler: mesh.components.iter().map(|component| component.euler).sum(),
+            borders: mesh.borders,
+            holes: mesh.unfilled,
+            left_out: mesh.left_out,
         }
     }
 }

@@ -22,8 +22,8 @@ pub(crate) fn of_file(path: &Path, centres: u32, bar: &ProgressBar) -> Result<Fi
 }
 
 /// Fits a field to a built-in model.
-pub(crate) fn of_model(id: &str, bar: &ProgressBar) -> Result<Fit, Failure> {
-    solve(Job::model(id), bar).map_err(|error| Failure::Usage(error.to_string()))
+pub(crate) fn of_model(id: &str, centres: u32, bar: &ProgressBar) -> Result<Fit, Failure> {
+    solve(Job::model(id, centres), bar).map_err(|error| Failure::Usage(error.to_string()))
 }
 
 /// Reads a file that is not too large. The size of a regular file is checked first; of others, no more than the limit

@@ -2,7 +2,7 @@
 
 use crate::arguments::{BoxChoice, Sample, Surface};
 use crate::failure::{Failure, LIMIT};
-use crate::mesh::{self, Mesh};
+use crate::mesh::Mesh;
 use crate::options::{Sampling, refusal};
 use crate::outcome::{Outcome, Seconds};
 use crate::{points, summary};
@@ -14,6 +14,7 @@ use marching_particles::field::gallery;
 use marching_particles::field::model;
 use marching_particles::math::Bounds;
 use marching_particles::pointcloud::fit::Fit;
+use marching_particles::pointcloud::job::DEFAULT_CENTRES;
 use marching_particles::sampler::{BoxMode, COUNT_ROOM, Phase, Progress, Settings, StopReason};
 use marching_particles::session::{FieldAnswer, FieldError, FieldRequest, Session};
 use std::fs::File;
@@ -86,6 +87,15 @@ pub(crate) fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
     surface.surface.clone().filter(|_| answer.model.is_some()).or(answer.surface.map(str::to_owned))
 }
 
+/// Joins the particles to a mesh.
+fn joined(session: &mut Session) -> Mesh {
+    loop {
+        if let Some(mesh) = session.join(u32::MAX) {
+            return Mesh::new(&mesh);
+        }
+    }
+}
+
 pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let formats = formats(&arguments.out, Format::of_extension, &Format::ALL)?;
     let mesh_formats = self::formats(&arguments.mesh, MeshFormat::of_extension, &MeshFormat::ALL)?;
@@ -110,7 +120,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
     let report = session.report();
     seconds.quality = clock.seconds();
     let clock = Clock::start();
-    let triangulation = (!mesh_formats.is_empty()).then(|| mesh::of(session.particles(), &answer.bounds));
+    let mesh = (!mesh_formats.is_empty()).then(|| joined(&mut session));
     seconds.mesh = clock.seconds();
     let clock = Clock::start();
     let (particles, measured) = (session.particles(), session.measured());
@@ -118,8 +128,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         write_file(path, |out| export::write(format, particles, measured, out))?;
     }
     for (path, format) in arguments.mesh.iter().zip(mesh_formats) {
-        let triangles = triangulation.as_ref().map_or(&[][..], |mesh| &mesh.triangles);
-        write_file(path, |out| export::write_mesh(format, particles, measured, triangles, out))?;
+        write_file(path, |out| export::write_mesh(format, particles, measured, session.triangles(), out))?;
     }
     seconds.writing = clock.seconds();
 
@@ -134,7 +143,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
         settings,
         predicted_count,
         report,
-        mesh: triangulation.as_ref().map(Mesh::new),
+        mesh,
         seconds,
         peak_mb: peak_mb(),
         peak_sampling_mb,
@@ -191,15 +200,21 @@ fn formats<T>(
 fn fit(arguments: &Surface, quiet: bool) -> Result<Option<Fit>, Failure> {
     let model = arguments.surface.as_deref().and_then(model::find);
     let bar = bar(quiet || arguments.points.is_none() && model.is_none());
+    let centres = arguments.centres.unwrap_or(DEFAULT_CENTRES);
     let fit = match (&arguments.points, model) {
-        (Some(path), _) => Some(points::of_file(path, arguments.centres, &bar)?),
+        (Some(path), _) => Some(points::of_file(path, centres, &bar)?),
         (None, Some(model)) if arguments.formula.is_some() || !arguments.parameters.is_empty() => {
             return Err(Failure::Usage(format!(
                 "the model `{}` is made of points: it has no formula and no parameters",
                 model.id
             )));
         }
-        (None, Some(model)) => Some(points::of_model(model.id, &bar)?),
+        (None, Some(model)) => Some(points::of_model(model.id, centres, &bar)?),
+        (None, None) if arguments.centres.is_some() => {
+            return Err(Failure::Usage(
+                "--centres is for --points and for the models that are made of points".into(),
+            ));
+        }
         (None, None) => None,
     };
     bar.finish_and_clear();

@@ -92,8 +92,9 @@ fn points(out: &mut impl Write, title: &str, model: &ModelInfo) -> io::Result<()
     )?;
     writeln!(
         out,
-        "distance of the points from it: mean {:.3} %, largest {:.3} % of their diagonal",
+        "distance of all points from it: mean {:.3} %, 95 % below {:.3} %, largest {:.3} % of their diagonal",
         100.0 * model.residual_mean,
+        100.0 * model.residual_95,
         100.0 * model.residual_max
     )
 }
@@ -127,7 +128,7 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
 /// Formats a figure with the digits and the unit of its row.
 pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     if let Some(word) = value.and_then(Value::as_str) {
-        return if word == "searched" { "dense search".to_owned() } else { word.to_owned() };
+        return word.to_owned();
     }
     let Some(value) = value.and_then(Value::as_f64) else {
         return "–".to_owned();

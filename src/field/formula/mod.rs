@@ -29,6 +29,7 @@ mod call;
 mod compiled;
 mod derivative;
 mod display;
+mod double;
 mod error;
 mod eval;
 mod graph;
@@ -38,6 +39,7 @@ mod lex;
 mod mathml;
 mod operations;
 mod parse;
+mod periods;
 mod powers;
 mod program;
 mod repair;
@@ -136,6 +138,8 @@ pub struct FormulaField {
     compiled: Compiled,
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
+    /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
+    double: Option<f64>,
 }
 
 impl FormulaField {
@@ -169,6 +173,7 @@ impl FormulaField {
             parameters,
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
+            double: None,
         })
     }
 
@@ -266,6 +271,10 @@ impl FormulaField {
         self.values[index] = value;
         self.compiled.set_parameters(&self.values);
         Ok(())
+    }
+
+    fn compressed(&mut self, p: Vec3, scale: f64) -> (f32, Vec3, Sym3<f32>) {
+        double::compressed(&self.compiled.jet(&self.values, p.as_dvec3(), &mut self.jets), scale)
     }
 
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
@@ -374,12 +383,29 @@ fn likely_misspelling(name: &str, declared: &[&str]) -> Option<(String, String)>
 }
 
 impl Field for FormulaField {
+    fn periods(&self) -> [Option<f64>; 3] {
+        let of = |name: &str| self.parameters.iter().find(|p| p.name == name).map(|p| p.value);
+        [0, 1, 2].map(|axis| periods::period(self.simplified.as_ref().unwrap_or(&self.equation), axis, &of))
+    }
+
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        if let Some(scale) = self.double {
+            for (&p, value) in points.iter().zip(value) {
+                (*value, _, _) = self.compressed(p, scale);
+            }
+            return;
+        }
         let value = &mut value[..points.len()];
         eval::run(&self.compiled.value_program, &mut self.scratch, points, &mut eval::Values(value));
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        if let Some(scale) = self.double {
+            for (k, &p) in points.iter().enumerate() {
+                (value[k], gradient[k], _) = self.compressed(p, scale);
+            }
+            return;
+        }
         let mut sink =
             eval::Gradients { value: &mut value[..points.len()], gradient: &mut gradient[..points.len()] };
         eval::run(&self.compiled.gradient_program, &mut self.scratch, points, &mut sink);
@@ -392,6 +418,12 @@ impl Field for FormulaField {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
+        if let Some(scale) = self.double {
+            for (k, &p) in points.iter().enumerate() {
+                (value[k], gradient[k], hessian[k]) = self.compressed(p, scale);
+            }
+            return;
+        }
         let mut sink = eval::Hessians {
             value: &mut value[..points.len()],
             gradient: &mut gradient[..points.len()],
@@ -401,7 +433,12 @@ impl Field for FormulaField {
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        self.compiled.jet(&self.values, p, &mut self.jets)
+        let jet = self.compiled.jet(&self.values, p, &mut self.jets);
+        self.double.map_or(jet, |scale| double::scaled(jet, scale))
+    }
+
+    fn use_double(&mut self, scale: Option<f64>) {
+        self.double = scale;
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {

@@ -4,7 +4,7 @@ use super::graph::Graph;
 use super::operations::{Binary, Unary};
 use super::program::{Op, Program};
 use super::{FormulaField, build, derivative, parse};
-use crate::field::gallery;
+use crate::field::{Field as _, gallery};
 
 fn compiled(text: &str) -> FormulaField {
     FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
@@ -88,4 +88,33 @@ fn a_forward_and_a_backward_sweep_give_the_same_gradient() {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{} axis {axis}: {a} {b}", surface.id);
         }
     }
+}
+
+#[test]
+fn periods_are_found_along_each_axis() {
+    use core::f64::consts::{PI, TAU};
+    let of = |text: &str| compiled(text).periods();
+    let close = |text: &str, wanted: [Option<f64>; 3]| {
+        let found = of(text);
+        for axis in 0..3 {
+            let is_close = match (found[axis], wanted[axis]) {
+                (Some(found), Some(wanted)) => (found - wanted).abs() < 1e-9,
+                (found, wanted) => found == wanted,
+            };
+            assert!(is_close, "{text}: {found:?}");
+        }
+    };
+    close("sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)", [Some(TAU); 3]);
+    close("cos(10x) + cos(4 y/2) = tan(z)/3", [Some(TAU / 10.0), Some(PI), Some(PI)]);
+    // Half a period and a third of one come together after a whole one; phases and other axes change nothing.
+    close("sin(2x + y)^2 + exp(cos(3x - 1)) = 1", [Some(TAU), Some(TAU), Some(0.0)]);
+    close("sin(-2 pi x) = max(cos(x - x + y), 0)", [Some(1.0), Some(TAU), Some(0.0)]);
+    // A parameter counts by its value, here 1.
+    close("sin(k x) + sin(y) + sin(z)", [Some(TAU); 3]);
+    // None of these come again: a plane, a factor that is not a number, a frequency that changes, incommensurate ones.
+    close("z = sin(x)", [Some(TAU), Some(0.0), None]);
+    close("x sin(x) = 0", [None, Some(0.0), Some(0.0)]);
+    close("sin(x y) = z - z", [None, None, Some(0.0)]);
+    close("sin(x) + sin(sqrt(2) x) + sin(1.41x) = 0", [None, Some(0.0), Some(0.0)]);
+    close("sin(x^2) = 0", [None, Some(0.0), Some(0.0)]);
 }

@@ -69,6 +69,20 @@ pub struct Triangulation {
     pub rounds: u32,
 }
 
+impl Triangulation {
+    /// What is known of `triangles` over so many points, an oriented manifold that somebody has made who knows where it ends; in
+    /// slices of work.
+    pub(crate) async fn known(triangles: Vec<[u32; 3]>, point_count: usize) -> Self {
+        let topology = Topology::in_slices(&triangles, point_count).await;
+        let mut is_met = vec![false; point_count];
+        triangles.iter().flatten().for_each(|&v| is_met[v as usize] = true);
+        pause().await;
+        let left_out = (0..point_count as u32).filter(|&v| !is_met[v as usize]).collect();
+        let agreed = triangles.len();
+        Self { triangles, topology, left_out, agreed, ..Self::default() }
+    }
+}
+
 /// Joins points with outward normals to triangles.
 ///
 /// `normal` is as long as `position`; its vectors need not have unit length. The points should be dense enough that the normals
@@ -142,17 +156,19 @@ impl Points {
         let triangles: Vec<[u32; 3]> =
             patch.triangles().map(|triangle| triangle.map(|v| origin[v as usize])).collect();
         pause().await;
-        let topology = Topology::new(&triangles, point_count);
+        let topology = Topology::in_slices(&triangles, point_count).await;
         pause().await;
         let mut place = vec![u32::MAX; point_count];
         for (k, &i) in origin.iter().enumerate() {
             place[i as usize] = k as u32;
         }
+        pause().await;
         let unfilled = topology.borders.iter().filter(|border| {
             let hole: Vec<u32> = border.iter().map(|&v| place[v as usize]).collect();
             !borders.is_border(&patch, &hole) && !holes::is_open(&patch, &hole)
         });
         let unfilled = unfilled.cloned().collect();
+        pause().await;
         let is_left_out =
             |&i: &u32| place[i as usize] == u32::MAX || patch.around(place[i as usize]).next().is_none();
         let left_out = (0..point_count as u32).filter(is_left_out).collect();

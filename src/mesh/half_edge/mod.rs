@@ -211,6 +211,12 @@ impl HalfEdges {
         self.origin.chunks_exact(3).filter(|corners| corners[0] != NONE).map(|c| [c[0], c[1], c[2]])
     }
 
+    /// The vertices at which the half-edges begin, face by face, [`NONE`] for those of faces that were removed; all else is freed.
+    #[must_use]
+    pub fn into_corners(self) -> Vec<u32> {
+        self.origin
+    }
+
     /// Euler number V − E + F; vertices without faces do not count.
     #[must_use]
     pub fn euler(&self) -> i64 {

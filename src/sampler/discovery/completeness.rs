@@ -1,4 +1,12 @@
-//! How sure a run is of having found every connected component of the surface.
+//! What a run claims to know of the connected components of the surface, and how sure it is.
+//!
+//! Three claims are made, each weaker than the next one sounds:
+//!
+//! * *Witnessed*: there is a point on every component. Interval arithmetic proves it, or it is only searched ([`Search`]).
+//! * *Sampled*: every witnessed component larger than a stated size holds particles ([`Sampled`]). The others are named, with
+//!   their places and sizes ([`Unsampled`]).
+//! * *At this radius*: components and Euler number of the report are those of the neighbour graph of the particles. A neck or a
+//!   needle thinner than a particle may join or divide them.
 
 use serde::Serialize;
 
@@ -7,9 +15,36 @@ use serde::Serialize;
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Search {
-    /// Interval arithmetic proves that there is a first point on every component.
+    /// Interval arithmetic proves that there is a witness on every component, and that each witness is on the component of a
+    /// particle or named among the [`Unsampled`].
     Proven,
-    /// By looking at the nodes of a grid, which can miss a component smaller than its cells; or the proof left cells open.
+    /// By looking at the nodes of a grid, which can miss a component smaller than its cells; or the proof left cells or witnesses
+    /// open.
     #[default]
     Searched,
+}
+
+/// Which of the witnessed components hold particles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Sampled {
+    /// Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
+    /// is not proven.
+    pub above: Option<f64>,
+    /// Number of witnesses without a particle on their component; none where there was no search for witnesses.
+    pub missing: Option<usize>,
+    /// These witnesses: at most 256.
+    pub without: Vec<Unsampled>,
+}
+
+/// A witness on whose component no particle was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct Unsampled {
+    /// The witness, a point of the surface.
+    pub position: [f64; 3],
+    /// How far the component reaches from there, as far as it was followed.
+    pub reach: f64,
+    /// Whether it goes on beyond that.
+    pub goes_on: bool,
 }

@@ -1,11 +1,14 @@
 //! A first point on every connected component of the surface, and the proof that it is every one.
 //!
 //! The [`survey`] looks at a grid of the box. What it may miss, the [`octree`] finds by interval arithmetic: a highest point of every
-//! component. [`seeds`] hands those points out that no particle covers yet.
+//! component. [`seeds`] hands those points out that no particle covers yet. At the end of a run the [`audit`] asks which of them
+//! have a particle on their component.
 
+pub(crate) mod audit;
 pub(crate) mod completeness;
 mod interval_newton;
 pub(crate) mod octree;
+pub(crate) mod precision;
 pub(crate) mod seeds;
 pub(crate) mod sheets;
 pub(crate) mod singular;

@@ -47,7 +47,7 @@ use crate::field::{Enclosure, Field};
 use crate::math::Bounds;
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Halvings after which a cell is left undecided: 2⁻¹⁶ of the box, a sixth of the smallest particle allowed.
 const DEPTH: u8 = 16;
@@ -133,6 +133,17 @@ enum SearchState {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Witness {
     pub(crate) position: DVec3,
+    pub(crate) part: usize,
+}
+
+/// A witness on the surface as single precision computes it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seed {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    /// The witness itself.
+    pub(crate) exact: DVec3,
+    /// The part of the field that vanishes there.
     pub(crate) part: usize,
 }
 

@@ -3,10 +3,11 @@
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
-use crate::sampler::discovery::completeness::Search;
-use crate::sampler::discovery::octree::{Octree, Witness};
+use crate::sampler::discovery::audit::{Audit, Audited, follow};
+use crate::sampler::discovery::completeness::{Sampled, Search};
+use crate::sampler::discovery::octree::{Octree, Seed, Witness};
 use crate::sampler::discovery::sheets::{
-    Oriented, TOGETHER, are_connected, is_connected_by_segments, is_one_sheet,
+    Oriented, SheetRule, TOGETHER, are_connected, is_connected_by_segments,
 };
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance};
@@ -30,20 +31,10 @@ pub(crate) struct Seeds {
     points: Vec<Seed>,
     is_projected: bool,
     next: usize,
-    /// Number of witnesses of which it is not proven that they lie on the component of the particles around them.
-    unproven: u64,
+    audit: Audit,
     /// Number of witnesses whose projection did not converge.
     lost: u64,
     near: Vec<u32>,
-}
-
-/// A witness on the surface as single precision computes it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seed {
-    pub(crate) position: Vec3,
-    pub(crate) normal: Vec3,
-    /// The part of the field that vanishes there.
-    part: usize,
 }
 
 /// Whether a witness needs a front of its own.
@@ -73,7 +64,12 @@ impl Seeds {
     /// Begins again with the first witness.
     pub(crate) fn restart(&mut self) {
         self.next = 0;
-        self.unproven = 0;
+        self.audit.restart();
+    }
+
+    /// Forgets the last audit: particles may have moved.
+    pub(crate) fn restart_audit(&mut self) {
+        self.audit.restart();
     }
 
     /// Whether the search is complete.
@@ -110,7 +106,7 @@ impl Seeds {
         let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
         self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
         // A witness whose component lies in the margin alone is not needed.
-        let starts: Vec<(Vec3, usize)> = self
+        let starts: Vec<(DVec3, usize)> = self
             .octree
             .witnesses
             .iter()
@@ -120,13 +116,13 @@ impl Seeds {
                 } else {
                     moved_inside(field, position, bounds, margin)
                 };
-                start.map(|p| (p.as_vec3(), part))
+                start.map(|p| (p, part))
             })
             .collect();
         let mut normal = [Vec3::ZERO; BATCH];
         let mut ok = [false; BATCH];
         for starts in starts.chunks(BATCH) {
-            let mut points: Vec<Vec3> = starts.iter().map(|start| start.0).collect();
+            let mut points: Vec<Vec3> = starts.iter().map(|start| start.0.as_vec3()).collect();
             let reach = margin as f32 + 16.0 * tolerance.residual;
             projector.land_along_gradient(
                 field,
@@ -139,7 +135,8 @@ impl Seeds {
             );
             for (k, &position) in points.iter().enumerate() {
                 if ok[k] && bounds.contains(position) {
-                    self.points.push(Seed { position, normal: normal[k], part: starts[k].1 });
+                    let (exact, part) = starts[k];
+                    self.points.push(Seed { position, normal: normal[k], exact, part });
                 } else {
                     self.lost += 1;
                 }
@@ -205,8 +202,8 @@ impl Seeds {
         core::mem::take(&mut self.near)
     }
 
-    /// Whether the witness lies on the component of one of the particles `near` it, the nearest first. By proof; or,
-    /// where the bounds are too wide for one, by the field at a point between the two, which is counted.
+    /// Whether the witness lies on the component of one of the particles `near` it, the nearest first. By proof; or, where the
+    /// bounds are too wide for one, by the field at a point between the two. The [audit](super::audit) asks again.
     pub(crate) fn cover(
         &mut self,
         field: &mut dyn Field,
@@ -214,9 +211,9 @@ impl Seeds {
         particles: &Particles,
         seed: Seed,
         near: Vec<u32>,
-        tolerance: Tolerance,
+        (tolerance, rule): (Tolerance, SheetRule),
     ) -> Cover {
-        let Seed { position, normal, part } = seed;
+        let Seed { position, normal, part, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let from = (position.as_dvec3(), normal.as_dvec3());
         let place_of = |j: u32| particles.position[j as usize].as_dvec3();
@@ -226,40 +223,81 @@ impl Seeds {
             pair.1 = place_of(j);
         }
         let within = (self.octree.searched(), self.octree.margin());
-        let mut cover = Cover::Bare;
-        if are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
+        let is_proven = are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&j| is_connected_by_segments(field, part, from, place_of(j), slack, within))
-        {
-            cover = Cover::Covered;
-        } else if near.iter().take(MOST_TRIED).any(|&j| {
-            let j = j as usize;
-            let offset = particles.position[j] - position;
-            is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
-        }) {
-            self.unproven += 1;
-            cover = Cover::Covered;
-        }
+                .any(|&j| is_connected_by_segments(field, part, from, place_of(j), slack, within));
+        let is_covered = is_proven
+            || near.iter().take(MOST_TRIED).any(|&j| {
+                let j = j as usize;
+                let offset = particles.position[j] - position;
+                rule.is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
+            });
         self.near = near;
-        cover
+        if is_covered { Cover::Covered } else { Cover::Bare }
     }
 
-    /// Whether every component is proven to have been found.
+    /// The piece of the surface around the last witness, if it is small and closed in itself.
+    pub(crate) fn small_piece(&self, field: &mut dyn Field, radius: f32) -> Option<(Seed, f64)> {
+        /// Distance to which the piece is followed, in radii of a particle. Larger pieces have room for a child.
+        const FOLLOWED: f64 = 4.0;
+        let seed = *self.points.get(self.next.checked_sub(1)?)?;
+        let piece = follow(field, seed.part, seed.exact, FOLLOWED * f64::from(radius));
+        (!piece.goes_on).then_some((seed, piece.reach))
+    }
+
+    /// Does up to `budget` units of the audit of the finished run, and returns what is left: 0 until the audit is complete.
+    pub(crate) fn audit(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        (radius, tolerance, rule): (f64, Tolerance, SheetRule),
+        budget: u32,
+    ) -> u32 {
+        let mut audited = Audited {
+            field,
+            projector,
+            particles,
+            seeds: &self.points,
+            slack: f64::from(2.0 * tolerance.residual),
+            radius,
+            rule,
+            within: (self.octree.searched(), self.octree.margin()),
+        };
+        let left = self.audit.step(&mut audited, budget);
+        if self.audit.is_done() { left } else { 0 }
+    }
+
+    /// Whether there is a witness on every component, by proof.
+    pub(crate) fn witnessed(&self) -> Search {
+        if self.undecided() == Some(0) { Search::Proven } else { Search::Searched }
+    }
+
+    /// The same, and whether each witness is proven to be on the component of a particle, or named.
     pub(crate) fn verdict(&self) -> Search {
-        if self.octree.is_available() && self.octree.is_done() && self.open_cells() == Some(0) {
-            Search::Proven
-        } else {
-            Search::Searched
-        }
+        if self.audit.is_done() && self.audit.open == 0 { self.witnessed() } else { Search::Searched }
     }
 
-    /// Cells left undecided, and those whose witness was lost or not proven to be on the component it was taken for; none without
-    /// a search.
-    pub(crate) fn open_cells(&self) -> Option<u64> {
+    /// Which of the components hold particles.
+    pub(crate) fn sampled(&self) -> Sampled {
+        let without = self.audit.without.clone();
+        let is_known = self.verdict() == Search::Proven && !without.iter().any(|piece| piece.goes_on);
+        let above = without.iter().map(|piece| piece.reach).fold(0.0, f64::max);
+        let missing = self.undecided().map(|_| without.len());
+        Sampled { above: is_known.then_some(above), missing, without }
+    }
+
+    /// Cells left undecided and witnesses that were lost; none without a search.
+    fn undecided(&self) -> Option<u64> {
         (self.octree.is_available() && self.octree.is_done())
-            .then_some(self.octree.undecided.len() as u64 + self.unproven + self.lost)
+            .then_some(self.octree.undecided.len() as u64 + self.lost)
+    }
+
+    /// The same with the witnesses of which the audit does not know whether their component holds particles.
+    pub(crate) fn open_cells(&self) -> Option<u64> {
+        self.undecided().map(|open| open + self.audit.open)
     }
 }
 

@@ -22,16 +22,140 @@ pub(crate) const MAX_LIFT: f32 = 0.02;
 
 /// Whether a particle at `offset` with the unit normal `other` may lie on another sheet than a point with the unit normal
 /// `normal` that faces the same way: the lift is larger than [`MAX_LIFT`] allows at that distance.
-pub(crate) fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
+fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
     let lift = lift(offset, normal, other);
     // The lift grows with the third power of the distance.
     let share = offset.length_squared() / (spacing * spacing);
     lift * lift > (MAX_LIFT * spacing) * (MAX_LIFT * spacing) * (share * share * share).max(1.0)
 }
 
+/// How two points that face the same way are told to be on one sheet or on two.
+///
+/// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That misses sheets nearer to each
+/// other than such a lift. Where the survey has seen sheets as near as that, every pair is doubtful whose lift can be told from 0, and the field is followed from one point to the other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SheetRule {
+    /// Least distance at which sheets are told apart, where some may be so near.
+    resolved: Option<f32>,
+}
+
+impl SheetRule {
+    /// The rule for particles of a radius from `smallest` to `largest`, on a surface where another sheet and a third one lie
+    /// `crowding` away from a point.
+    pub(crate) fn new(crowding: f32, [smallest, largest]: [f32; 2], resolution: f32) -> Self {
+        let is_crowded = crowding <= MAX_LIFT * 2.0 * largest;
+        // A particle may be a ten-thousandth of its radius away from the surface, and so may each of a pair.
+        Self { resolved: is_crowded.then_some(4.0 * (1e-4 * smallest).max(resolution)) }
+    }
+
+    /// Whether sheets may be nearer than the usual rule tells apart.
+    pub(crate) fn is_fine(self) -> bool {
+        self.resolved.is_some()
+    }
+
+    /// [`is_doubtful`], by this rule.
+    pub(crate) fn is_doubtful(self, offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
+        match self.resolved {
+            Some(least) => lift(offset, normal, other) > least,
+            None => is_doubtful(offset, normal, other, spacing),
+        }
+    }
+
+    /// Lift above which a pair near a doubtful one is looked at, wherever the two are.
+    pub(crate) fn suspicious(self, spacing: f32) -> f32 {
+        // Where there is another sheet, a particle of it can be far away to the side, and the limit does not grow with the
+        // distance.
+        self.resolved.unwrap_or(0.5 * MAX_LIFT * spacing)
+    }
+
+    /// [`is_one_sheet`], by this rule.
+    pub(crate) fn is_one_sheet(
+        self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        from: (Vec3, Vec3),
+        offset: Vec3,
+        other: Vec3,
+    ) -> bool {
+        /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time.
+        const HALVINGS: u32 = 3;
+        match self.resolved {
+            Some(least) => {
+                is_one_sheet_between(field, projector, from, (from.0 + offset, other), least, HALVINGS)
+            }
+            None => is_one_sheet(field, projector, from, offset, other),
+        }
+    }
+}
+
+/// Points of the cubic curve that is tangent to the surface at both ends, at a quarter, a half and three quarters of the way.
+fn along_the_way((p, n): (Vec3, Vec3), (q, m): (Vec3, Vec3)) -> [Vec3; 3] {
+    let offset = q - p;
+    let tangent = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * offset.length();
+    let (a, b) = (tangent(n), tangent(m));
+    [0.25_f32, 0.5, 0.75].map(|t| {
+        let (t2, u) = (t * t, 1.0 - t);
+        p + offset * (t2 * (3.0 - 2.0 * t)) + a * (t * u * u) - b * (t2 * u)
+    })
+}
+
+/// Whether the field between two points of the surface shows one sheet from one to the other: at three places along the way the
+/// surface is far nearer than the two points' lift, and faces the same way. Where it is not, the way is halved at the surface.
+/// Sheets nearer than `least` count as one.
+fn is_one_sheet_between(
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    from: (Vec3, Vec3),
+    to: (Vec3, Vec3),
+    least: f32,
+    halvings: u32,
+) -> bool {
+    /// Share of the lift within which the surface has to be of the curve. The curve of two sheets is at least 5/32 away from both
+    /// at each of the three places.
+    const NEAR: f32 = 0.05;
+    /// Newton steps to the surface, and the largest one as a share of the way.
+    const STEPS: u32 = 4;
+    const LONGEST: f32 = 0.25;
+    let (offset, facing) = (to.0 - from.0, from.1 + to.1);
+    if from.1.dot(to.1) <= 0.0 {
+        return false;
+    }
+    let lift = lift(offset, from.1, to.1);
+    let way = along_the_way(from, to);
+    let near = (NEAR * lift).max(0.5 * least);
+    let (value, gradient) = projector.evaluate_batch(field, &way);
+    let is_on = |k: usize| gradient[k].dot(facing) > 0.0 && value[k].abs() <= near * gradient[k].length();
+    if (0..3).all(is_on) || lift <= least && gradient[1].dot(facing) > 0.0 {
+        return true;
+    }
+    let mut middle = (way[1], gradient[1]);
+    let mut step = gradient[1] * (value[1] / gradient[1].length_squared());
+    let longest = LONGEST * offset.length();
+    for _ in 0..STEPS {
+        // False for NaN.
+        let is_near = step.length_squared() <= longest * longest && middle.1.dot(facing) > 0.0;
+        if halvings == 0 || !is_near {
+            return false;
+        }
+        middle.0 -= step;
+        let (value, gradient) = projector.evaluate(field, middle.0);
+        middle.1 = gradient;
+        step = gradient * (value / gradient.length_squared());
+        if step.length_squared() <= 0.0625 * least * least {
+            let normal = gradient.normalize_or_zero();
+            let middle = (middle.0, normal);
+            return normal.dot(facing) > 0.0
+                && is_one_sheet_between(field, projector, from, middle, least, halvings - 1)
+                && is_one_sheet_between(field, projector, middle, to, least, halvings - 1);
+        }
+    }
+    false
+}
+
 /// Whether one of the particles `near` a point lies on the point's sheet. All of them face the same way as the point;
 /// `spacing` is the usual distance between particles at each.
 pub(crate) fn is_near_own(
+    rule: SheetRule,
     field: &mut dyn Field,
     projector: &mut Projector,
     particles: &Particles,
@@ -40,10 +164,10 @@ pub(crate) fn is_near_own(
     spacing: impl Fn(usize) -> f32,
 ) -> bool {
     let other = |near: &Neighbour| particles.normal[near.index as usize];
-    near.iter().any(|near| !is_doubtful(near.offset, normal, other(near), spacing(near.index as usize)))
+    near.iter().any(|near| !rule.is_doubtful(near.offset, normal, other(near), spacing(near.index as usize)))
         || near
             .iter()
-            .any(|near| is_one_sheet(field, projector, (position, normal), near.offset, other(near)))
+            .any(|near| rule.is_one_sheet(field, projector, (position, normal), near.offset, other(near)))
 }
 
 /// Whether a point of the surface with the unit normal `normal` and another one at `offset` from it, with the unit normal
@@ -139,12 +263,14 @@ pub(crate) fn is_connected_by_segments(
         for k in (0..tried).filter(|&k| !connected[k]) {
             let (start, end) = pairs[k];
             let chord = end - start.0;
-            let Some(mut middle) = land(field, start.0 + 0.5 * chord) else { return false };
+            let Some(mut middle) = land(field, part, start.0 + 0.5 * chord) else { return false };
             for _ in 0..MOST_TURNS {
                 if is_inside(middle.0) {
                     break;
                 }
-                let Some(next) = land(field, middle.0.clamp(lo + margin, hi - margin)) else { return false };
+                let Some(next) = land(field, part, middle.0.clamp(lo + margin, hi - margin)) else {
+                    return false;
+                };
                 middle = next;
             }
             // A midpoint far from that of the chord does not lie between the two.
@@ -166,21 +292,52 @@ pub(crate) fn is_connected_by_segments(
     false
 }
 
-/// The point of the surface that Newton's method along the gradient finds from `p`, and the unit normal there.
-fn land(field: &mut dyn Field, mut p: DVec3) -> Option<Oriented> {
+/// The same by way of a point beside the chord: the middle of the chord between opposite points of a small piece lies inside it, where
+/// no step leads to the surface.
+pub(crate) fn is_connected_around(
+    field: &mut dyn Field,
+    part: usize,
+    from: Oriented,
+    to: DVec3,
+    slack: f64,
+    within: ([DVec3; 2], f64),
+) -> bool {
+    let chord = to - from.0;
+    let Some(direction) = chord.try_normalize() else { return false };
+    let (u, v) = crate::math::tangent_frame(direction.as_vec3());
+    let (u, v) = (u.as_dvec3(), v.as_dvec3());
+    [u, -u, v, -v].into_iter().any(|side| {
+        let beside = from.0 + 0.5 * (chord + side * chord.length());
+        land(field, part, beside).is_some_and(|middle| {
+            is_connected_by_segments(field, part, from, middle.0, slack, within)
+                && is_connected_by_segments(field, part, middle, to, slack, within)
+        })
+    })
+}
+
+/// The point at which Newton's method along the gradient finds, from `p`, a zero of a factor of the field; and the unit normal
+/// there.
+fn land(field: &mut dyn Field, part: usize, mut p: DVec3) -> Option<Oriented> {
     const STEPS: u32 = 8;
     for _ in 0..STEPS {
-        let jet = field.jet(p);
-        let step = jet.gradient * (jet.value / jet.gradient.length_squared());
+        let (value, gradient) = value_at(field, part, p);
+        let step = gradient * (value / gradient.length_squared());
         if !step.is_finite() {
             return None;
         }
         p -= step;
         if step.length_squared() <= 1e-24 * p.length_squared() {
-            return jet.gradient.try_normalize().map(|normal| (p, normal));
+            return gradient.try_normalize().map(|normal| (p, normal));
         }
     }
     None
+}
+
+/// Value and gradient of a factor of the field at a point: the middles of their bounds.
+pub(crate) fn value_at(field: &mut dyn Field, part: usize, p: DVec3) -> (f64, DVec3) {
+    let mut known = [Enclosure::UNKNOWN];
+    field.enclose(part, &[[p, p]], &mut known);
+    known[0].middle()
 }
 
 /// The box of one segment, the axis nearest its normal, and how far the box reaches beyond the ends along that axis.

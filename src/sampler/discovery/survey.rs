@@ -19,6 +19,8 @@ const RESOLUTION_SAMPLES: usize = 48;
 /// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
 /// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
 const TOUCH_PROBE: f32 = 0.02;
+/// Distance, in resolutions, below which rounding may decide the sign of f.
+const NOISE: f32 = 16.0;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
 const POLE_PROBE: f32 = 4.0;
 
@@ -30,6 +32,8 @@ const NO_CROSSING: f32 = -1.0;
 pub(crate) struct Survey {
     /// What the field was multiplied by, so that its gradient can be squared in single precision.
     pub(crate) factor: f32,
+    /// The scale at which the field is evaluated in double precision, where single precision does not hold it.
+    pub(crate) double: Option<f64>,
     /// Points of the surface, spread over it, in grid order.
     pub(crate) position: Vec<Vec3>,
     /// Unit normals there.
@@ -42,6 +46,9 @@ pub(crate) struct Survey {
     pub(crate) gradient_scale: f32,
     /// Distance by which rounding can move the computed surface.
     pub(crate) resolution: f32,
+    /// Least distance, along the normal, of a point of the surface from another sheet beyond which there is a third one; infinite
+    /// where none was seen.
+    pub(crate) crowding: f32,
     /// Largest distance of a point from the surface.
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
@@ -62,6 +69,8 @@ pub(crate) enum Absence {
     Constant,
     /// f has no value anywhere.
     Undefined,
+    /// f is too large for double precision wherever it has a value.
+    TooLarge,
     /// Interval arithmetic proves that f has no zero in the box.
     Proven,
     /// The grid shows a change of sign, but no point where f comes to zero with a gradient.
@@ -415,6 +424,8 @@ fn project(
     }
     out.residual = coarse.residual;
     out.resolution = ulps.max(rounding(field, projector, &out.position));
+    // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
+    out.crowding = if field.has_bounds() { crowding(field, projector, out, spacing) } else { f32::INFINITY };
     out.touches = touches(field, projector, out, TOUCH_PROBE * spacing);
 }
 
@@ -478,6 +489,40 @@ fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, di
         seen += 1;
     }
     2 * same > seen
+}
+
+/// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond another sheet. Of a plate with two
+/// sides the normals tell the sheets apart; so f has to have that sign on both sides, or its own again beyond.
+fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, spacing: f32) -> f32 {
+    /// Number of points.
+    const SAMPLES: usize = 256;
+    /// Distances, each half the one before, from an eighth of the grid's spacing. One of them lies between any two
+    /// sheets of which the farther one is twice as far.
+    const DISTANCES: usize = 14;
+    const LARGEST: f32 = 0.125;
+    let stride = survey.position.len().div_ceil(SAMPLES).max(1);
+    let distances: [f32; DISTANCES] = core::array::from_fn(|k| LARGEST * spacing / (1_u32 << k) as f32);
+    let mut least = f32::INFINITY;
+    for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
+        let mut nearest = [f32::INFINITY; 2];
+        let mut is_between = false;
+        for (side, nearest) in [1.0, -1.0].into_iter().zip(&mut nearest) {
+            let (value, _) = projector.evaluate_batch(field, &distances.map(|d| p + n * (side * d)));
+            let mut comes_back = false;
+            // From far to near; nearer than some resolutions the sign is that of rounding.
+            for (&d, &value) in distances.iter().zip(value).filter(|(d, _)| **d > NOISE * survey.resolution) {
+                let is_beyond = value * side < 0.0;
+                *nearest = if is_beyond { d } else { *nearest };
+                is_between |= is_beyond && comes_back;
+                comes_back |= value * side > 0.0;
+            }
+        }
+        let [ahead, behind] = nearest;
+        if is_between || ahead.max(behind) < f32::INFINITY {
+            least = least.min(ahead.min(behind));
+        }
+    }
+    least
 }
 
 /// Upper quartile of the distance between the surface in single and in double precision, doubled.

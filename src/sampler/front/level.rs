@@ -7,7 +7,7 @@
 use crate::field::Field;
 use crate::math::{Bounds, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::sheets::is_near_own;
+use crate::sampler::discovery::sheets::{SheetRule, is_near_own};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
 use crate::sampler::neighbours::packed::PackedNeighbours;
@@ -53,6 +53,13 @@ pub(crate) struct FrontSetup<'a> {
     pub(crate) radii: [f32; 2],
     /// Particles to reserve room for.
     pub(crate) expected: usize,
+}
+
+impl FrontSetup<'_> {
+    /// How particles with radii in this range tell sheets apart.
+    pub(crate) fn rule(&self, radii: [f32; 2]) -> SheetRule {
+        SheetRule::new(self.survey.crowding, radii, self.survey.resolution)
+    }
 }
 
 /// What a front does next within a level.
@@ -138,6 +145,9 @@ impl<C, P, L> ProvisionalChildren<C, P, L> {
 
 /// A front that grows in levels.
 pub(crate) trait LevelFront {
+    /// How sheets are told apart.
+    fn rule(&self) -> SheetRule;
+
     /// Forgets an earlier run.
     fn reset(&mut self, setup: &FrontSetup);
 
@@ -179,6 +189,9 @@ pub(crate) trait LevelFront {
 
     /// Forgets the last seed, which has the index `seed`.
     fn forget_seed(&mut self, seed: usize);
+
+    /// The particles within a distance of a place, of whatever sheet.
+    fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour];
 
     /// Collects the particles of the sheet of (`position`, `normal`) that are so near that no front need start there.
     fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour>;
@@ -249,14 +262,15 @@ pub(crate) trait LevelFront {
         self.clear_level();
     }
 
-    /// Takes the last seed back if it stayed alone beside another particle: it is the far side of something too small for the
-    /// radius. Says whether it was.
-    fn drop_lone_seed(&mut self, context: &mut FrontContext) -> bool {
+    /// Whether the last seed stayed alone beside another particle: it is the far side of something too small for the radius.
+    fn has_lone_seed(&mut self, particles: &Particles) -> bool {
+        let is_lone = particles.parent.last() == Some(&Particles::NO_PARENT);
+        is_lone && self.is_seed_crowded(particles)
+    }
+
+    /// Takes the last seed back, which stayed alone.
+    fn drop_last_seed(&mut self, context: &mut FrontContext) {
         let last = context.particles.len() - 1;
-        let is_lone = context.particles.parent[last] == Particles::NO_PARENT;
-        if !is_lone || !self.is_seed_crowded(context.particles) {
-            return false;
-        }
         self.forget_seed(last);
         let level = self.level_mut();
         for k in 0..MAX_SLOTS {
@@ -265,7 +279,6 @@ pub(crate) trait LevelFront {
         level.settled = last;
         context.particles.truncate(last);
         context.neighbours.truncate(last);
-        true
     }
 
     /// Whether a particle of the sheet of (`position`, `normal`) is so near that no front need start there.
@@ -276,9 +289,10 @@ pub(crate) trait LevelFront {
         particles: &Particles,
         (position, normal): (Vec3, Vec3),
     ) -> bool {
+        let rule = self.rule();
         let found = self.gather_cover(particles, position, normal);
         let spacing = |j: usize| 2.0 * particles.radius[j];
-        is_near_own(field, projector, particles, (position, normal), found, spacing)
+        is_near_own(rule, field, projector, particles, (position, normal), found, spacing)
     }
 
     /// Those particles, nearest first, in `near`.

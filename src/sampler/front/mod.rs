@@ -9,7 +9,6 @@ pub(crate) use level::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::front::adaptive::AdaptiveFront;
 use crate::sampler::front::uniform::UniformFront;
 use crate::sampler::settings::Sampling;
-use crate::trace::Trace;
 
 /// A survey point farther than this many radii from every particle of its sheet starts a front of its own: a closed
 /// cover has no hole larger than 1.85 (1.6 of the ideal).
@@ -59,15 +58,5 @@ impl Front {
     /// Whether the limit on particles was reached.
     pub(crate) fn is_capped(&self) -> bool {
         self.active().level().capped
-    }
-
-    /// The log of the adaptive front.
-    pub(crate) fn trace(&self) -> &Trace {
-        &self.adaptive.trace
-    }
-
-    /// Follows a particle, or none.
-    pub(crate) fn follow(&mut self, particle: Option<u32>) {
-        self.adaptive.trace.follow(particle);
     }
 }

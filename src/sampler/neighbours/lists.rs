@@ -40,6 +40,8 @@ pub(crate) struct NeighbourLists {
     /// For each particle, how far it has travelled since its list was made.
     travel: Vec<Travel>,
     has_stale: bool,
+    /// Numbers of the sheets of the particles, if only particles of the same one are listed.
+    pub(crate) sheets: Vec<u32>,
     grid: RadiusChains,
     /// Two particles are listed if their distance is at most this share of the sum of their radii.
     share: f32,
@@ -64,6 +66,7 @@ impl NeighbourLists {
         Self {
             travel: Vec::new(),
             has_stale: false,
+            sheets: Vec::new(),
             grid: RadiusChains::new(),
             share: 1.0,
             grid_travel: f32::INFINITY,
@@ -248,6 +251,10 @@ impl NeighbourLists {
             }
         }
         self.near.truncate(len);
+        if let Some(&own) = self.sheets.get(i) {
+            let sheets = &self.sheets;
+            self.near.retain(|&j| sheets[j as usize] == own);
+        }
         self.is_weighted = weighted.any();
     }
 }

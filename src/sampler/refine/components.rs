@@ -51,6 +51,14 @@ pub(crate) struct Surface<'a> {
     pub(crate) points: Vec<Vec3>,
     /// The sizes that are wanted, where they differ.
     pub(crate) sizing: Option<&'a Sizing>,
+    /// Where it bends most.
+    pub(crate) bend: Vec3,
+}
+
+impl Surface<'_> {
+    fn bent(&self) -> Refusal {
+        Refusal::Bent { at: self.bend.into() }
+    }
 }
 
 /// The fronts from which a refinement begins, one after the other.
@@ -107,7 +115,7 @@ impl Fronts {
             return Ok(Next::Front(candidate.levels));
         }
         if self.components.iter().all(|component| component.refinement.target.levels == 0) {
-            return Err(Refusal::Unsuitable);
+            return Err(surface.bent());
         }
         let components = mem::take(&mut self.components);
         if let Some(first) = self.end() {
@@ -119,16 +127,17 @@ impl Fronts {
     fn take_first(
         &mut self,
         field: &mut dyn Field,
-        &Surface { ref bounds, ref points, sizing }: &Surface,
+        surface: &Surface,
         particles: &Particles,
         target: Target,
     ) -> Result<(), Refusal> {
+        let &Surface { ref bounds, ref points, sizing, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
         if target.levels == 0 && !self.are_several {
-            return Err(Refusal::Unsuitable);
+            return Err(surface.bent());
         }
         for part in &parts {
             let refinement = Refinement::new(field, part, bounds, target)?;
@@ -302,6 +311,18 @@ impl Components {
         let to_come = self.components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
         let [_, most] = self.times();
         (most - to_come + 1, most + 1)
+    }
+
+    /// The mesh of the last level, by the particles at the corners of its faces.
+    pub(crate) fn into_corners(mut self) -> Vec<u32> {
+        let mut first = self.components.first().map_or(0, |component| component.particles.len() as u32);
+        let mut all =
+            self.components.first_mut().map(|c| mem::take(&mut c.refinement.corners)).unwrap_or_default();
+        for Component { refinement, particles, .. } in self.components.iter().skip(1) {
+            all.extend(refinement.corners.iter().map(|corner| first + corner));
+            first += particles.len() as u32;
+        }
+        all
     }
 
     /// Estimated share of the work that is done, that of the coarse fronts included.

@@ -32,7 +32,7 @@ mod tally;
 pub(crate) use border::grown;
 pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, largest_curvatures, levels};
 pub(crate) use components::{Components, Fronts, Next, Surface};
-pub use refusal::Refusal;
+pub use refusal::{Place, Refusal};
 
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
@@ -63,6 +63,8 @@ const TRIAL_UNITS: u32 = 64;
 const HALF_EDGES_PER_UNIT: u32 = 12;
 /// Faces measured for a unit.
 const FACES_PER_UNIT: u32 = 4;
+/// Corners of the finished mesh that are named in one slice of work.
+const CORNERS: usize = 6_144;
 
 /// The number of levels, the radius and the count that a refinement is to reach.
 #[derive(Clone, Copy, Debug)]
@@ -112,6 +114,8 @@ struct Refinement {
     /// Area of the faces of the level before, until this one has been compared with it.
     area_before: Option<f64>,
     work: Work,
+    /// The finished mesh, by the particles at the corners of its faces.
+    corners: Vec<u32>,
 }
 
 /// What is being done.
@@ -125,6 +129,9 @@ enum Work {
     Divide(Subdivision),
     /// The particles of the finer level are put onto the surface, come to the number of those in its columns.
     Lift { coarse: Box<Layer>, ends: Vec<[u32; 2]> },
+    /// The corners of the finished mesh are named by their particles, come to the corner `next` of those before, of which `kept` belong
+    /// to a face. The particles are handed on with the last one.
+    Name { rings: Rings, next: usize, kept: usize },
     /// Nothing.
     Done,
 }
@@ -166,6 +173,7 @@ impl Refinement {
             tally: Tally::default(),
             area_before: None,
             work: Work::Done,
+            corners: Vec::new(),
         };
         refinement.work = refinement.begin_pass(0);
         refinement
@@ -182,7 +190,7 @@ impl Refinement {
     fn pending(&self) -> u32 {
         match self.work {
             Work::Divide(_) | Work::Lift { .. } => self.to_come - 1,
-            Work::Pass { .. } | Work::Show(_) | Work::Done => self.to_come,
+            Work::Pass { .. } | Work::Show(_) | Work::Name { .. } | Work::Done => self.to_come,
         }
     }
 
@@ -222,15 +230,16 @@ impl Refinement {
         let (mut done, mut has_changed) = (0, false);
         while done < budget && !self.is_done() {
             let work = core::mem::replace(&mut self.work, Work::Done);
-            let was_shown = matches!(work, Work::Show(_));
+            let was_whole = matches!(work, Work::Show(_) | Work::Name { .. });
             let (next, units) = match work {
                 Work::Pass { pass, next, end } => self.pass(field, sizing, pass, next, end)?,
                 Work::Show(rings) => self.show(rings, particles),
                 Work::Divide(subdivision) => self.divide(subdivision),
                 Work::Lift { coarse, ends } => self.lift(field, coarse, ends)?,
+                Work::Name { rings, next, kept } => (self.name(rings, next, kept, particles), BLOCK as u32),
                 Work::Done => (Work::Done, 0),
             };
-            has_changed |= was_shown && !matches!(next, Work::Show(_));
+            has_changed |= was_whole && !matches!(next, Work::Show(_) | Work::Name { .. });
             self.work = next;
             done += units;
         }
@@ -247,7 +256,7 @@ impl Refinement {
         if let Some(before) = self.area_before.take()
             && !AREA_GAIN.contains(&(tally.flat_area() / before))
         {
-            return Err(Refusal::Folded);
+            return Err(Refusal::Folded { at: tally.widest().into() });
         }
         if self.wanted == 0.0 {
             let radius = f64::from(self.target.radius);
@@ -290,7 +299,12 @@ impl Refinement {
     /// The start of a pass of the recipe, or what follows after the last one.
     fn begin_pass(&mut self, pass: usize) -> Work {
         let mesh = &self.layer.mesh;
-        let Some(&kind) = self.recipe.passes.get(pass) else { return Work::Show(Rings::new(&self.layer)) };
+        let Some(&kind) = self.recipe.passes.get(pass) else {
+            // Before the columns of the finished level take their place.
+            self.surgeon = Surgeon::default();
+            self.near = Vec::new();
+            return Work::Show(Rings::new(&self.layer));
+        };
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
             Pass::Measure | Pass::Inspect => {
@@ -354,7 +368,7 @@ impl Refinement {
                 let is_defect = |&v: &u32| {
                     layer.mesh.has_vertex(v)
                         && layer.excess(v) != 0
-                        && (!has_border || layer.mesh.is_border(v))
+                        && (!has_border || layer.mesh.is_border(v) || layer.excess(v) > 1)
                 };
                 self.near.extend((next..last).filter(is_defect));
             }
@@ -387,10 +401,12 @@ impl Refinement {
                 self.surgeon.widen(&self.layer.mesh, &mut self.near);
                 Ok(())
             }
-            Pass::Inspect if self.to_come == 0 && self.tally.inverted() > 0 => Err(Refusal::Folded),
             Pass::Inspect => {
                 self.area_before = Some(self.tally.flat_area());
-                Ok(())
+                match self.tally.inverted() {
+                    Some(at) if self.to_come == 0 => Err(Refusal::Folded { at: at.into() }),
+                    _ => Ok(()),
+                }
             }
             _ => Ok(()),
         }
@@ -398,14 +414,35 @@ impl Refinement {
 
     fn show(&mut self, mut rings: Rings, particles: &mut Particles) -> (Work, u32) {
         let radius = self.target.radius * (1_u32 << self.to_come) as f32;
-        let work = if !rings.step(&self.layer, radius, particles) {
+        let work = if !rings.step(&self.layer, radius) {
             Work::Show(rings)
         } else if self.to_come > 0 {
+            rings.hand_on(particles);
             Work::Divide(Subdivision::new(&self.layer.mesh))
         } else {
-            Work::Done
+            // Of the layer nothing else is needed any more.
+            self.corners = core::mem::take(&mut self.layer).mesh.into_corners();
+            Work::Name { rings, next: 0, kept: 0 }
         };
         (work, BLOCK as u32)
+    }
+
+    /// Goes on naming the corners of the mesh for a slice.
+    fn name(&mut self, rings: Rings, next: usize, mut kept: usize, particles: &mut Particles) -> Work {
+        let end = self.corners.len().min(next + CORNERS);
+        for k in next..end {
+            // Surgery, which removes faces, may have been at work on a last level that is the first one too.
+            if let Some(place) = rings.place(self.corners[k]) {
+                self.corners[kept] = place;
+                kept += 1;
+            }
+        }
+        if end < self.corners.len() {
+            return Work::Name { rings, next: end, kept };
+        }
+        self.corners.truncate(kept);
+        rings.hand_on(particles);
+        Work::Done
     }
 
     fn divide(&mut self, mut subdivision: Subdivision) -> (Work, u32) {
@@ -443,8 +480,8 @@ impl Refinement {
         let mut ground = Ground { field, block: &mut self.block };
         layer.land(&mut ground, self.spacing, start as u32..end as u32);
         let refused = core::mem::take(&mut ground.block.refused);
-        if !refused.iter().all(|&v| layer.rescue(&mut ground, self.spacing, v)) {
-            return Err(Refusal::Folded);
+        if let Some(&v) = refused.iter().find(|&&v| !layer.rescue(&mut ground, self.spacing, v)) {
+            return Err(Refusal::Folded { at: layer.position[v as usize].into() });
         }
         if end < ends.len() {
             return Ok((Work::Lift { coarse, ends }, BLOCK as u32));
@@ -452,7 +489,6 @@ impl Refinement {
         self.to_come -= 1;
         self.recipe =
             Recipe::of(self.target.levels, self.to_come, self.target.grading.is_some(), self.has_border);
-        self.surgeon.forget();
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }

@@ -1,63 +1,117 @@
 //! Why a surface is not refined.
 
+use core::fmt;
+use glam::Vec3;
 use serde::Serialize;
 
-/// Why the particles of a run were not refined.
+/// Why the particles of a run were not refined, and near which place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
 pub enum Refusal {
-    /// The wanted count, the curvature or a vanishing gradient rules refinement out from the start.
+    /// Too few particles are wanted, or too few allowed.
     #[error(
-        "The front stands, and is not refined: that takes at least 720 particles and room for them below the limit, a \
-         spacing of less than 0.45 of the smallest radius of curvature, and a gradient that vanishes nowhere on the surface."
+        "The front stands, and is not refined: that takes at least 720 particles, and room for them below the limit."
     )]
-    Unsuitable,
+    Few,
+    /// The surface bends too much for the wanted spacing.
+    #[error(
+        "The front stands, and is not refined: near {at} the surface bends too much for particles of this size. With smaller ones it \
+         may be."
+    )]
+    Bent {
+        /// A place there.
+        at: Place,
+    },
+    /// The gradient vanishes on the surface.
+    #[error("The front stands, and is not refined: near {at} the gradient vanishes on the surface.")]
+    Singular {
+        /// A place there.
+        at: Place,
+    },
     /// The surface has a border that is not at the box.
-    #[error(
-        "The front stands, and is not refined: near ({:.3}, {:.3}, {:.3}) the surface ends inside the box.", .at[0], .at[1], .at[2]
-    )]
+    #[error("The front stands, and is not refined: near {at} the surface ends inside the box.")]
     Border {
         /// A place there.
-        at: [f32; 3],
+        at: Place,
     },
     /// The border could not be laid on the faces of the box.
     #[error(
-        "The front stands, and is not refined: near ({:.3}, {:.3}, {:.3}) the border of the surface could not be found on the faces \
-         of the box. With more particles it may be.", .at[0], .at[1], .at[2]
+        "The front stands, and is not refined: near {at} the border of the surface could not be found on the faces of the box. With \
+         more particles it may be."
     )]
     Cut {
         /// A place there.
-        at: [f32; 3],
+        at: Place,
     },
     /// A part of the surface within the box was missed.
     #[error(
-        "The front stands, and is not refined: near ({:.3}, {:.3}, {:.3}) the box leaves a part of the surface that is too small for \
-         a coarse front.", .at[0], .at[1], .at[2]
+        "The front stands, and is not refined: near {at} the box leaves a part of the surface that is too small for a coarse front."
     )]
     Missed {
         /// A place there.
-        at: [f32; 3],
+        at: Place,
+    },
+    /// Most of what the box leaves is near its border.
+    #[error(
+        "The front stands, and is not refined: near {at} and elsewhere the box leaves strips that are too narrow for a coarse front. \
+         With more particles they may do."
+    )]
+    Narrow {
+        /// A place on a border.
+        at: Place,
     },
     /// A component has too few particles.
-    #[error("The front stands, and is not refined: a part of the surface has fewer than 180 particles.")]
-    Small,
+    #[error(
+        "The front stands, and is not refined: the part of the surface near {at} has fewer than 180 particles."
+    )]
+    Small {
+        /// A place on it.
+        at: Place,
+    },
     /// The particles could not be joined to a closed surface beyond doubt.
     #[error(
-        "The front stands, and is not refined: its particles could not be joined to a closed surface beyond doubt. With more \
-         of them they may be."
+        "The front stands, and is not refined: near {at} its particles could not be joined to a closed surface beyond doubt. With \
+         more of them they may be."
     )]
-    Doubtful,
+    Doubtful {
+        /// A place there.
+        at: Place,
+    },
     /// The surface bends too much between neighbours.
-    #[error("The front stands, and is not refined: the surface bends too much between neighbours.")]
-    Sharp,
+    #[error("The front stands, and is not refined: near {at} the surface bends too much between neighbours.")]
+    Sharp {
+        /// Where it bends most.
+        at: Place,
+    },
     /// A refinement has left the surface, or has led onto another sheet.
-    #[error("The front stands, and is not refined: halving its edges led off the surface.")]
-    Folded,
+    #[error("The front stands, and is not refined: near {at} halving its edges led off the surface.")]
+    Folded {
+        /// A place there.
+        at: Place,
+    },
+}
+
+/// A point in space, told to three decimals.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place(pub [f32; 3]);
+
+impl From<Vec3> for Place {
+    fn from(p: Vec3) -> Self {
+        Self(p.to_array())
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Adding 0 takes the sign off −0.
+        let [x, y, z] = self.0.map(|x| (x * 1_000.0).round() / 1_000.0 + 0.0);
+        write!(f, "({x:.3}, {y:.3}, {z:.3})")
+    }
 }
 
 impl Refusal {
     /// Whether a finer front may do.
     pub(crate) fn is_coarse(self) -> bool {
-        !matches!(self, Self::Unsuitable | Self::Border { .. })
+        !matches!(self, Self::Few | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. })
     }
 }

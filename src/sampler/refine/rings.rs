@@ -17,61 +17,48 @@ pub(super) struct Rings {
     order: Vec<u32>,
     /// Place of each vertex in that order.
     place: Vec<u32>,
-    /// Parents and levels, in that order.
-    parent: Vec<u32>,
-    level: Vec<u32>,
     next: usize,
     /// Vertices below this one have been met.
     root: u32,
     is_walked: bool,
-    /// The particles in that order, as far as they are there.
+    /// The particles in that order, as far as they are there: at first their parents and levels alone.
     ready: Particles,
 }
 
 impl Rings {
     pub(super) fn new(layer: &Layer) -> Self {
         let n = layer.position.len();
-        let column = || Vec::with_capacity(n);
-        Self {
-            order: column(),
-            place: vec![NONE; n],
-            parent: column(),
-            level: column(),
-            next: 0,
-            root: 0,
-            is_walked: false,
-            ready: Particles::default(),
-        }
+        let mut ready = Particles::default();
+        ready.reserve(n);
+        Self { order: Vec::with_capacity(n), place: vec![NONE; n], next: 0, root: 0, is_walked: false, ready }
     }
 
-    /// Goes on for a slice. Returns whether all is done; `particles` then has the particles of the layer, with this radius
-    /// where their size is 1. Until then it stays as it is, so that a run that is cancelled has a whole level.
-    pub(super) fn step(&mut self, layer: &Layer, radius: f32, particles: &mut Particles) -> bool {
+    /// Goes on for a slice. Returns whether the particles of the layer are all there, with this radius where their size is 1. Only then
+    /// are they handed on, so that a run that is cancelled has a whole level.
+    pub(super) fn step(&mut self, layer: &Layer, radius: f32) -> bool {
         if !self.is_walked {
             self.is_walked = !(0..SLICE).all(|_| self.walk(layer));
-            if self.is_walked {
-                self.ready.reserve(self.order.len());
-            }
             return false;
         }
         let start = self.ready.len();
         let end = self.order.len().min(start + SLICE);
-        for k in start..end {
-            let v = self.order[k] as usize;
-            self.ready.push(
-                layer.position[v],
-                layer.normal[v],
-                radius * layer.size_of(v as u32),
-                self.parent[k],
-                self.level[k],
-                layer.fates(v as u32),
-            );
+        for &v in &self.order[start..end] {
+            self.ready.position.push(layer.position[v as usize]);
+            self.ready.normal.push(layer.normal[v as usize]);
+            self.ready.radius.push(radius * layer.size_of(v));
+            self.ready.slots.push(layer.fates(v));
         }
-        let is_done = end == self.order.len();
-        if is_done {
-            core::mem::swap(particles, &mut self.ready);
-        }
-        is_done
+        end == self.order.len()
+    }
+
+    /// The place of a vertex among the particles; none if there is no such vertex.
+    pub(super) fn place(&self, v: u32) -> Option<u32> {
+        self.place.get(v as usize).copied()
+    }
+
+    /// Puts the particles into the columns of the run.
+    pub(super) fn hand_on(mut self, particles: &mut Particles) {
+        core::mem::swap(particles, &mut self.ready);
     }
 
     /// Visits the neighbours of the next vertex; false if there is none.
@@ -87,7 +74,7 @@ impl Rings {
         self.next += 1;
         for other in layer.mesh.neighbours(self.order[k]) {
             if self.place[other as usize] == NONE {
-                self.meet(other, k as u32, self.level[k] + 1);
+                self.meet(other, k as u32, self.ready.level[k] + 1);
             }
         }
         true
@@ -96,7 +83,7 @@ impl Rings {
     fn meet(&mut self, v: u32, parent: u32, level: u32) {
         self.place[v as usize] = self.order.len() as u32;
         self.order.push(v);
-        self.parent.push(parent);
-        self.level.push(level);
+        self.ready.parent.push(parent);
+        self.ready.level.push(level);
     }
 }

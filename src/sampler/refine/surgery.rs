@@ -69,12 +69,6 @@ pub(super) struct Surgeon {
 }
 
 impl Surgeon {
-    /// Forgets the particles of another level.
-    pub(super) fn forget(&mut self) {
-        self.stamp.clear();
-        self.trial = 0;
-    }
-
     /// Tries to mend `v`, if it has not six neighbours: with fewer it is merged with the nearest of them, with more another one is
     /// inserted into the widest of its faces. Returns whether it was tried.
     pub(super) fn mend(&mut self, layer: &mut Layer, ground: &mut Ground, aim: Aim, v: u32) -> bool {

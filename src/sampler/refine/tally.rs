@@ -16,8 +16,10 @@ pub(super) struct Tally {
     cells: f64,
     /// Length of the border in units of the spacing that is wanted where it is.
     border: f64,
-    /// Faces that look against the normal of a corner.
-    inverted: usize,
+    /// A corner of the first face that looks against the normal of a corner.
+    inverted: Option<Vec3>,
+    /// Twice the area of the widest face, and a corner of it.
+    widest: (f64, Vec3),
 }
 
 impl Tally {
@@ -29,6 +31,9 @@ impl Tally {
             let p = face.map(|v| layer.position[v as usize]);
             let m = [0, 1, 2].map(|k| layer.middle(face[k], face[(k + 1) % 3]).0);
             let area = twice(p);
+            if area > self.widest.0 {
+                self.widest = (area, p[0]);
+            }
             self.coarse += area;
             self.fine += twice(m) + (0..3).map(|k| twice([p[k], m[k], m[(k + 2) % 3]])).sum::<f64>();
             if layer.is_graded() {
@@ -45,7 +50,9 @@ impl Tally {
             self.coarse += f64::from(area.length());
             // Written so that NaN counts.
             let is_upright = face.iter().all(|&v| area.dot(layer.normal[v as usize]) > 0.0);
-            self.inverted += usize::from(!is_upright);
+            if !is_upright && self.inverted.is_none() {
+                self.inverted = Some(layer.position[face[0] as usize]);
+            }
         }
     }
 
@@ -69,7 +76,13 @@ impl Tally {
         self.border
     }
 
-    pub(super) fn inverted(&self) -> usize {
+    /// A place where a face looks against the normal of a corner, if there is one.
+    pub(super) fn inverted(&self) -> Option<Vec3> {
         self.inverted
+    }
+
+    /// A corner of the widest face.
+    pub(super) fn widest(&self) -> Vec3 {
+        self.widest.1
     }
 }

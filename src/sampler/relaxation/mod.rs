@@ -149,7 +149,8 @@ impl Relaxation {
         self.stepper.clear();
     }
 
-    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short.
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. Particles with
+    /// different numbers in `sheets` do not repel each other; it is empty where the normals alone tell sheets apart.
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
@@ -157,6 +158,7 @@ impl Relaxation {
         target: u32,
         particles: usize,
         pairs: &mut PackedNeighbours,
+        sheets: Vec<u32>,
     ) {
         self.law = law;
         self.target = target;
@@ -168,7 +170,9 @@ impl Relaxation {
         let is_first = self.stepper.energy().is_empty();
         self.stepper.begin(bounds, particles, law.first_step(), law.resizes());
         self.lists.reset(particles);
-        self.phase = if pairs.len() == particles && is_first && self.purpose != Purpose::End {
+        let are_told = sheets.is_empty();
+        self.lists.sheets = sheets;
+        self.phase = if pairs.len() == particles && is_first && are_told && self.purpose != Purpose::End {
             self.after_lists()
         } else {
             pairs.extend_to(particles);

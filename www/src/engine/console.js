@@ -47,48 +47,64 @@ export const CAMERA_MS = 120;
  * @property {Float32Array | null} curvature  two per particle, only while they are shown
  */
 /**
- * Faults that the tests provoke.
+ * Faults that the tests provoke, and what they wait for.
  * @typedef {object} Debug
  * @property {() => void} panic  traps the core in its worker
  * @property {() => void} overflow  overflows the worker's stack
  * @property {() => void} hang  sends the worker into an endless loop
  * @property {(reason?: string) => void} loseDevice
  * @property {(id: number) => void} stale  delivers a message of another run to the page
+ * @property {() => Promise<void>} still  resolves once the picture stands still and the state has the camera
  * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number}} counts
  */
 
 /**
- * Resolves with the report once no run is active, the report has arrived (or none is expected) and the picture is up to
- * date.
- * @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer
+ * Resolves once the picture stands still and the camera is written to the state, which it is a little later.
+ * @param {import('./view/viewer.js').Viewer} viewer @returns {Promise<void>}
  */
-const settled = (engine, viewer) =>
+const still = (viewer) =>
+  new Promise((resolve) => {
+    const look = () => {
+      if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(look);
+      else setTimeout(resolve, CAMERA_MS + 10);
+    };
+    // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
+    setTimeout(look);
+  });
+
+/**
+ * Resolves with the report once `isOver` holds. `isOver` reads signals.
+ * @param {Engine} engine @param {() => boolean} isOver
+ */
+const once = (engine, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
-    let over = false;
     /** @type {() => void} */
     let stop = () => {};
     stop = effect(() => {
-      const idle =
-        engine.description.value !== null &&
-        engine.loading.value === null &&
-        !engine.busy.value &&
-        engine.progress.value.phase === 'done' &&
-        engine.reveal.value === null &&
-        engine.backend.value !== 'starting';
       const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
-      if ((!idle && !failed) || over) return;
-      over = true;
-      const report = engine.report.peek();
-      // The picture is up to date once no frame is requested. The camera is written to the state a little later.
-      const show = () => {
-        if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(show);
-        else setTimeout(() => resolve(report), CAMERA_MS + 10);
-      };
-      // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
-      setTimeout(show);
+      if (!isOver() && !failed) return;
+      resolve(engine.report.peek());
       queueMicrotask(() => stop());
     });
   });
+
+/** Returns whether no run is active and the report has arrived, if one is expected. @param {Engine} engine */
+const atRest = (engine) =>
+  engine.description.value !== null &&
+  engine.loading.value === null &&
+  !engine.busy.value &&
+  engine.progress.value.phase === 'done';
+
+/**
+ * Resolves with the report once the sampler is at rest and the picture is up to date.
+ * @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer
+ */
+async function settled(engine, viewer) {
+  const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
+  const report = await once(engine, () => atRest(engine) && drawable());
+  await still(viewer);
+  return report;
+}
 
 /** @param {import('./columns.js').Columns} columns @returns {Particles} */
 function copyOf(columns) {
@@ -148,6 +164,7 @@ function debugOf({ engine, viewer, sampling }) {
         progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 },
       });
     },
+    still: () => still(viewer),
     counts: () => ({
       frames: viewer.frames.drawn,
       uploads: viewer.upload.writes,
@@ -191,7 +208,10 @@ export function installConsole(parts) {
         if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
       }),
     run: () => after(() => engine.run()),
-    stop: () => after(() => engine.stop()),
+    stop() {
+      engine.stop();
+      return once(engine, () => atRest(engine));
+    },
     open: (file) => after(() => void engine.openFile(file)),
     relax: (steps = 1) => after(() => engine.relax(steps)),
     report: () => structuredClone(engine.report.value),

@@ -1,4 +1,4 @@
-// The types of what the core and the solver for points say and are told. Written from the Rust types by a test:
+// The types of what the core, the solver for points and the lesson say and are told. Written from the Rust types by a test:
 // UPDATE_GOLDEN=1 cargo test --lib page_types
 
 /** What a command is answered: the fields of the value, or the error. */
@@ -243,6 +243,13 @@ export type Figures = {
   /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
   * duplicates. */
   overlap_min: number,
+  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of their
+  * wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where there
+  * are no distances. */
+  crowded: number | null,
+  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which none has
+  * its middle in a wider one. None where `cover` is undefined. */
+  wide_holes: number | null,
   /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
   dup: number,
   /** Points with a non-finite coordinate; left out of everything. */
@@ -281,11 +288,366 @@ export type Histogram = {
   bins: Array<number>,
 };
 
+/** A disc on the surface without a particle. */
+export type Hole = {
+  /** Position of the middle, in the field's units. */
+  position: [number, number, number],
+  /** Distance to the nearest particle, in the field's units. */
+  radius: number,
+  /** Radius over that of the perfect lattice or, where there are wanted radii, of the lattice with those around it. */
+  ratio: number,
+};
+
 /** JobStage of a job, as the page shows it. */
 export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
 
 /** What the values of a setting are. */
 export type Kind = "number" | "integer" | "choice";
+
+/** A part of a run, before which a snapshot is taken. */
+export type LessonChapter = {
+  /** Number of its first event in the run. */
+  first_event: number,
+  /** Number of its events so far. */
+  events: number,
+  /** Particles when it begins. */
+  before: number,
+  /** Particles when it ends. */
+  after: number,
+  /** What became of the children. */
+  fates: FateCounts,
+  /** Energy per particle when it ends; of relaxation steps only. */
+  energy: number | null,
+  /** Longest move, in radii; of relaxation steps only. */
+  largest_move: number | null,
+  /** Whether it is over. */
+  is_over: boolean, } & ({ "kind": "level",
+  /** Number of the front. */
+  front: number,
+  /** Number of the level. */
+  level: number, } | { "kind": "stack",
+  /** Number of the front. */
+  front: number,
+  /** Number of the part, from 0. */
+  part: number, } | { "kind": "filling" } | { "kind": "relaxation",
+  /** Number of the step, from 1. */
+  step: number, });
+
+/** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`] and [`Event::Moved`] change the particles; the
+* others tell why. */
+export type LessonEvent = { "type": "seed",
+/** Index of the seed. */
+particle: number,
+/** Its columns. */
+data: LessonParticle, } | { "type": "level_begins",
+/** Number of the level. */
+level: number,
+/** Particles that wait. */
+waiting: number, } | { "type": "taken",
+/** The particle. */
+particle: number, } | { "type": "frame",
+/** The particle. */
+particle: number,
+/** Unit normal N̂. */
+normal: [number, number, number],
+/** Unit tangent vector of slot 0, towards the parent; any for a seed. */
+u: [number, number, number],
+/** N̂ × u. */
+w: [number, number, number],
+/** Second fundamental form [a, b, c] in (u, w), where it was asked for. */
+form: [number, number, number] | null, } | { "type": "slot",
+/** The particle that places it. */
+parent: number,
+/** Number of the slot, at an angle of slot · π/3 in uniform sampling. */
+slot: number,
+/** Unit tangent vector V̂. */
+direction: [number, number, number],
+/** Angle θ₀ on the circle. */
+theta_rad: number,
+/** The place there. */
+place: [number, number, number], } | { "type": "iterate",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** Number of the evaluation, from 0. */
+step: number,
+/** Angle θₖ on the circle; none for Newton's method in space. */
+theta_rad: number | null,
+/** The place. */
+position: [number, number, number],
+/** f there. */
+value: number,
+/** |∇f| there. */
+slope: number,
+/** Angles between which f changes its sign, where Newton's method has given way to a bracketed search. */
+bracket_rad: [number, number] | null, } | { "type": "landed",
+/** The particle that places it. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** The place. */
+position: [number, number, number],
+/** Unit normal there. */
+normal: [number, number, number],
+/** Distance to the parent: 2r on the circle. */
+distance: number, } | { "type": "gathered",
+/** The particle. */
+particle: number,
+/** Distance within which they are looked for. */
+reach: number,
+/** The particles of any sheet that were found, by index. */
+neighbours: Array<LessonNearby>, } | { "type": "compared",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** Where the child was compared: as predicted, or where it landed. */
+position: [number, number, number],
+/** The nearest particle; none if none is near, or if it is a child that still has to be projected. */
+against: number | null,
+/** Distance to the nearest; none if nothing is near. */
+distance: number | null,
+/** Match radius. */
+limit: number,
+/** Whether the distance is within it. */
+corresponds: boolean, } | { "type": "fronts_meet",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** The particle that the child met. */
+particle: number,
+/** Whether that particle belongs to the front of another seed. */
+is_other: boolean, } | { "type": "added",
+/** Its index. */
+particle: number,
+/** Its columns. */
+data: LessonParticle, } | { "type": "fate",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** The fate. */
+fate: SlotFate,
+/** The new particle, or the one that was there. */
+particle: number | null, } | { "type": "done",
+/** The particle. */
+particle: number,
+/** Evaluations of the field so far. */
+evaluations: number, } | { "type": "arc",
+/** The particle. */
+parent: number,
+/** The particle before it; none if the whole circle is free. */
+before: number | null,
+/** The particle behind it, in the direction of growing angles. */
+behind: number | null,
+/** Their directions in the frame. */
+angles_rad: [number, number], } | { "type": "start",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** The point I of Fig. 7c, on the circle of the child before it; none for the first child of a seed. */
+tangent: [number, number, number] | null,
+/** The point s, in the tangent plane. */
+position: [number, number, number],
+/** Repulsion radius there. */
+radius: number, } | { "type": "push",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** Place after the push. */
+position: [number, number, number],
+/** Repulsion radius there. */
+radius: number, } | { "type": "push_on_circle",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** Place after the push. */
+position: [number, number, number],
+/** Repulsion radius there. */
+radius: number,
+/** Largest overlap with another particle, as a share of r_i + r_j; negative if there is none. */
+overlap: number, } | { "type": "room",
+/** The particle that places the child. */
+parent: number,
+/** Number of the slot. */
+slot: number,
+/** Angle that the child's diameter takes. */
+phi_rad: number,
+/** Angle that is free. */
+tau_rad: number,
+/** Whether there is room. */
+fits: boolean, } | { "type": "gap",
+/** The particle. */
+particle: number,
+/** Radius of that circle; none if it is too narrow or too wide to be a gap. */
+width: number | null, } | { "type": "step_begins",
+/** Number of the step, from 1. */
+step: number,
+/** Size of the step: the share of the force by which a particle moves. */
+size: number,
+/** Energy per particle before it. */
+energy: number, } | { "type": "moved",
+/** The particle. */
+particle: number,
+/** Sum of the repulsion, in the tangent plane; the step size times it is the move. */
+force: [number, number, number],
+/** Where the move leads, in the tangent plane. */
+target: [number, number, number],
+/** The place on the surface. */
+position: [number, number, number],
+/** Unit normal there. */
+normal: [number, number, number],
+/** Repulsion radius there. */
+radius: number,
+/** Whether it stayed where it was, because the move leads out of the box, off the surface or around a fold. */
+is_kept: boolean, } | { "type": "step_ends",
+/** Number of the step, from 1. */
+step: number,
+/** Energy per particle after it. */
+energy: number,
+/** Longest move, in radii. */
+largest_move: number, };
+
+/** A surface given by a formula, as the page knows it. */
+export type LessonField = {
+  /** Text of the formula. */
+  formula: string,
+  /** Parameters with their values. */
+  parameters: Array<Parameter>,
+  /** Box that is sampled. */
+  bounds: Bounds,
+};
+
+/** A step of Newton's method in space. */
+export type LessonIterate = {
+  /** The place. */
+  position: [number, number, number],
+  /** f there. */
+  value: number,
+  /** |∇f| there. */
+  slope: number,
+};
+
+/** When a particle was added, was treated and was done: numbers of events. */
+export type LessonLife = {
+  /** It was added. */
+  born: number | null,
+  /** It was taken from the queue. */
+  taken: number | null,
+  /** It was marked as done. */
+  done: number | null,
+};
+
+/** What becomes of a particle with which a child was identified (§4.4). */
+export type LessonMatched = "leave" | "stay";
+
+/** A particle near another one. */
+export type LessonNearby = {
+  /** Its index. */
+  particle: number,
+  /** Distance to it. */
+  distance: number,
+};
+
+/** Which of the particles that are not done is treated next (§4.4). */
+export type LessonOrder = "queue" | "stack";
+
+/** A particle: position p, normal N̂ and repulsion radius r (§4.2), and how it came to be. */
+export type LessonParticle = {
+  /** Position on the surface. */
+  position: [number, number, number],
+  /** Unit outward normal. */
+  normal: [number, number, number],
+  /** Repulsion radius. */
+  radius: number,
+  /** The particle that placed it; none for a seed. */
+  parent: number | null,
+  /** Generation level. */
+  level: number,
+  /** Number of the front: that of its seed, from 0. */
+  front: number,
+};
+
+/** When a child is compared with the particles that exist. */
+export type LessonPlacing = "one_by_one" | "level_by_level";
+
+/** How far a run has come. */
+export type LessonProgress = {
+  /** Chapters so far. */
+  chapters: number,
+  /** Events so far. */
+  events: number,
+  /** Particles so far. */
+  particles: number,
+  /** Evaluations of the field so far. */
+  evaluations: number,
+  /** Whether the limit on particles was reached. */
+  is_capped: boolean,
+  /** Whether the run has ended. */
+  is_done: boolean,
+};
+
+/** How a child is moved onto the surface (§4.3). */
+export type LessonProjection = "circle" | "newton";
+
+/** When the fronts of a surface with several components begin. */
+export type LessonSeeding = "one_by_one" | "together";
+
+/** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
+export type LessonSettings = {
+  /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
+  sampling: 'uniform' | 'adaptive',
+  /** Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates. */
+  radius: number,
+  /** How the radius of an adaptive particle follows from the curvature. */
+  law: 'chord_error' | 'max_curvature' | 'sum_of_curvatures',
+  /** The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
+  * the other two the radius over the radius of curvature. */
+  law_scale: number,
+  /** Smallest radius of an adaptive particle, a length. */
+  radius_min: number,
+  /** Largest radius of an adaptive particle, a length. */
+  radius_max: number,
+  /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
+  * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
+  fit: number,
+  /** Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none. */
+  seeds: Array<[number, number, number]>,
+  /** Chooses the first seed where none is given. */
+  seed: number,
+  /** How the fronts of several seeds begin. */
+  seeding: LessonSeeding,
+  /** How a child comes to the surface. */
+  projection: LessonProjection,
+  /** Where that begins. */
+  start: LessonStart,
+  /** Which particle is treated next. */
+  order: LessonOrder,
+  /** Whether matched particles leave the neighbours. */
+  matched: LessonMatched,
+  /** A child is identified with a particle within this distance, in 2r. */
+  match_tolerance: number,
+  /** One particle after the other, or level by level. */
+  placing: LessonPlacing,
+  /** Whether gaps between fronts are filled. */
+  gaps: 'fill' | 'leave',
+  /** A point is on the surface if |f|/|∇f| is at most this, in r. */
+  residual: number,
+  /** Relaxation steps. */
+  relax_steps: number,
+  /** Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive. */
+  step_size: number | null,
+  /** The run stops at this many particles, at most [`MAX_PARTICLES`]. */
+  max_particles: number,
+};
+
+/** Where the search on the circle begins. */
+export type LessonStart = "tangent" | "curvature";
 
 /** The limits of what the core accepts. */
 export type Limits = {
@@ -301,6 +663,12 @@ export type Limits = {
   farthest_corner: number,
   /** Room for the particles that are expected, as a multiple of them. */
   count_room: number,
+  /** Smallest number of points of a model or a file that can be fitted, if it has as many. */
+  centres_min: number,
+  /** Largest number of points of a model or a file that can be fitted. */
+  centres_max: number,
+  /** Number of points that are fitted by default. */
+  centres: number,
 };
 
 /** Element of MathML Core with child elements. */
@@ -377,8 +745,11 @@ export type ModelInfo = {
   centres: number,
   /** Estimated condition number of the system. */
   condition: number,
-  /** Mean residual |f|/|∇f| of all points, as a share of the diagonal of their box. */
+  /** Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface to
+  * first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991). */
   residual_mean: number,
+  /** Residual that 95 % of them do not exceed, as a share of that diagonal. */
+  residual_95: number,
   /** Maximum residual, as a share of that diagonal. */
   residual_max: number,
   /** Origin of the normals. */
@@ -389,6 +760,14 @@ export type ModelInfo = {
 
 /** Origin of the normals of a model's points. */
 export type NormalSource = "given" | "from_mesh" | "estimated";
+
+/** Two particles and their distance. */
+export type Pair = {
+  /** Indices of the particles, the smaller one first. */
+  particles: [number, number],
+  /** Distance over d_hex or, where there are wanted radii, over their sum. */
+  ratio: number,
+};
 
 /** A named number of a formula, which can be changed without parsing the formula again. */
 export type Parameter = {
@@ -408,6 +787,15 @@ export type Parameter = {
 
 /** What the sampler is doing. */
 export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
+
+/** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the closest
+* pair and the largest hole. */
+export type Places = {
+  /** Crowded pairs. */
+  pairs: Array<Pair>,
+  /** Wide holes. */
+  holes: Array<Hole>,
+};
 
 /** Error of a job, as the page shows it. */
 export type PointsFault = {
@@ -472,11 +860,14 @@ export type Report = {
   levels: number,
   /** Fronts started, each from a seed of its own. */
   components_seeded: number,
-  /** Number of components of the surface, by the natural neighbours of the particles. */
+  /** Number of components at this radius: those of the graph of natural neighbours of the particles. */
   components: number,
-  /** Whether every component is proven to have been found. */
+  /** Whether it is proven that there is a witness on every component of the surface, and of each witness that it is on the
+  * component of a particle or named in `sampled`. */
   search: Search,
-  /** Cells of the box in which the proof could not decide; none where no proof was attempted. */
+  /** Which of the witnessed components hold particles. */
+  sampled: Sampled,
+  /** Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was attempted. */
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,
@@ -516,6 +907,8 @@ export type Report = {
   quality_before: Figures | null,
   /** Nearest-neighbour distances. */
   nearest_histogram: Histogram,
+  /** Where the spacing is worst now. */
+  places: Places,
 };
 
 /** A row of the report. */
@@ -541,6 +934,19 @@ export type ReportRow = {
   better: string | null,
   /** Definition and meaning. */
   help: string,
+  /** Path to the list of places in the picture that the figure is about. */
+  places: string | null,
+};
+
+/** Which of the witnessed components hold particles. */
+export type Sampled = {
+  /** Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
+  * is not proven. */
+  above: number | null,
+  /** Number of witnesses without a particle on their component; none where there was no search for witnesses. */
+  missing: number | null,
+  /** These witnesses: at most 256. */
+  without: Array<Unsampled>,
 };
 
 /** How values are spread over a slider. */
@@ -578,6 +984,10 @@ export type Setting = {
   /** The setting has an effect, and is shown, while all of these hold; always if there is none. */
   when: Array<Condition>,
 };
+
+/** Fate of a slot around a particle. Slots are in the order of their angles: six in a hexagon (paper §4.4), up to ten
+* where radii vary (§5). */
+export type SlotFate = "open" | "parent" | "added" | "matched" | "not_converged" | "outside" | "undefined" | "capped";
 
 /** Report and box that accompany a solved system to the session that samples it. */
 export type SolvedModel = {
@@ -624,6 +1034,16 @@ export type SurfaceEntry = {
   source: string,
   /** Name of its group in the gallery. */
   group: string,
+};
+
+/** A witness on whose component no particle was found. */
+export type Unsampled = {
+  /** The witness, a point of the surface. */
+  position: [number, number, number],
+  /** How far the component reaches from there, as far as it was followed. */
+  reach: number,
+  /** Whether it goes on beyond that. */
+  goes_on: boolean,
 };
 
 /** The value of a setting. */

@@ -19,16 +19,19 @@ export class Framing {
    */
   constructor({ store, columns, viewer, look }) {
     this.store = store;
+    this.columns = columns;
     this.viewer = viewer;
     /** Time at which the formula changed or a link was read, until the camera has fitted the surface; NaN otherwise. */
     this.writtenMs = NaN;
+    /** Whether the formula was typed, which keeps the camera where it is as long as the formula has no surface. */
+    this.isTyped = false;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.timer = undefined;
     /** Whether the camera shows the whole box because there is no surface. */
     let boxShown = false;
     this.effects = [
       effect(() => {
-        if (!this.rests() || Number.isNaN(this.writtenMs)) return;
+        if (!this.rests() || Number.isNaN(this.writtenMs) || this.waits()) return;
         this.hold();
         // The camera waits for a pause in typing, so that the picture does not move with every key.
         this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
@@ -47,9 +50,18 @@ export class Framing {
     ];
   }
 
-  /** Notes that the formula changed or a link was read. */
-  written() {
+  /** Notes that the formula changed or a link was read. @param {{typed: boolean}} how */
+  written({ typed }) {
     this.writtenMs = performance.now();
+    this.isTyped = typed;
+  }
+
+  /**
+   * Returns whether the camera waits for a surface: the last one stays in the picture while a formula without one is typed, and
+   * the camera stays with it.
+   */
+  waits() {
+    return this.isTyped && this.columns.stale;
   }
 
   /** Cancels the fit that the text typed so far would cause. */
@@ -58,7 +70,7 @@ export class Framing {
   }
 
   come() {
-    if (!this.rests()) return;
+    if (!this.rests() || this.waits()) return;
     this.writtenMs = NaN;
     this.fit();
   }

@@ -15,6 +15,7 @@ import { Framing } from './framing.js';
 import { Look } from './look.js';
 import { createPicture } from './picture.js';
 import { Runs } from './runs.js';
+import { coreFetched } from './sampling/spawn.js';
 import { mergeState, surfaceOf } from './share/state.js';
 import { createStore, description } from './store.js';
 import { BACKENDS } from './view/backends.js';
@@ -48,6 +49,8 @@ export function createEngine({ canvasHost }) {
     columns,
     picture: viewer,
     onReady() {
+      // A link brings its own camera.
+      viewer.opening = location.hash === '';
       void address.load(location.hash, true);
       fetchExports().catch(() => {});
     },
@@ -66,7 +69,7 @@ export function createEngine({ canvasHost }) {
     if (camera.fit && runs.loader.ready()) viewer.fit(true);
     look.show();
     // If the link's surface cannot be sampled, the camera fits the surface that stays.
-    framing.written();
+    framing.written({ typed: false });
     runs.choose({ grow: true, fit: camera.fit });
   }
 
@@ -80,6 +83,19 @@ export function createEngine({ canvasHost }) {
     ...runCommands(parts),
     ...viewCommands(parts),
     ...shareCommands(parts),
+    /** @type {import('./types.js').EngineCommands['openLesson']} */
+    async openLesson(options) {
+      const { LessonClient } = await import('./lesson/client.js');
+      return new LessonClient(options);
+    },
+    lessonSurface() {
+      const field = store.field.value;
+      if (!field) return null;
+      const { kind, formula, parameters, bounds } = field;
+      if (kind === 'formula') return { formula, parameters, bounds };
+      const solved = runs.loader.client.get(runs.loader.key());
+      return solved ? { system: solved.field, bounds } : null;
+    },
     destroy() {
       for (const part of [address, look, framing, picture, runs]) part.close();
     },
@@ -98,6 +114,7 @@ export function createEngine({ canvasHost }) {
   // The theme is applied before the first frame, so that a dark page does not flash.
   look.show();
   runs.sampling.start();
-  void viewer.start();
+  // Nothing can be drawn before the first particles, so the renderer does not share the connection with the core.
+  void coreFetched().then(() => viewer.start());
   return engine;
 }

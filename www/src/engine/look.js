@@ -39,10 +39,12 @@ export class Look {
   /** Passes the present appearance to the viewer. */
   show() {
     const { store, viewer } = this;
-    const { view, bounds } = store.state.value;
+    const { view, bounds, plane } = store.state.value;
     const theme = view.theme === 'auto' ? (this.dark.matches ? 'dark' : 'light') : view.theme;
     store.theme.value = theme;
     const box = bounds ?? store.field.value?.bounds ?? null;
+    // Where there is no surface, its box is shown, unless there is no surface anywhere.
+    const isMissed = store.empty.value && store.field.value?.reach !== 'nowhere';
     viewer.set({
       colour: view.colour,
       size: view.size,
@@ -50,8 +52,11 @@ export class Look {
       faces: view.faces,
       edges: view.edges,
       marks: view.marks,
+      ghost: view.ghost,
       theme,
-      box: view.box || store.empty.value ? box : null,
+      box: view.box || isMissed ? box : null,
+      axes: view.axes,
+      plane,
       points: this.points(),
       level: view.level,
     });
@@ -59,7 +64,7 @@ export class Look {
     sampling.showCurvature(view.colour === 'curvature');
     // Without a graphics device there are discs.
     const { value: backend } = store.backend;
-    sampling.showMesh(view.draw === 'mesh' && (backend === 'webgpu' || backend === 'webgl2'));
+    sampling.showMesh((view.draw === 'mesh' || view.ghost) && (backend === 'webgpu' || backend === 'webgl2'));
   }
 
   /** Returns the points of the model on the page, or null if they are not drawn. */

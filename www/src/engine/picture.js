@@ -18,8 +18,8 @@ import { Viewer } from './view/viewer.js';
 /**
  * @typedef {object} Picture
  * @property {Viewer} viewer
- * @property {(index: number | null, x: number, y: number) => void} hover  reports the particle under a point of the
- *   host, or null for none
+ * @property {(index: number | null, x: number, y: number, tapped?: boolean) => void} hover  reports the particle under a point of
+ *   the host, or null for none
  * @property {() => void} close
  */
 
@@ -46,18 +46,22 @@ export function createPicture({ host, store, columns, first }) {
       onReveal(reveal) {
         store.reveal.value = reveal;
       },
+      onFrame() {
+        store.frame.value += 1;
+      },
       onCamera() {
         cameraTimer ??= setTimeout(() => {
           cameraTimer = undefined;
-          changeView(store, { camera: viewer.camera.state });
+          // The opening is not a view that anyone chose; the state gets the one in which it ends.
+          if (!viewer.camera.turn) changeView(store, { camera: viewer.camera.state });
         }, CAMERA_MS);
       },
     },
   );
 
   /** @type {Picture['hover']} */
-  const hover = (index, x, y) => {
-    if (index !== null) store.hover.value = { ...particle(columns, index), x, y };
+  const hover = (index, x, y, tapped = false) => {
+    if (index !== null) store.hover.value = { ...particle(columns, index), x, y, tapped };
     else if (store.hover.value) store.hover.value = null;
     if (viewer.look.highlight !== (index ?? -1)) viewer.set({ highlight: index ?? -1 });
   };
@@ -69,10 +73,18 @@ export function createPicture({ host, store, columns, first }) {
     moved: () => viewer.moved(),
     fit: () => viewer.fit(),
     point(x, y, tapped) {
+      if (!tapped && store.hover.value?.tapped) return;
       const index = viewer.pick(x, y);
-      if (index !== null || tapped || store.hover.value) hover(index, x, y);
+      const { measured } = store.state.value.view;
+      // While distances are measured, a press takes an end.
+      if (index !== null || tapped || store.hover.value) hover(index, x, y, tapped && !measured);
+      if (tapped && index !== null && measured) changeView(store, { measured: withEnd(measured, index) });
+      if (tapped) store.spot.value = null;
     },
-    leave: () => hover(null, 0, 0),
+    centre: () => viewer.project(viewer.camera.state.target),
+    leave(pressed) {
+      if (pressed || !store.hover.value?.tapped) hover(null, 0, 0);
+    },
   });
 
   return {
@@ -129,6 +141,9 @@ function deviceEvents(store, columns) {
     },
   };
 }
+
+/** Adds an end to a measured distance; a third one begins another distance. @param {readonly number[]} measured @param {number} index */
+const withEnd = (measured, index) => (measured.length === 1 && measured[0] !== index ? [measured[0], index] : [index]);
 
 /** Returns the attributes of one particle that the hover card shows. @param {Columns} columns @param {number} index */
 function particle(columns, index) {

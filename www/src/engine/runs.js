@@ -87,9 +87,8 @@ export class Runs {
    * @param {RunOptions} [options]
    */
   choose(options) {
-    const { store } = this;
-    store.loadingError.value = null;
-    if (store.loading.value && store.loading.value.id !== store.state.value.surface) this.loader.cancel();
+    this.store.loadingError.value = null;
+    if (this.loader.orderKey !== this.loader.key()) this.loader.cancel();
     this.resample(options);
   }
 
@@ -116,6 +115,7 @@ export class Runs {
    */
   begin(options) {
     this.forgetLater();
+    this.store.spot.value = null;
     const { loader } = this;
     if (!this.store.description.value) return false;
     if (!loader.ready()) {

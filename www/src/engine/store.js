@@ -48,6 +48,7 @@ export function createStore() {
     notice: cell(/** @type {import('./types.js').Notice | null} */ (null)),
     mesh: cell(/** @type {import('./types.js').MeshAnswer | null} */ (null)),
     hover: cell(/** @type {import('./types.js').Hover | null} */ (null)),
+    spot: cell(/** @type {import('./types.js').Place | null} */ (null)),
     legend: cell(/** @type {import('./types.js').Legend | null} */ (null)),
     reveal: cell(/** @type {import('./types.js').Reveal | null} */ (null)),
     busy: cell(false),
@@ -58,6 +59,7 @@ export function createStore() {
     loading: cell(/** @type {import('./types.js').Loading | null} */ (null)),
     loadingError: cell(/** @type {import('./types.js').LoadingError | null} */ (null)),
     model: cell(/** @type {import('./types.js').ModelInfo | null} */ (null)),
+    frame: cell(0),
     theme: cell(/** @type {'light' | 'dark'} */ ('light')),
   };
 }

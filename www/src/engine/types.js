@@ -39,6 +39,10 @@
 /** The figures of a finished run. @typedef {import('./core-types.js').Report} CoreReport */
 /** @typedef {import('./core-types.js').Figures} Quality */
 /** What a mesh adds up to. @typedef {import('./core-types.js').MeshAnswer} MeshAnswer */
+/** @typedef {import('./core-types.js').LessonEvent} LessonEvent */
+/** @typedef {import('./core-types.js').LessonIterate} LessonIterate */
+/** @typedef {import('./lesson/client.js').LessonClient} LessonClient */
+/** @typedef {import('./lesson/protocol.js').Particles} LessonParticles */
 /** A mesh over all particles on the page, three indices a triangle. @typedef {{triangles: Uint32Array, about: MeshAnswer}} Mesh */
 
 /**
@@ -84,10 +88,18 @@
  * @property {boolean} edges  whether the edges of a mesh are drawn
  * @property {boolean} marks  whether vertices of a mesh without six neighbours are marked
  * @property {'auto' | 'light' | 'dark'} theme
- * @property {boolean} box  whether the clip box is drawn
+ * @property {boolean} ghost  whether the surface is drawn faintly beneath the discs
+ * @property {boolean} box  whether the clip box is drawn, with its dimensions
+ * @property {boolean} axes  whether axes with ticks are drawn around the clip box
+ * @property {boolean} bar  whether a scale bar is drawn
+ * @property {number[] | null} measured  indices of up to two particles whose distance is measured; null while nothing is
  * @property {boolean} points  whether the points that a model interpolates are drawn
  * @property {number | null} level  the newest generation level drawn, null for all of them; a level beyond the last counts as the last
  * @property {CameraState} camera
+ */
+/**
+ * A plane that hides the part of the picture that its unit normal points to: all p with normal · p > offset. Nothing is sampled anew.
+ * @typedef {{normal: Vec3, offset: number}} CuttingPlane
  */
 /**
  * The whole shareable state, as plain JSON. `surface` is the gallery entry on which the formula is based, and `formula`
@@ -100,13 +112,16 @@
  * @property {string} formula
  * @property {Record<string, number>} parameters
  * @property {Parameter[]} declared
+ * @property {number | null} centres  how many of the points of a model or a file are fitted; null for the default number, and for a
+ *   formula
  * @property {Bounds | null} bounds  null: the surface's own box, or one that fits the formula
+ * @property {CuttingPlane | null} plane
  * @property {Settings} settings
  * @property {ViewState} view
  */
 
 /**
- * The part of the state that determines what is sampled and how, without the view.
+ * The part of the state that can be undone: what is sampled and how, and where it is cut open, without the view.
  * @typedef {Omit<State, 'v' | 'view'>} Shape
  */
 
@@ -140,7 +155,19 @@
  * @property {number | null} nearest
  * @property {number} x
  * @property {number} y
+ * @property {boolean} tapped  it was pressed and stays until the next press, instead of following the pointer
  */
+/**
+ * Where a place is in the picture: x and y are CSS pixels within the canvas host, `perPx` is the length in the field's coordinates
+ * that is one pixel long there, across the line of sight.
+ * @typedef {{x: number, y: number, perPx: number}} Spot
+ */
+/**
+ * A place to be pointed out: the positions that are marked by rings of this radius, the direction from which they are seen, and
+ * what stands beside them.
+ * @typedef {{places: Vec3[], radius: number, normal: Vec3, text: string}} Place
+ */
+/** A ray from the eye; the direction has length 1. @typedef {{eye: Vec3, direction: Vec3}} Ray */
 /** @typedef {{label: string, colour: string, count?: number}} LegendEntry  colour is `#rrggbb` */
 /**
  * The legend of the colours. `colours` are `#rrggbb`: the cycle, or the samples of the ramp from `range[0]` to
@@ -205,6 +232,7 @@
  * @property {ReadonlySignal<Notice | null>} notice
  * @property {ReadonlySignal<MeshAnswer | null>} mesh  of the mesh drawn; null while there is none
  * @property {ReadonlySignal<Hover | null>} hover
+ * @property {ReadonlySignal<Place | null>} spot  the place that was pointed out last; null once it no longer applies
  * @property {ReadonlySignal<Legend | null>} legend
  * @property {ReadonlySignal<number>} revision  increases whenever the particles, their fates or their figures change
  * @property {import('./columns.js').Columns} columns  the particles, read-only
@@ -213,6 +241,7 @@
  * @property {ReadonlySignal<boolean>} partial  whether the picture shows a run that was stopped or capped
  * @property {ReadonlySignal<boolean>} empty  whether the last run found no surface
  * @property {ReadonlySignal<LastDrag | null>} lastDrag
+ * @property {ReadonlySignal<number>} frame  increases with every picture drawn, after which places may have moved in it
  * @property {ReadonlySignal<'light' | 'dark'>} theme  the effective theme, after `auto` is resolved
  * @property {ReadonlySignal<Loading | null>} loading  the model or file that is loading
  * @property {ReadonlySignal<LoadingError | null>} loadingError  null once another surface is chosen; a notice `file`
@@ -224,6 +253,7 @@
  * @property {(id: string) => void} setSurface  a gallery surface, a built-in model, or {@link FILE_SURFACE} to return to the file opened last
  * @property {(file: File) => Promise<void>} openFile  samples the points of a file; resolves once it is sampled,
  *   refused or cancelled
+ * @property {(count: number) => void} setCentres  fits another number of the points of the present model or file
  * @property {() => void} cancelLoading  cancels the model or file that is loading
  * @property {(text: string, options?: {unfinished?: boolean}) => void} setFormula  `unfinished`: the text is sampled
  *   only after a pause, or with the next change
@@ -232,6 +262,7 @@
  * @property {(name: string) => void} resetParameter  restores the value of the gallery or of the declaration
  * @property {(name: string) => void} declareParameter  declares an unknown name of the formula as a parameter
  * @property {(bounds: Bounds | null, options?: {live?: boolean}) => void} setBounds
+ * @property {(plane: CuttingPlane | null) => void} setPlane  the normal may have any length but 0
  * @property {() => void} fitBox  takes the box of the gallery surface back, or fits it to the formula
  * @property {(name: string, value: number | string, options?: {live?: boolean}) => void} setSetting
  * @property {(name: string) => void} resetSetting
@@ -242,18 +273,29 @@
  * @property {(steps: number) => void} relax  relaxes the present particles by that many steps
  * @property {(patch: Partial<ViewState>) => void} setView
  * @property {() => void} fit
+ * @property {(place: Place | null, options?: {turns?: boolean}) => void} pointOut  marks a place, or none, and brings it before the
+ *   camera unless `turns` is false
+ * @property {() => void} dismissHover  no particle is chosen any more, even if it was pressed
  * @property {(factor: number) => void} zoom  > 1 zooms in
  * @property {(dxRad: number, dyRad: number) => void} orbit
  * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the
  *   canvas host covered by panels; the surface is centred in the rest
  * @property {() => Promise<string>} shareUrl
  * @property {(hash: string) => Promise<void>} loadUrl
+ * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<ImageData>} picture  without panels;
+ *   the surface fills its shorter side as it fills that of the window
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
  * @property {(format: 'ply' | 'csv') => Promise<Blob>} exportFile
  * @property {(format: MeshFormat) => Promise<Blob>} exportMesh  once no run is left
  * @property {() => void} dismissNotice
  * @property {(x: number, y: number) => number | null} pick  returns the index of the particle under a point of the
  *   canvas host
+ * @property {(place: ArrayLike<number>) => Spot | null} project  returns where a place is in the picture; null behind the eye
+ * @property {(x: number, y: number) => Ray} rayThrough  returns the ray from the eye through a point of the canvas host
+ * @property {(options?: ConstructorParameters<typeof import('./lesson/client.js').LessonClient>[0]) =>
+ *   Promise<import('./lesson/client.js').LessonClient>} openLesson  the paper's algorithms, event by event; its worker and its
+ *   bundle are loaded with the first run
+ * @property {() => import('./lesson/protocol.js').Surface | null} lessonSurface  returns the present surface for such a run
  * @property {() => void} destroy
  */
 /** File formats for a mesh. @typedef {'glb' | 'obj' | 'stl' | 'ply'} MeshFormat */

@@ -1,5 +1,6 @@
 /** Mounts the interface on an engine. */
-import { computed, effect, signal } from '@preact/signals-core';
+import { computed, effect, signal, untracked } from '@preact/signals-core';
+import { isBoxDrawn } from './box.js';
 import { byId, h, once } from './dom.js';
 import { explain } from './explain.js';
 import { mountDrop } from './field/drop.js';
@@ -7,6 +8,8 @@ import { mountField } from './field/panel.js';
 import { createHistory } from './history.js';
 import { icon } from './icons.js';
 import { mountLayout } from './layout.js';
+import { createMotion } from './motion.js';
+import { mountOffline } from './offline.js';
 import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
 import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
@@ -39,59 +42,138 @@ export function mountInterface(engine) {
       { id: 'levels', title: 'Levels', panel: levels },
       { id: 'report', title: 'Report', panel: report, head: head(report) },
     ],
+    covered: () => (isBoxDrawn(engine) ? (view.querySelector('.empty')?.clientHeight ?? 0) : 0),
     inset: (insets) => engine.setInsets(insets),
   });
-  const history = createHistory(engine);
+  const motion = createMotion(engine, stage);
+  const history = createHistory(
+    engine,
+    computed(() => motion.playing.value !== null || motion.filming.value),
+  );
   /** @type {import('./levels/timeline.js').Timeline | null} */
   let timeline = null;
   /** The generation level chosen on the timeline, in words. */
   const told = signal(/** @type {import('./levels/timeline.js').Told | null} */ (null));
-  const shortcuts = mountShortcuts([
-    { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
-    {
-      keys: ['Escape'],
-      shown: 'Esc',
-      label: 'Stop',
-      act: () => {
-        if (engine.busy.peek() || engine.loading.peek()) engine.stop();
-      },
-    },
-    { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
-    { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
-    { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
-    {
-      keys: ['e', 'E'],
-      shown: 'E',
-      label: 'Relax one step',
-      act: () => {
-        if (!engine.busy.peek()) engine.relax(1);
-      },
-    },
-    { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the levels', act: () => timeline?.toggle() },
-    { keys: [','], shown: ',', label: 'Level back', act: () => timeline?.back() },
-    { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline?.forward() },
-    { keys: ['<'], shown: '<', label: 'First level', act: () => timeline?.first() },
-    { keys: ['>'], shown: '>', label: 'All levels', act: () => timeline?.all() },
-    { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
-    { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
-    { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
-    {
-      keys: ['m', 'M'],
-      shown: 'M',
-      label: 'Discs or mesh',
-      act: () => engine.setView({ draw: engine.state.peek().view.draw === 'mesh' ? 'discs' : 'mesh' }),
-    },
-    { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
-    {
-      keys: ['t', 'T'],
-      shown: 'T',
-      label: 'Light or dark',
-      act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
-    },
-    { keys: ['h', 'H'], shown: 'H', label: 'Hide or show the panels', act: () => layout.toggleHidden() },
-    { keys: ['?'], shown: '?', label: 'This sheet', act: () => shortcuts.open() },
-  ]);
+  const { picture, print } = pictureOf(engine, motion, toast);
+  const shortcuts = mountShortcuts(
+    shortcutsOf(engine, {
+      history,
+      motion,
+      print,
+      timeline: () => timeline,
+      hide: layout.toggleHidden,
+      open: () => shortcuts.open(),
+    }),
+  );
 
+  followTheme(engine);
+  nameTab(engine);
+  head(field)
+    .querySelector('.fold')
+    ?.before(
+      historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo),
+      historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo),
+    );
+  mountDrop(engine, toast);
+  mountOffline(engine, toast);
+  mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
+  // What is said where there is no surface does not hide the box.
+  layout.follow(/** @type {HTMLElement} */ (view.querySelector('.empty')));
+  const boxDrawn = computed(() => isBoxDrawn(engine));
+  effect(() => {
+    void boxDrawn.value;
+    untracked(layout.measure);
+  });
+  const follow = followOf(engine, shell, toast);
+  mountHover(stage, engine, { view, follow });
+  byId('tabs').append(goButton(engine));
+
+  let mounted = false;
+  effect(() => {
+    const description = engine.description.value;
+    if (!description || mounted) return;
+    mounted = true;
+    mountField(byId('field-body'), engine, description, motion);
+    mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
+    mountReport(byId('report-body'), engine, description);
+    const legend = createLegend(engine, description);
+    view.prepend(
+      legend,
+      createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, picture, motion, toast }),
+    );
+    layout.follow(legend);
+    shell.dataset.ready = '';
+    // Without its marks the picture is as good as before.
+    import('./view/marks/index.js').then(
+      ({ mountAllMarks }) => mountAllMarks(engine, { stage, host: byId('canvas-host'), view }),
+      () => {},
+    );
+    import('./levels/timeline.js').then(
+      ({ createTimeline }) => {
+        timeline = createTimeline(byId('levels-body'), engine, told);
+        byId('levels-body').append(seedButton(engine, follow));
+      },
+      // If the timeline fails to load, the rest of the page still works.
+      () => {
+        levels.hidden = true;
+      },
+    );
+  });
+}
+
+/** Names the browser's tab after the surface. @param {Engine} engine */
+function nameTab(engine) {
+  effect(() => {
+    const id = engine.field.value?.surface;
+    const surface = engine.description.value?.surfaces.find((entry) => entry.id === id);
+    document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
+  });
+}
+
+/**
+ * Returns what follows a particle in a panel, which is loaded when it is first asked for.
+ * @param {Engine} engine @param {HTMLElement} shell @param {import('./toasts.js').Toast} toast
+ */
+function followOf(engine, shell, toast) {
+  /** @type {Promise<{ follow: (index: number) => void }> | null} */
+  let panel = null;
+  return async (/** @type {number} */ index) => {
+    try {
+      panel ??= import('./lesson/panel.js').then(({ mountFollow }) => mountFollow(shell, engine));
+      (await panel).follow(index);
+    } catch {
+      panel = null;
+      const text = 'The panel that follows particles did not load. The picture is not affected.';
+      toast({ id: 'follow', kind: 'error', text });
+    }
+  };
+}
+
+/** Creates the button that follows the seed, where the front begins. @param {Engine} engine @param {(index: number) => void} follow */
+function seedButton(engine, follow) {
+  const button = h(
+    'button',
+    { type: 'button', class: 'button plain levels-follow', on: { click: () => follow(0) } },
+    icon('follow'),
+    'Follow',
+  );
+  effect(() => {
+    void engine.revision.value;
+    button.disabled = engine.empty.value || engine.columns.count === 0;
+  });
+  explain(
+    button,
+    () => ({
+      title: 'Follow the seed',
+      text: 'Opens the particle at which the front begins: the paper’s algorithm, event by event.',
+    }),
+    { side: 'above' },
+  );
+  return button;
+}
+
+/** Gives the page and the browser's frame the chosen theme. @param {Engine} engine */
+function followTheme(engine) {
   effect(() => {
     const { theme } = engine.state.value.view;
     if (theme === 'auto') delete document.documentElement.dataset.theme;
@@ -104,46 +186,105 @@ export function mountInterface(engine) {
     for (const meta of document.querySelectorAll('meta[name="theme-color"]'))
       meta.setAttribute('content', backgroundColor);
   });
-  effect(() => {
-    const id = engine.field.value?.surface;
-    const surface = engine.description.value?.surfaces.find((entry) => entry.id === id);
-    document.title = surface ? `${surface.name} · Marching Particles` : 'Marching Particles';
-  });
-
-  head(field)
-    .querySelector('.fold')
-    ?.before(
-      historyButton('undo', 'Undo', `${COMMAND_KEY} Z`, history.canUndo, history.undo),
-      historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo),
-    );
-  mountDrop(engine, toast);
-  mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
-  mountHover(stage, engine);
-  byId('tabs').append(goButton(engine));
-
-  let mounted = false;
-  effect(() => {
-    const description = engine.description.value;
-    if (!description || mounted) return;
-    mounted = true;
-    mountField(byId('field-body'), engine, description);
-    mountSampling(byId('sampling-body'), engine, description, { head: [samplingTools] });
-    mountReport(byId('report-body'), engine, description);
-    const legend = createLegend(engine, description);
-    view.prepend(legend, createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, toast }));
-    layout.follow(legend);
-    shell.dataset.ready = '';
-    import('./levels/timeline.js').then(
-      ({ createTimeline }) => {
-        timeline = createTimeline(byId('levels-body'), engine, told);
-      },
-      // If the timeline fails to load, the rest of the page still works.
-      () => {
-        levels.hidden = true;
-      },
-    );
-  });
 }
+
+/**
+ * Returns what opens the dialog that takes the picture away, and what prints it. Both are loaded when they are first asked for.
+ * @param {Engine} engine
+ * @param {import('./motion.js').Motion} motion
+ * @param {import('./toasts.js').Toast} toast
+ */
+function pictureOf(engine, motion, toast) {
+  const failed = () =>
+    toast({ id: 'save', kind: 'error', text: 'A part of the page could not be loaded. Load it again.' });
+  /** @type {Promise<import('./dialog.js').Dialog> | null} */
+  let dialog = null;
+  return {
+    picture() {
+      dialog ??= import('./picture/dialog.js').then(({ createPictureDialog }) =>
+        createPictureDialog(engine, { motion, toast }),
+      );
+      dialog.then(
+        ({ open }) => open(),
+        () => {
+          dialog = null;
+          failed();
+        },
+      );
+    },
+    print() {
+      import('./picture/print.js').then(({ printPage }) => printPage(engine)).catch(failed);
+    },
+  };
+}
+
+/**
+ * Returns the shortcuts of the page.
+ * @param {Engine} engine
+ * @param {object} page
+ * @param {ReturnType<typeof createHistory>} page.history
+ * @param {import('./motion.js').Motion} page.motion
+ * @param {() => void} page.print
+ * @param {() => import('./levels/timeline.js').Timeline | null} page.timeline
+ * @param {() => void} page.hide  hides or shows the panels
+ * @param {() => void} page.open  opens the list of the shortcuts
+ * @returns {import('./shortcuts.js').Shortcut[]}
+ */
+const shortcutsOf = (engine, { history, motion, print, timeline, hide, open }) => [
+  { keys: ['r', 'R'], shown: 'R', label: 'Run', act: () => engine.run() },
+  {
+    keys: ['Escape'],
+    shown: 'Esc',
+    label: 'Stop',
+    act: () => {
+      if (motion.stop()) return;
+      if (engine.busy.peek() || engine.loading.peek()) engine.stop();
+      else engine.pointOut(null);
+    },
+  },
+  { keys: ['z', 'Z'], ctrl: true, shown: `${COMMAND_KEY} Z`, label: 'Undo', act: history.undo },
+  { keys: ['z', 'Z'], ctrl: true, shift: true, shown: `${COMMAND_KEY} Shift Z`, label: 'Redo', act: history.redo },
+  { keys: ['p', 'P'], ctrl: true, shown: `${COMMAND_KEY} P`, label: 'Print', act: print },
+  { keys: ['g', 'G'], shown: 'G', label: 'Generate only', act: () => engine.generateOnly() },
+  {
+    keys: ['e', 'E'],
+    shown: 'E',
+    label: 'Relax one step',
+    act: () => {
+      if (!engine.busy.peek()) engine.relax(1);
+    },
+  },
+  { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the levels', act: () => timeline()?.toggle() },
+  { keys: [','], shown: ',', label: 'Level back', act: () => timeline()?.back() },
+  { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline()?.forward() },
+  { keys: ['<'], shown: '<', label: 'First level', act: () => timeline()?.first() },
+  { keys: ['>'], shown: '>', label: 'All levels', act: () => timeline()?.all() },
+  { keys: ['o', 'O'], shown: 'O', label: 'Turntable', act: () => motion.toggleTurning() },
+  { keys: ['f', 'F'], shown: 'F', label: 'Fit', act: () => engine.fit() },
+  { keys: ['+', '='], shown: '+', label: 'Zoom in', act: () => engine.zoom(1.25) },
+  { keys: ['-', '_'], shown: '−', label: 'Zoom out', act: () => engine.zoom(0.8) },
+  {
+    keys: ['m', 'M'],
+    shown: 'M',
+    label: 'Discs or mesh',
+    act: () => engine.setView({ draw: engine.state.peek().view.draw === 'mesh' ? 'discs' : 'mesh' }),
+  },
+  {
+    keys: ['d', 'D'],
+    shown: 'D',
+    label: 'Measure a distance',
+    act: () => engine.setView({ measured: engine.state.peek().view.measured ? null : [] }),
+  },
+  { keys: ['c', 'C'], shown: 'C', label: 'Next colouring', act: () => nextColouring(engine) },
+  {
+    keys: ['t', 'T'],
+    shown: 'T',
+    label: 'Light or dark',
+    act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
+  },
+  { keys: ['h', 'H'], shown: 'H', label: 'Hide or show the panels', act: hide },
+  { keys: ['?'], shown: '?', label: 'This sheet', act: open },
+];
 
 /** Creates the Run/Stop button that is always visible on a phone. @param {Engine} engine */
 function goButton(engine) {

@@ -1,4 +1,5 @@
-/** What is said and done where the clip box cuts the surface. */
+/** What is said and done where the clip box cuts the surface, and how the box changes. */
+import { clamp } from './scale.js';
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
 /** @typedef {import('../engine/types.js').Bounds} Bounds */
@@ -9,6 +10,33 @@ export function doubled({ min, max }) {
   const end = (/** @type {1 | -1} */ side) =>
     /** @type {[number, number, number]} */ (min.map((low, i) => (low + max[i]) / 2 + side * (max[i] - low)));
   return { min: end(-1), max: end(1) };
+}
+
+/** Smallest thickness of the box after a drag, as a share of its side before. */
+const LEAST_SHARE = 0.02;
+/** Digits of a side that a drag sets. */
+const SIDE_DIGITS = 3;
+
+/**
+ * Returns a box with one face moved, at most to the opposite face.
+ * @param {Bounds} bounds
+ * @param {number} axis
+ * @param {'min' | 'max'} end
+ * @param {number} value
+ * @returns {Bounds}
+ */
+export function withFace(bounds, axis, end, value) {
+  const side = bounds.max[axis] - bounds.min[axis];
+  const [low, high] =
+    end === 'max'
+      ? [bounds.min[axis] + LEAST_SHARE * side, Infinity]
+      : [-Infinity, bounds.max[axis] - LEAST_SHARE * side];
+  const grid = 10 ** (Math.floor(Math.log10(side)) - SIDE_DIGITS + 1);
+  const rounded = Number((Math.round(value / grid) * grid).toPrecision(12));
+  /** @type {Bounds} */
+  const next = { min: [...bounds.min], max: [...bounds.max] };
+  next[end][axis] = clamp(rounded, low, high);
+  return next;
 }
 
 /**
@@ -22,6 +50,10 @@ export function cutOf(report) {
   const of = report.border === 1 ? '1 particle lies' : `${report.border.toLocaleString('en')} particles lie`;
   return { text: `The box cuts the surface: ${of} at its border.`, canFit: true };
 }
+
+/** Returns whether the box is drawn: where it is asked for, and where it holds no surface but the field has one elsewhere. @param {Engine} engine */
+export const isBoxDrawn = (engine) =>
+  engine.state.value.view.box || (engine.empty.value && engine.field.value?.reach !== 'nowhere');
 
 /** Doubles the box in which the surface is sampled. @param {Engine} engine */
 export function enlarge(engine) {

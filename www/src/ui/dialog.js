@@ -1,4 +1,5 @@
 /** Creates modal dialogs with a title and a close button. */
+/** @typedef {ReturnType<typeof createDialog>} Dialog */
 import { h, uniqueId } from './dom.js';
 import { icon } from './icons.js';
 

@@ -1,6 +1,7 @@
 /**
- * Records the undo history: the last hundred changes of surface, formula, parameters, clip box and settings. Continuous
- * typing or dragging counts as one change. The browser's history is not used, so Back leaves the page as usual.
+ * Records the undo history: the last hundred changes of surface, formula, parameters, clip box, cutting plane and
+ * settings. Continuous typing or dragging counts as one change. The browser's history is not used, so Back leaves the
+ * page as usual.
  */
 import { effect, signal } from '@preact/signals-core';
 
@@ -13,12 +14,14 @@ export const MOST_ENTRIES = 100;
 const PAUSE_MS = 800;
 
 /** @param {State} state @returns {Shape} */
-export const shapeOf = ({ surface, formula, parameters, declared, bounds, settings }) => ({
+export const shapeOf = ({ surface, formula, parameters, declared, centres, bounds, plane, settings }) => ({
   surface,
   formula,
   parameters,
   declared,
+  centres,
   bounds,
+  plane,
   settings,
 });
 
@@ -30,7 +33,7 @@ export const shapeOf = ({ surface, formula, parameters, declared, bounds, settin
 export function difference(before, after) {
   /** @type {string[]} */
   const found = [];
-  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'bounds'])) {
+  for (const key of /** @type {const} */ (['surface', 'formula', 'declared', 'centres', 'bounds', 'plane'])) {
     if (JSON.stringify(before[key]) !== JSON.stringify(after[key])) found.push(key);
   }
   for (const key of /** @type {const} */ (['parameters', 'settings'])) {
@@ -95,8 +98,13 @@ export class History {
   }
 }
 
-/** Records the changes of the engine's state. @param {Engine} engine */
-export function createHistory(engine) {
+/**
+ * Records the changes of the engine's state.
+ * @param {Engine} engine
+ * @param {import('@preact/signals-core').ReadonlySignal<boolean>} moves  whether values change by themselves, which is recorded
+ *   once it has ended
+ */
+export function createHistory(engine, moves) {
   const history = new History();
   const canUndo = signal(false);
   const canRedo = signal(false);
@@ -106,6 +114,7 @@ export function createHistory(engine) {
   };
   effect(() => {
     const state = engine.state.value;
+    if (moves.value) return;
     // Before the core has loaded there is no state to restore.
     if (!engine.description.value || state.surface === '') return;
     history.record(shapeOf(state), performance.now(), engine.fieldError.peek() !== null);

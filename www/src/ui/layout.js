@@ -18,9 +18,10 @@ const COMPACT = '(max-width: 44.95em)';
  * @param {HTMLElement} parts.view
  * @param {HTMLElement} parts.nav
  * @param {Panel[]} parts.panels
+ * @param {() => number} parts.covered  pixels at the bottom of the view that something else than panels covers
  * @param {(insets: { top: number, right: number, bottom: number, left: number }) => void} parts.inset
  */
-export function mountLayout({ shell, view, nav, panels, inset }) {
+export function mountLayout({ shell, view, nav, panels, covered, inset }) {
   const folds = panels.flatMap(({ title, panel, head }) => (head ? [createFold(title, panel, head)] : []));
   if (matchMedia(NARROW).matches) folds.at(-1)?.set(true);
 
@@ -75,7 +76,7 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
       left,
       top: top + side('.legend').clientHeight,
       right: innerWidth - right + side('.toolbar').clientWidth,
-      bottom: innerHeight - bottom,
+      bottom: innerHeight - bottom + covered(),
     });
   };
   const sizes = new ResizeObserver(measure);
@@ -86,6 +87,7 @@ export function mountLayout({ shell, view, nav, panels, inset }) {
   return {
     /** Updates the free area whenever a part of the view changes its size. @param {HTMLElement} part */
     follow: (part) => sizes.observe(part),
+    measure,
     toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
   };
 }

@@ -1,10 +1,7 @@
-/** Copies a link, saves a picture or exports a file. */
+/** Copies a link or exports a file. */
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
 /** @typedef {import('./toasts.js').Toast} Toast */
-
-/** Width of a saved picture in pixels. Its height has the proportion of the window. */
-const PICTURE_WIDTH_PX = 2400;
 
 /** @param {Engine} engine @param {Toast} toast */
 export async function copyLink(engine, toast) {
@@ -19,16 +16,6 @@ export async function copyLink(engine, toast) {
     }
   } catch {
     toast({ id: 'share', kind: 'error', text: 'The link could not be made.' });
-  }
-}
-
-/** @param {Engine} engine @param {Toast} toast */
-export async function savePicture(engine, toast) {
-  try {
-    const height = Math.round((PICTURE_WIDTH_PX * innerHeight) / innerWidth);
-    download(await engine.savePng({ width: PICTURE_WIDTH_PX, height }), `${stem(engine)}.png`);
-  } catch {
-    toast({ id: 'save', kind: 'error', text: 'The picture could not be drawn.' });
   }
 }
 
@@ -66,14 +53,14 @@ async function exported(engine, toast, what, make, name) {
   }
 }
 
-/** @param {Engine} engine */
-function stem(engine) {
+/** Returns the name of a file, without its extension. @param {Engine} engine */
+export function stem(engine) {
   const surface = engine.field.peek()?.surface ?? 'formula';
   return `${surface}-${engine.progress.peek().particles}`;
 }
 
 /** @param {Blob} blob @param {string} name */
-function download(blob, name) {
+export function download(blob, name) {
   const url = URL.createObjectURL(blob);
   const link = document.createElement('a');
   link.href = url;

@@ -39,6 +39,7 @@ export function mountShortcuts(shortcuts) {
   });
   const rest = /** @type {const} */ ([
     ['Arrow keys', 'Turn, with the picture focused'],
+    ['Enter', 'Choose the particle in the middle of the picture; again: follow it'],
     ['Drag', 'Turn'],
     ['Right drag, Shift drag', 'Move'],
     ['Wheel, pinch', 'Zoom'],

@@ -39,19 +39,8 @@ export const status = (page) => page.evaluate(() => /** @type {any} */ (window).
 /** @param {Page} page @returns {Promise<any>} */
 export const counts = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.counts());
 
-/** Waits until nothing is drawn any more: two looks, further apart than any frame, see as many frames. @param {Page} page */
-export const atRest = (page) =>
-  page.waitForFunction(
-    () => {
-      const store = /** @type {any} */ (window);
-      const { frames } = store.marchingParticles.debug.counts();
-      const same = store.lastFrames === frames;
-      store.lastFrames = frames;
-      return same;
-    },
-    undefined,
-    { polling: 400 },
-  );
+/** Waits until nothing is drawn any more. @param {Page} page */
+export const atRest = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
 
 /**
  * What is in the picture: the share of pixels that differ from its corner, and how many of 12 hues there are.

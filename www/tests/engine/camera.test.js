@@ -1,5 +1,14 @@
 import { describe, expect, test } from 'vitest';
-import { ballOf, Camera, fitDistance, PITCH_LIMIT_RAD, rayThrough, viewOf } from '../../src/engine/view/camera.js';
+import {
+  axes,
+  ballOf,
+  Camera,
+  fitDistance,
+  PITCH_LIMIT_RAD,
+  projected,
+  rayThrough,
+  viewOf,
+} from '../../src/engine/view/camera.js';
 
 /** @typedef {import('../../src/engine/types.js').Vec3} Vec3 */
 /** @typedef {import('../../src/engine/view/camera.js').View} View */
@@ -104,7 +113,98 @@ describe('the view', () => {
   });
 });
 
+describe('a place in the picture', () => {
+  test('is where the ray through it goes, and as large as it looks', () => {
+    const view = viewOf(state, ...size, scene, { left: 120, right: 0, top: 0, bottom: 40 });
+    const place = [0.9, 0.4, -0.5];
+    const spot = projected(view, place, ...size);
+    if (!spot) throw new Error('behind the eye');
+    const ray = rayThrough(view, spot.x, spot.y, ...size);
+    const way = place.map((c, k) => c - view.eye[k]);
+    const length = Math.hypot(...way);
+    for (const k of [0, 1, 2]) expect(way[k] / length).toBeCloseTo(ray[k], 5);
+    const beside = projected(
+      view,
+      place.map((c, k) => c + 10 * spot.perPx * view.right[k]),
+      ...size,
+    );
+    expect(beside?.x).toBeCloseTo(spot.x + 10, 2);
+    expect(beside?.y).toBeCloseTo(spot.y, 2);
+  });
+
+  test('is nowhere behind the eye', () => {
+    const view = viewOf(state, ...size, scene);
+    expect(
+      projected(
+        view,
+        view.eye.map((c, k) => c - view.forward[k]),
+        ...size,
+      ),
+    ).toBe(null);
+  });
+});
+
 describe('the camera', () => {
+  test('glides before a place and ends facing it, by the shorter way', () => {
+    const camera = new Camera({ ...state, yaw: 3 });
+    const normal = /** @type {Vec3} */ ([-0.6, -0.64, 0.48]);
+    camera.lookAt({ centre: [1, 0, 0], radius: 0.05 }, normal);
+    expect(camera.state.fit).toBe(false);
+    let turned = 0;
+    for (let i = 0, last = camera.state.yaw; i < 200 && camera.step(1 / 60); i += 1) {
+      turned += Math.abs(camera.state.yaw - last);
+      last = camera.state.yaw;
+    }
+    expect(turned).toBeLessThan(Math.PI);
+    const { forward } = axes(camera.state);
+    for (const k of [0, 1, 2]) expect(forward[k]).toBeCloseTo(-normal[k], 2);
+    expect(camera.state.target).toEqual([1, 0, 0]);
+    expect(camera.state.distance).toBeCloseTo(fitDistance(0.05), 6);
+    // A large place does not take the camera away.
+    camera.lookAt({ centre: [1, 0, 0], radius: 50 }, normal);
+    while (camera.step(1 / 60));
+    expect(camera.state.distance).toBeCloseTo(fitDistance(0.05), 6);
+  });
+
+  test('opens on a side and ends where it was, unless a hand comes between', () => {
+    for (const normal of /** @type {Vec3[]} */ ([
+      [0.1, -0.1, -0.99],
+      [-0.8, -0.6, 0],
+    ])) {
+      const camera = new Camera(state);
+      camera.openOn(normal);
+      const seen = -axes(camera.state).forward.reduce((sum, c, k) => sum + c * normal[k], 0);
+      expect(seen).toBeGreaterThan(0.5);
+      let steps = 0;
+      while (camera.step(1 / 60)) steps += 1;
+      expect(steps / 60).toBeCloseTo(2, 1);
+      expect(camera.state).toEqual(state);
+    }
+    for (const act of /** @type {((camera: Camera) => void)[]} */ ([
+      (camera) => camera.rest(),
+      (camera) => camera.zoom(1.2),
+      (camera) => camera.pan(3, 4, viewOf(state, ...size, scene)),
+    ])) {
+      const camera = new Camera(state);
+      camera.openOn([0, 0, -1]);
+      for (let i = 0; i < 60; i += 1) camera.step(1 / 60);
+      const { yaw, pitch } = camera.state;
+      act(camera);
+      expect(camera.step(1 / 60)).toBe(false);
+      expect(camera.state).toMatchObject({ yaw, pitch });
+      expect(pitch).toBeLessThan(state.pitch - 0.1);
+    }
+  });
+
+  test('is before a place at once where motion is reduced', () => {
+    const camera = new Camera(state);
+    camera.calm = true;
+    camera.lookAt({ centre: [1, 0, 0], radius: 0.05 }, [0, 0, 1]);
+    expect(camera.state.pitch).toBe(PITCH_LIMIT_RAD);
+    expect(camera.state.target).toEqual([1, 0, 0]);
+    expect(camera.step(1 / 60)).toBe(false);
+  });
+
   test('keeps the point under the cursor while zooming', () => {
     const camera = new Camera(state);
     const before = viewOf(camera.state, ...size, scene);

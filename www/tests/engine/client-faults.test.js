@@ -1,3 +1,4 @@
+import { effect } from '@preact/signals-core';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { begin, columnsMessage, done, page, progress, reportMessage, request, told, workers } from './client-page.js';
 import { description } from './description.js';
@@ -12,12 +13,10 @@ describe('a formula with a fault', () => {
   };
 
   test('leaves the last surface, dimmed', () => {
-    const { client, store, columns, say, accept } = page();
+    const { client, store, columns, say, accept, complete } = page();
     client.sample(request('x'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(1, 7));
+    complete(1, 7);
     told.length = 0;
     client.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
@@ -130,7 +129,7 @@ describe('a formula with a fault', () => {
 describe('the surface that stays', () => {
   test('because another would need too many particles, or is refused, gets the figures it has not had', () => {
     for (const outcome of ['ask', 'refused']) {
-      const { client, store, say, accept, jobs } = page();
+      const { client, store, say, accept, jobs, complete } = page();
       client.sample(request('x'));
       accept(1);
       say(columnsMessage(1, 7));
@@ -141,9 +140,7 @@ describe('the surface that stays', () => {
       expect(jobs().at(-1)).toMatchObject({ id: 3, field: { formula: 'x' }, grow: false });
       accept(3);
       expect(store.field.value?.formula).toBe('y');
-      say(columnsMessage(3, 9));
-      say(done(3, 'complete', 9, { reportFollows: true }));
-      say(reportMessage(3, 9));
+      complete(3, 9);
       expect(store.report.value?.count).toBe(9);
       expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
       // With its figures there it is left alone.
@@ -156,12 +153,10 @@ describe('the surface that stays', () => {
   });
 
   test('is made with the relaxation that another cut off', () => {
-    const { client, say, accept, jobs } = page();
+    const { client, say, accept, jobs, complete } = page();
     client.sample(request('x'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(1, 7));
+    complete(1, 7);
     client.relax(1);
     say(columnsMessage(2, 7));
     client.sample(request('y'));
@@ -258,12 +253,10 @@ describe('the surface that stays', () => {
   });
 
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
-    const { client, columns, say, accept } = page();
+    const { client, columns, say, accept, complete } = page();
     client.sample(request('x'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(1, 7));
+    complete(1, 7);
     client.sample(request('x'));
     accept(2);
     say(done(2, 'stopped', 0));
@@ -272,12 +265,10 @@ describe('the surface that stays', () => {
   });
 
   test('because the next was stopped before its first particle is whole, and dimmed', () => {
-    const { client, store, columns, say, accept } = page();
+    const { client, store, columns, say, accept, complete } = page();
     client.sample(request('x'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(1, 7));
+    complete(1, 7);
     client.sample(request('y'));
     accept(2, 'y');
     client.stop();
@@ -291,12 +282,10 @@ describe('the surface that stays', () => {
   });
 
   test('keeps its figures until there are particles of another', () => {
-    const { client, store, say, accept } = page();
+    const { client, store, say, accept, complete } = page();
     client.sample(request('x'));
     accept(1);
-    say(columnsMessage(1, 7));
-    say(done(1, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(1, 7));
+    complete(1, 7);
     client.sample(request('y'));
     accept(2, 'y');
     expect(store.report.value?.count).toBe(7);
@@ -311,7 +300,10 @@ describe('a worker that fails', () => {
   test('is replaced, and its run made again', () => {
     const { client, store, say, jobs } = page();
     client.sample(request('x'));
+    const rests = /** @type {boolean[]} */ ([]);
+    effect(() => void rests.push(!store.busy.value && store.progress.value.phase === 'done'));
     say(crash);
+    expect(rests).not.toContain(true);
     expect(workers).toHaveLength(2);
     expect(jobs()).toHaveLength(1);
     expect(jobs()[0].field).toEqual({ formula: 'x' });
@@ -328,6 +320,8 @@ describe('a worker that fails', () => {
     expect(workers).toHaveLength(3);
     expect(jobs()).toHaveLength(0);
     expect(store.notice.value?.kind).toBe('error');
+    expect(store.busy.value).toBe(false);
+    expect(store.progress.value.phase).toBe('done');
     expect(store.busy.value).toBe(false);
     client.sample(request('y'));
     expect(jobs()).toHaveLength(1);
@@ -374,7 +368,7 @@ describe('a worker that fails', () => {
   });
 
   test('after it, relaxing makes the whole run again with the steps added', () => {
-    const { client, say, jobs, accept } = page();
+    const { client, say, jobs, accept, complete } = page();
     client.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
@@ -391,9 +385,7 @@ describe('a worker that fails', () => {
     client.store.description.value = description;
     expect(client.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
     accept(4);
-    say(columnsMessage(4, 7));
-    say(done(4, 'complete', 7, { reportFollows: true }));
-    say(reportMessage(4, 7));
+    complete(4, 7);
     say(crash);
     expect(jobs()).toHaveLength(0);
     client.relax(2);

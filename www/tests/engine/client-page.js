@@ -84,7 +84,10 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
   component: new Uint32Array(n),
 });
 
-/** @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, jobs: () => any[]}} */
+/**
+ * `say` posts a message of the worker, `accept` its answer to a field, `complete` all that ends a run of n particles.
+ * @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
+ */
 export function page() {
   const store = createStore();
   const columns = new Columns();
@@ -128,6 +131,11 @@ export function page() {
     columns,
     say,
     accept,
+    complete(id, n) {
+      say(columnsMessage(id, n));
+      say(done(id, 'complete', n, { reportFollows: true }));
+      say(reportMessage(id, n));
+    },
     jobs: () =>
       workers
         .at(-1)

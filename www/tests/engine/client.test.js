@@ -274,12 +274,10 @@ describe('a run', () => {
 });
 
 test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
-  const { client, store, columns, say, accept } = page();
+  const { client, store, columns, say, accept, complete } = page();
   client.sample(request('x'));
   accept(1);
-  say(columnsMessage(1, 7));
-  say(done(1, 'complete', 7, { reportFollows: true }));
-  say(reportMessage(1, 7));
+  complete(1, 7);
   client.sample(request('x'));
   accept(2);
   say(

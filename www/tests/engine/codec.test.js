@@ -13,7 +13,9 @@ const elaborate = () => ({
   formula: 'x^2 + y^2 + sin(k z)^2 − 1',
   parameters: { k: 2.5, R: 1.25 },
   declared: [{ name: 'k', label: 'k', value: 1, min: -3, max: 3, step: 0.01 }],
+  centres: null,
   bounds: { min: [-1, -2, -3], max: [1, 2, 3] },
+  plane: { normal: [0, 0.6, -0.8], offset: 0.25 },
   settings: { radius_share: 0.012, relax_steps: 20 },
   view: {
     colour: 'valence',
@@ -23,7 +25,11 @@ const elaborate = () => ({
     edges: false,
     marks: false,
     theme: 'dark',
+    ghost: true,
     box: true,
+    axes: true,
+    bar: true,
+    measured: [17, 4],
     points: false,
     level: 12,
     camera: { target: [0.5, 0, -0.25], distance: 6.5, yaw: -1.25, pitch: 0.5, fit: false },
@@ -46,6 +52,25 @@ describe('a link', () => {
     expect(back.problem).toBe(null);
     expect(back.reset).toEqual([]);
     expect(back.state).toEqual(state);
+  });
+
+  test('holds how many points of a model are fitted, as many as there can be', async () => {
+    const bunny = { ...defaultState(description), surface: 'bunny', formula: '' };
+    const back = async (/** @type {State} */ state) =>
+      (await decode(await encode(state, description), description)).state;
+    expect((await back({ ...bunny, centres: 120 })).centres).toBe(120);
+    expect((await back(bunny)).centres).toBe(null);
+    const of = (/** @type {object} */ raw) => {
+      const { state, reset } = sanitize(raw, description, true);
+      return [state.centres, reset];
+    };
+    // The bunny has 200 points, all of which are fitted by default.
+    expect(of({ surface: 'bunny', centres: 200 })).toEqual([null, []]);
+    expect(of({ surface: 'bunny', centres: 500 })).toEqual([null, []]);
+    expect(of({ surface: 'bunny', centres: 7 })).toEqual([100, []]);
+    expect(of({ surface: FILE_SURFACE, centres: 500 })).toEqual([500, []]);
+    expect(of({ surface: 'torus', centres: 120 })).toEqual([null, ['number of centres']]);
+    expect(of({ surface: 'bunny', centres: 'many' })).toEqual([null, ['number of centres']]);
   });
 
   test('of the default state is empty', async () => {
@@ -160,8 +185,16 @@ describe('a state from anywhere', () => {
         parameters: { a: Infinity, 'bad name': 1, c: 2, d: 1e9, ...Object.fromEntries([['_b', 1]]) },
         declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
         bounds: { min: [0, 0, 0], max: [1, 0, 1] },
+        plane: { normal: [0, 0, 0], offset: 1 },
         settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
-        view: { colour: 'pink', size: 99, theme: 'blue', box: 'yes', camera: { distance: Number.NaN } },
+        view: {
+          colour: 'pink',
+          size: 99,
+          theme: 'blue',
+          box: 'yes',
+          measured: [1, 1],
+          camera: { distance: Number.NaN },
+        },
       },
       description,
     );
@@ -180,6 +213,8 @@ describe('a state from anywhere', () => {
       'parameter _b',
       'a declared parameter',
       'clip box',
+      'cutting plane',
+      'measured distance',
       'setting radius_share',
       'setting relax_steps',
       'setting size_mode',
@@ -194,6 +229,15 @@ describe('a state from anywhere', () => {
       expect(reset).toContain(name);
     }
     expect(reset).not.toContain('parameter c');
+    expect(state.plane).toBe(null);
+  });
+
+  test('gets a cutting plane with a unit normal', () => {
+    const { state, reset } = sanitize({ plane: { normal: [0, 3, 4], offset: 10 } }, description);
+    expect(reset).toEqual([]);
+    expect(state.plane).toEqual({ normal: [0, 0.6, 0.8], offset: 2 });
+    for (const plane of [7, {}, { normal: [1, 0], offset: 0 }, { normal: [1, 0, 0], offset: '0' }])
+      expect(sanitize({ plane }, description).reset).toEqual(['cutting plane']);
   });
 
   test.each([null, 7, 'text', [], [[]], { view: 3, settings: [], parameters: 'x', declared: {} }])(

@@ -173,7 +173,11 @@ describe('colours of particles', () => {
   test('by level go round the cycle', () => {
     const { levels } = PALETTES.light;
     expect([...coloursOf('level', 'light', columns, 0, 3)]).toEqual([levels[0], levels[1], levels[1]]);
-    expect(legendOf('level', 'light', columns)).toMatchObject({ kind: 'cyclic', range: [0, 13] });
+    expect(legendOf('level', 'light', columns)).toMatchObject({
+      kind: 'cyclic',
+      range: [0, 13],
+      unit: 'rings around the seed',
+    });
   });
 
   test('by fate show the worst of the six slots', () => {

@@ -170,6 +170,15 @@ describe('picking', () => {
     expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, columns.lastLevel)).toBe(near);
   });
 
+  test('sees through particles beyond the cutting plane', () => {
+    const eye = /** @type {const} */ ([0, 0, -5]);
+    const plane = { normal: /** @type {[number, number, number]} */ ([0, 0, -1]), offset: 0 };
+    const far = pick(columns, [...eye], [0, 0, 1], 0.92, 0, Infinity, plane);
+    expect(columns.positions[3 * (far ?? 0) + 2]).toBeGreaterThan(0.9);
+    const all = { ...plane, offset: -2 };
+    expect(pick(columns, [...eye], [0, 0, 1], 0.92, 0, Infinity, all)).toBe(null);
+  });
+
   test('finds the disc that the definition finds, from anywhere, and in a gap one around it', () => {
     let hits = 0;
     let gaps = 0;

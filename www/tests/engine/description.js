@@ -92,5 +92,8 @@ export const description = {
     diagonal_max: 1e12,
     farthest_corner: 1e3,
     count_room: 1.1,
+    centres_min: 100,
+    centres_max: 800,
+    centres: 200,
   },
 };

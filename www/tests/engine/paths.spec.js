@@ -269,6 +269,49 @@ test.describe('a sampler that fails', () => {
     });
   }
 
+  test('leaves no promise of the console open, whatever it was doing', async ({ page }) => {
+    await open(page);
+    const ends = await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      // So many steps that each phase is seen.
+      const settings = { radius_share: 0.01, relax_steps: 1000 };
+      const ends = [];
+      for (const phase of ['seeding', 'relaxation', 'quality', 'done']) {
+        const promises = [p.run(), p.relax(2), p.set({ settings }), p.stop(), p.run()];
+        await new Promise((resolve) => {
+          let isDone = false;
+          const off = p.engine.progress.subscribe((/** @type {any} */ progress) => {
+            if (isDone || progress.phase !== phase) return;
+            isDone = true;
+            p.debug.panic();
+            setTimeout(() => resolve(off()));
+          });
+        });
+        await Promise.all([...promises, p.run(), p.stop()]);
+        ends.push(p.engine.progress.value.phase);
+      }
+      return ends;
+    });
+    expect(ends).toEqual(['done', 'done', 'done', 'done']);
+  });
+
+  test('by hanging twice on the same input settles what waits for it', async ({ page }) => {
+    await open(page);
+    const kinds = await page.evaluate(async () => {
+      const p = /** @type {any} */ (window).marchingParticles;
+      const kinds = [];
+      for (const fault of [true, true, false]) {
+        if (fault) p.debug.hang();
+        await p.run();
+        kinds.push(p.status().notice?.kind);
+      }
+      return kinds;
+    });
+    // The first time the run is made again; the second time it is given up, until it is asked for.
+    expect(kinds.slice(0, 2)).toEqual(['warn', 'error']);
+    await expectSurface(page);
+  });
+
   test('four times in a minute is left alone until it is asked for again', async ({ page }) => {
     await open(page);
     for (let k = 1; k <= 4; k += 1) {
@@ -283,33 +326,34 @@ test.describe('a sampler that fails', () => {
   });
 });
 
-test('a stop keeps the partial surface, and says so', async ({ page }) => {
+test('a stop keeps the partial surface, says so, and does not wait for the picture', async ({ page }) => {
   await open(page);
   const outcome = /** @type {any} */ (
     await page.evaluate(async () => {
       const p = /** @type {any} */ (window).marchingParticles;
+      let isDrawn = false;
       // So many steps that it does not end before the stop, and few enough particles for a slow machine to draw.
-      void p.set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 1000 } });
+      void p
+        .set({ settings: { max_particles: 1_000_000, radius_share: 0.001, relax_steps: 1000 } })
+        .then(() => (isDrawn = true));
       await new Promise((resolve) => {
+        let isAsked = false;
         const off = p.engine.progress.subscribe((/** @type {any} */ v) => {
-          if (v.phase !== 'generation' || v.particles === 0) return;
-          p.engine.stop();
-          setTimeout(() => resolve(off()));
-        });
-      });
-      await new Promise((resolve) => {
-        const off = p.engine.busy.subscribe((/** @type {boolean} */ busy) => {
-          if (!busy) setTimeout(() => resolve(off()));
+          if (isAsked || v.phase !== 'generation' || v.particles === 0) return;
+          isAsked = true;
+          p.stop().then(resolve);
+          setTimeout(() => off());
         });
       });
       return {
+        isDrawn,
         partial: p.engine.partial.value,
         count: p.particles().count,
         reason: p.engine.progress.value.stop_reason,
       };
     })
   );
-  expect(outcome).toMatchObject({ partial: true, reason: 'cancelled' });
+  expect(outcome).toMatchObject({ isDrawn: false, partial: true, reason: 'cancelled' });
   expect(outcome.count).toBeGreaterThan(0);
 });
 
@@ -369,7 +413,7 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
   await expect.poll(async () => (await status(page)).empty).toBe(true);
   expect((await status(page)).progress.message).toBeTruthy();
   expect((await status(page)).dimmed).toBe(true);
-  // The camera has come to the whole box, in which the last surface is smaller than in a picture of its own.
+  // The camera stays with the last surface.
   expect((await picture(page)).drawn).toBeGreaterThan(0.09);
   expect(await on(page, 'p.particles().count')).toBe(0);
   expect(await on(page, 'p.engine.exportFile("csv").then(() => "written", () => "refused")')).toBe('refused');
@@ -380,8 +424,8 @@ test('a formula without a surface leaves the last one, dimmed, says why, and tak
     expect((await status(page)).dimmed).toBe(true);
   }
   await on(page, '(p.engine.setFormula("x^2 + y^2 + z^2 = 1"), 0)');
-  await expect.poll(async () => (await status(page)).empty).toBe(false);
-  expect((await status(page)).dimmed).toBe(false);
+  await expect.poll(async () => (await status(page)).dimmed).toBe(false);
+  expect((await status(page)).empty).toBe(false);
 });
 
 test('a lost WebGL context is replaced, with the same picture', async ({ page }) => {

@@ -21,6 +21,7 @@ const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
   centres: 200,
   condition: 1e7,
   residual_mean: 0.002,
+  residual_95: 0.006,
   residual_max: 0.01,
   normals: 'given',
   warnings: [],
@@ -75,7 +76,7 @@ async function answers(order) {
 
 describe('solving', () => {
   test('tells its stages and ends with the system, what is known of it and the centres', async () => {
-    const posted = await answers({ model: 'bunny' });
+    const posted = await answers({ model: 'bunny', centres: null });
     expect(posted.filter((m) => m.type === 'progress').map((m) => m.stage)).toEqual([
       'reading',
       'reading',
@@ -89,10 +90,10 @@ describe('solving', () => {
   });
 
   test('of what is no model, no file or broken is refused in the core’s words', async () => {
-    expect((await answers({ model: 'cow' })).at(-1)).toMatchObject({ type: 'refused', kind: 'unknown' });
+    expect((await answers({ model: 'cow', centres: null })).at(-1)).toMatchObject({ type: 'refused', kind: 'unknown' });
     const file = (/** @type {string} */ name, read = async () => new ArrayBuffer(8)) =>
       /** @type {File} */ (/** @type {unknown} */ ({ name, size: 8, arrayBuffer: read }));
-    expect((await answers({ file: file('broken.ply') })).at(-1)).toMatchObject({
+    expect((await answers({ file: file('broken.ply'), centres: null })).at(-1)).toMatchObject({
       type: 'refused',
       message: 'line 17: a number is missing',
       line: 17,
@@ -103,6 +104,7 @@ describe('solving', () => {
           file: file('gone.ply', async () => {
             throw new Error('NotFound');
           }),
+          centres: null,
         })
       ).at(-1),
     ).toMatchObject({ type: 'refused', kind: 'unreadable' });
@@ -158,8 +160,8 @@ describe('the client', () => {
 
   test('keeps what was solved, and ends the worker', async () => {
     const { workers, client, timers } = make();
-    const loading = client.load('bunny', { model: 'bunny' });
-    expect(workers[0].order).toEqual({ model: 'bunny' });
+    const loading = client.load('bunny', { model: 'bunny', centres: null });
+    expect(workers[0].order).toEqual({ model: 'bunny', centres: null });
     workers[0].say({ type: 'solved', solved: solved() });
     expect(await loading).toHaveProperty('solved');
     expect(client.get('bunny')?.info.info.name).toBe('Bunny');
@@ -169,8 +171,8 @@ describe('the client', () => {
 
   test('gives up an order for the next one', async () => {
     const { workers, client } = make();
-    const first = client.load('a', { model: 'a' });
-    const second = client.load('b', { model: 'b' });
+    const first = client.load('a', { model: 'a', centres: null });
+    const second = client.load('b', { model: 'b', centres: null });
     expect(await first).toEqual({ givenUp: true });
     expect(workers.map((w) => w.ended)).toEqual([true, false]);
     client.giveUp();
@@ -180,13 +182,13 @@ describe('the client', () => {
 
   test('names a crash, a silence and a bundle that is not there', async () => {
     const { workers, client, timers } = make();
-    const crash = client.load('a', { model: 'a' });
+    const crash = client.load('a', { model: 'a', centres: null });
     workers[0].say({ type: 'crashed', message: 'unreachable', stack: 'at wasm' });
     expect(await crash).toMatchObject({ refusal: { kind: 'crashed', details: 'unreachable\nat wasm' } });
-    const silent = client.load('a', { model: 'a' });
+    const silent = client.load('a', { model: 'a', centres: null });
     timers.filter(Boolean)[0]();
     expect(await silent).toMatchObject({ refusal: { kind: 'silent' } });
-    const missing = client.load('a', { model: 'a' });
+    const missing = client.load('a', { model: 'a', centres: null });
     workers[2].onerror({ message: '404' });
     expect(await missing).toMatchObject({ refusal: { kind: 'bundle', message: '404' } });
     expect(client.get('a')).toBe(undefined);
@@ -252,6 +254,46 @@ describe('a wish for a model', () => {
     await loading;
     expect(store.state.value.surface).toBe('ellipsoid');
     expect(sample).toHaveBeenCalledTimes(1);
+  });
+
+  test('with another number of centres is met as well, and leaves the number before if it is given up', async () => {
+    const { workers, store, loader, sample, wish } = make();
+    const loading = wish('bunny');
+    workers[0].say({ type: 'solved', solved: solved() });
+    await loading;
+    const ask = (/** @type {number | null} */ centres) => {
+      store.state.value = { ...store.state.value, centres };
+      return loader.load({});
+    };
+    const fewer = ask(120);
+    expect(loader.ready()).toBe(false);
+    expect(loader.present().centres).toBe(null);
+    expect(workers[1].order).toEqual({ model: 'bunny', centres: 120 });
+    loader.cancel();
+    await fewer;
+    expect(store.state.value).toMatchObject({ surface: 'bunny', centres: null });
+    expect(sample).toHaveBeenCalledTimes(1);
+    // The last of two wishes counts, and a wish repeated is one.
+    const [one, two, same] = [ask(130), ask(140), ask(140)];
+    expect(workers).toHaveLength(4);
+    workers[3].say({ type: 'solved', solved: solved() });
+    await Promise.all([one, two, same]);
+    expect(store.state.value.centres).toBe(140);
+    expect(sample).toHaveBeenCalledTimes(2);
+  });
+
+  test('with another number of centres of a file solves the same file', async () => {
+    const { workers, store, loader, sample } = make();
+    const opening = loader.openFile(file('cat.ply'));
+    workers[0].say({ type: 'solved', solved: solved() });
+    await opening;
+    store.state.value = { ...store.state.value, centres: 400 };
+    const loading = loader.load({});
+    expect(workers[1].order).toEqual({ file: file('cat.ply'), centres: 400 });
+    workers[1].say({ type: 'solved', solved: solved() });
+    await loading;
+    expect(sample).toHaveBeenCalledTimes(2);
+    expect(loader.ready()).toBe(true);
   });
 
   test('for another surface in the meantime is the one that counts', async () => {

@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { Columns } from '../../src/engine/columns.js';
+import { ballOf } from '../../src/engine/view/camera.js';
 import { Dimmer } from '../../src/engine/view/dimmer.js';
 import { Scene } from '../../src/engine/view/scene.js';
 
@@ -15,8 +16,9 @@ describe('a fit', () => {
     expect(scene.fitBall(columns, false).radius).toBeLessThan(2 * Math.sqrt(3));
   });
 
-  test('shows the particles with their discs, unless they are those of an earlier field', () => {
+  test('shows the particles with their discs, those of an earlier field with the clip box where it is drawn', () => {
     const scene = new Scene();
+    scene.bounds = { min: [0, 0, 0], max: [3, 1, 1] };
     const columns = new Columns();
     columns.write({
       first: 0,
@@ -28,8 +30,17 @@ describe('a fit', () => {
       parents: new Uint32Array(2),
     });
     expect(scene.fitBall(columns, false)).toEqual({ centre: [0, 0, 0], radius: 1.25 });
+    // With room for the axes around them, or for the clip box, where those are drawn.
+    expect(scene.fitBall(columns, false, true)).toEqual(
+      ballOf({ min: [-1.25, -0.25, -0.25], max: [1.25, 0.25, 0.25] }),
+    );
+    expect(scene.fitBall(columns, true)).toEqual(scene.boxBall(true));
     columns.stale = true;
-    expect(scene.fitBall(columns, false)).toEqual(scene.boxBall(false));
+    expect(scene.fitBall(columns, false)).toEqual({ centre: [0, 0, 0], radius: 1.25 });
+    // From -1.25 to 3 along x.
+    const { centre, radius } = scene.fitBall(columns, true);
+    expect(centre[0]).toBeCloseTo(0.875);
+    expect(radius).toBeCloseTo(Math.hypot(4.25, 1.25, 1.25) / 2);
   });
 
   test('is as small as the particles of a tiny box', () => {

@@ -33,6 +33,16 @@ test('a surface that goes on for ever is said to, and the box can be enlarged an
   await clean();
 });
 
+test('of an endless surface of short period the box holds two periods', async ({ page }) => {
+  const { clean } = await open(page);
+  await typeFormula(page, 'cos(10x)+cos(10y)+cos(10z)');
+  await settled(page);
+  const { max } = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.field.value.bounds);
+  for (const end of max) expect(end).toBeCloseTo(Math.PI / 5, 6);
+  await expect(cut(page)).toContainText('goes on beyond the box');
+  await clean();
+});
+
 test('a formula without a surface is told so, as far as it was searched', async ({ page }) => {
   const { clean } = await open(page);
   await typeFormula(page, 'x^2+y^2+z^2=-1');

@@ -1,6 +1,6 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { FILE_SURFACE } from '../../src/engine/types.js';
-import { factsOf } from '../../src/ui/field/facts.js';
+import { factsOf, fittedOf } from '../../src/ui/field/facts.js';
 import { carriesFiles, describeLoadingError, FORMATS, LIMIT, listOf } from '../../src/ui/field/files.js';
 import { storyOf } from '../../src/ui/field/story.js';
 import { setLocale } from '../../src/ui/format.js';
@@ -13,6 +13,7 @@ const info = /** @type {import('../../src/engine/types.js').ModelInfo} */ ({
   centres: 400,
   condition: 1.13e7,
   residual_mean: 0.00221,
+  residual_95: 0.00641,
   residual_max: 0.0134,
   normals: 'from_mesh',
   warnings: [],
@@ -53,14 +54,14 @@ describe('a file of points', () => {
 describe('a model from points', () => {
   it('tells how many points it read and fitted, and how well', () => {
     expect(factsOf(info).map(({ label, value, unit }) => `${label} ${value}${unit}`)).toEqual([
-      'Points read 5,205',
-      'Points fitted 400',
       'Normals from the mesh',
       'Condition number 1.1·10⁷',
       'Mean distance 0.22%',
+      '95 % are nearer than 0.64%',
       'Largest distance 1.3%',
     ]);
-    expect(factsOf({ ...info, points: 200, centres: 200 })[0]).toMatchObject({ label: 'Points', value: '200' });
+    expect(fittedOf(info)).toContain('f interpolates 400 of 5,205 points');
+    expect(fittedOf({ ...info, points: 200, centres: 200 })).toContain('f interpolates all 200 points');
   });
 
   it("has a story and a credit, as a surface has; a file has its name, and a formula of one's own neither", () => {
@@ -74,7 +75,11 @@ describe('a model from points', () => {
       text: 'It hops.',
       credit: 'Stanford',
     });
-    expect(storyOf(description, FILE_SURFACE, info)).toMatchObject({ name: 'dragon.ply', facts: '5,205 points' });
+    expect(storyOf(description, FILE_SURFACE, info)).toMatchObject({
+      name: 'dragon.ply',
+      facts: '5,205 points',
+      text: 'The surface through 400 of the points of this file.',
+    });
     expect(storyOf(description, 'sphere', null)).toMatchObject({ facts: 'Degree 2 · genus 0', credit: 'Archimedes' });
     expect(storyOf(description, null, null).name).toBe('Your own formula');
   });

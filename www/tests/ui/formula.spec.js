@@ -85,26 +85,60 @@ for (const phase of ['relaxation', 'quality']) {
   });
 }
 
-test('where a formula on its way has no surface, the camera comes to the whole box, with the last surface in it', async ({
+test('where a formula on its way has no surface, the camera stays with the last one, and comes to the next', async ({
   page,
 }) => {
   await open(page, { width: 390, height: 844 });
-  await typeFormula(page, 'x^2');
-  await settled(page);
-  const old = (await state(page)).view.camera;
-  await typeFormula(page, 'x^2 + 1');
-  await expect.poll(async () => (await state(page)).view.camera.distance).not.toBe(old.distance);
+  // The longest pause in typing after which the camera moves, and what it takes to move.
+  const pause = () => page.waitForTimeout(1200);
+  await pause();
   await atRest(page);
   const { camera } = (await state(page)).view;
-  // The box of the ellipsoid, as wide as its corners reach.
-  const { min, max } = await page.evaluate(
-    () => /** @type {any} */ (window).marchingParticles.engine.field.value.bounds,
-  );
-  const radius = Math.hypot(...max.map((/** @type {number} */ v, /** @type {number} */ k) => v - min[k])) / 2;
-  expect(camera.distance).toBeGreaterThan(radius / Math.sin(Math.PI / 12));
-  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.columns.count)).toBeGreaterThan(
-    0,
-  );
+  for (const text of ['x^2 + 1', 'x^2 + y^2 + z^2 = -9']) {
+    await typeFormula(page, text);
+    await expect(page.locator('.empty')).toBeVisible();
+    await pause();
+    await atRest(page);
+    expect((await state(page)).view.camera).toEqual(camera);
+  }
+  await typeFormula(page, 'x^2 + y^2 + z^2 = 9');
+  await settled(page);
+  await expect.poll(async () => (await state(page)).view.camera.distance).toBeGreaterThan(1.5 * camera.distance);
+});
+
+test('Fit shows the last surface together with the box in which there is none', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('box_mode', 'fixed'));
+  await settled(page);
+  const { distance } = (await state(page)).view.camera;
+  await typeFormula(page, 'x^2 + y^2 + (z - 60)^2 = 1');
+  await expect(page.locator('.empty')).toBeVisible();
+  await page.locator('#canvas-host').focus();
+  await page.keyboard.press('f');
+  await atRest(page);
+  expect((await state(page)).view.camera.distance).toBeGreaterThan(distance);
+});
+
+test('beside a mistake the typeset formula is said to be the last one that could be read', async ({ page }) => {
+  const { clean } = await open(page);
+  const said = page.getByText('The last formula that could be read:');
+  const preview = page.getByRole('group', { name: 'The formula as mathematics' });
+  await expect(said).toBeHidden();
+  await typeFormula(page, 'x^2 + y^2 +');
+  await expect(said).toBeVisible();
+  await expect(preview).toHaveAccessibleDescription('The last formula that could be read:');
+  await typeFormula(page, 'x^2 + y^2 + z^2 = 1');
+  await expect(said).toBeHidden();
+  await expect(preview).toHaveAccessibleDescription('');
+  await clean();
+});
+
+test('in an own formula a parameter is no longer what it was in the surface of the gallery', async ({ page }) => {
+  await open(page);
+  await expect(page.getByRole('slider', { name: 'Semi-axis along x a' })).toBeVisible();
+  await typeFormula(page, 'x^2 + y^2 + a z^2 = 1');
+  await expect(page.getByRole('slider', { name: 'Parameter a' })).toBeVisible();
+  await expect(page.getByRole('slider', { name: /Semi-axis/ })).toHaveCount(0);
 });
 
 test('a function typed letter by letter makes no sliders of its beginnings, and leaves the figures until it is there', async ({
@@ -208,7 +242,7 @@ test('a surface of the gallery is chosen by a press and by the arrow keys', asyn
 
 test('the clip box is edited axis by axis and taken back', async ({ page }) => {
   await open(page);
-  await page.locator('.clip summary').click();
+  await page.locator('.clip summary', { hasText: 'Clip box' }).click();
   const high = page.getByRole('spinbutton', { name: 'x to' });
   await high.fill('0.25');
   await high.press('Tab');

@@ -61,18 +61,7 @@ export async function atRest(page) {
     return !engine.busy.value && engine.reveal.value === null;
   });
   await page.waitForFunction(() => document.getAnimations().every(({ playState }) => playState !== 'running'));
-  // The state follows the camera with a delay: two looks further apart than that see the same.
-  await page.waitForFunction(
-    () => {
-      const store = /** @type {any} */ (window);
-      const now = JSON.stringify(store.marchingParticles.state.view.camera);
-      const same = store.lastCamera === now;
-      store.lastCamera = now;
-      return same;
-    },
-    undefined,
-    { polling: 300 },
-  );
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
 }
 
 /** What axe has to say; nothing is scanned half-way through a fade. @param {import('@playwright/test').Page} page */

@@ -8,6 +8,7 @@ const shape = (change) => ({
   parameters: {},
   declared: [],
   bounds: null,
+  plane: null,
   settings: {},
   ...change,
 });
@@ -70,6 +71,7 @@ describe('the history', () => {
   it('knows the one thing in which two states differ', () => {
     expect(difference(shape(), shape({ formula: 'y' }))).toBe('formula');
     expect(difference(shape(), shape({ settings: { count: 3 } }))).toBe('settings.count');
+    expect(difference(shape({ plane: { normal: [0, 0, 1], offset: 0 } }), shape())).toBe('plane');
     expect(difference(shape({ parameters: { a: 1 } }), shape())).toBe('parameters.a');
     expect(difference(shape(), shape({ formula: 'y', parameters: { a: 1 } }))).toBeNull();
     expect(difference(shape(), shape())).toBeNull();

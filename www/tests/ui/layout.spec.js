@@ -231,11 +231,20 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await clean();
 });
 
-test('a dark page is dark before the sampler has come', async ({ page }) => {
+test('the picture of a dark page is dark from the first frame, also where the sampler does not come', async ({
+  page,
+}) => {
   await page.emulateMedia({ colorScheme: 'dark' });
   await page.setViewportSize({ width: 390, height: 844 });
-  await page.route('**/core_bg*.wasm', () => {});
+  /** @type {() => Promise<void>} */
+  let refuse = async () => {};
+  await page.route('**/core_bg*.wasm', (route) => {
+    refuse = () => route.abort();
+  });
   await page.goto('./?backend=canvas2d');
+  await page.waitForFunction(() => 'marchingParticles' in window);
+  // The picture starts after the core, also when that does not come.
+  await refuse();
   await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.debug.counts().frames > 0);
   const brightest = await page.evaluate(async () =>
     Math.max(
@@ -259,3 +268,81 @@ test('the theme follows the system and can be switched', async ({ page }) => {
   await page.getByRole('button', { name: 'System' }).click();
   expect(await ground()).not.toBe(dark);
 });
+
+test('on a phone formula and sliders come before the story, and the list of keys is in reach', async ({ page }) => {
+  const { clean } = await open(page, { width: 390, height: 844 });
+  const top = async (/** @type {string} */ part) => (await page.locator(part).first().boundingBox())?.y ?? NaN;
+  expect(await top('.formula')).toBeLessThan(await top('.story'));
+  expect(await top('.parameters')).toBeLessThan(await top('.story'));
+  expect(await top('.story')).toBeLessThan(await top('.clip'));
+  await page.getByRole('button', { name: 'Keyboard shortcuts' }).click();
+  await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();
+  await clean();
+});
+
+test('the page says in one line what it is', async ({ page }) => {
+  for (const [width, height] of /** @type {const} */ ([
+    [1440, 900],
+    [320, 568],
+  ])) {
+    const { clean } = await open(page, { width, height });
+    const line = page.getByText('Even particles on any surface f(x, y, z) = 0');
+    await expect(line).toBeVisible();
+    expect((await line.boundingBox())?.height).toBeLessThan(24);
+    await clean();
+  }
+});
+
+test('in a large window everything grows with it, in a usual one it has the size that the user has set', async ({
+  page,
+}) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  const sizes = () =>
+    page.evaluate(() => {
+      const [field, levels, bar] = ['#panel-field', '#panel-levels', '#panel-sampling'].map((part) =>
+        /** @type {Element} */ (document.querySelector(part)).getBoundingClientRect(),
+      );
+      return {
+        type: parseFloat(getComputedStyle(document.documentElement).fontSize),
+        field: field.width,
+        levels: levels.height,
+        bar: bar.width,
+      };
+    });
+  const usual = await sizes();
+  expect(usual.type).toBe(16);
+  for (const [width, height] of /** @type {const} */ ([
+    [1920, 1080],
+    [3440, 1080],
+  ])) {
+    await page.setViewportSize({ width, height });
+    expect((await sizes()).type).toBe(16);
+  }
+  await page.setViewportSize({ width: 3840, height: 2160 });
+  const large = await sizes();
+  for (const part of /** @type {const} */ (['type', 'field', 'levels', 'bar']))
+    expect(large[part], part).toBeGreaterThan(1.7 * usual[part]);
+  await clean();
+});
+
+for (const [width, height] of /** @type {const} */ ([
+  [1440, 900],
+  [390, 844],
+])) {
+  test(`what is said where there is no surface leaves the box whole, at ${width} by ${height}`, async ({ page }) => {
+    const wanted = { formula: 'x^2 + (y - 30)^2 + z^2 = 1', settings: { box_mode: 'fixed' } };
+    await open(page, { width, height, hash: `#v1.j.${Buffer.from(JSON.stringify(wanted)).toString('base64url')}` });
+    const said = page.locator('.empty');
+    await expect(said).toBeVisible();
+    await atRest(page);
+    const [lowest, top] = await page.evaluate(() => {
+      const { engine } = /** @type {any} */ (window).marchingParticles;
+      const { min, max } = engine.field.value.bounds;
+      const corners = Array.from({ length: 8 }, (_, k) => [0, 1, 2].map((axis) => ((k >> axis) & 1 ? max : min)[axis]));
+      const said = /** @type {Element} */ (document.querySelector('.empty')).getBoundingClientRect();
+      return [Math.max(...corners.map((corner) => engine.project(corner).y)), said.top];
+    });
+    expect(lowest).toBeGreaterThan(100);
+    expect(lowest).toBeLessThan(top);
+  });
+}

@@ -153,8 +153,9 @@ for (const [width, height] of /** @type {const} */ ([
     await expect(page.locator('.story')).toContainText(model.credit);
     await expect(page.locator('.story')).toContainText(`${model.points} points`);
     const facts = page.locator('.facts');
-    for (const word of ['Points', 'Normals', 'Condition number', 'Mean distance', 'Largest distance'])
+    for (const word of ['Normals', 'Condition number', 'Mean distance', '95 % are nearer', 'Largest distance'])
       await expect(facts).toContainText(word);
+    await expect(page.locator('.model')).toContainText(`f interpolates all ${model.points} points`);
     await expect(page.getByRole('textbox', { name: 'Formula' })).toBeHidden();
     const points = page.getByRole('button', { name: 'Show points' });
     await expect(points).toHaveAttribute('aria-pressed', 'true');
@@ -171,6 +172,46 @@ for (const [width, height] of /** @type {const} */ ([
     await clean();
   });
 }
+
+test('another number of points is fitted on request, kept in links, and taken back', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await dropped(page, { name: 'ball.ply', text: spherePly(900) });
+  await expect(page.getByRole('heading', { name: 'ball.ply' })).toBeVisible();
+  await settled(page);
+  const fitted = page.locator('.model > .quiet');
+  await expect(fitted).toContainText('f interpolates 200 of 900 points');
+  await expect(page.locator('.story')).toContainText('The surface through 200 of the points of this file.');
+  const slider = page.getByRole('slider', { name: 'Points fitted' });
+  const number = page.getByRole('spinbutton', { name: 'Points fitted, number' });
+  await number.fill('350');
+  await number.press('Enter');
+  await expect(fitted).toContainText('f interpolates 350 of 900 points');
+  await settled(page);
+  expect((await state(page)).centres).toBe(350);
+  await slider.press('Home');
+  await expect(fitted).toContainText('f interpolates 100 of 900 points');
+  await page.getByRole('button', { name: 'Undo', exact: true }).click();
+  await expect(fitted).toContainText('f interpolates 350 of 900 points');
+  await settled(page);
+  // Of a model there are no more than it has, and a link holds the number.
+  await page.getByRole('button', { name: 'Points', exact: true }).click();
+  await page.locator('.tile[data-surface="bunny"]').click();
+  await expect(fitted).toContainText('f interpolates all 200 points');
+  await settled(page);
+  expect(await number.getAttribute('max')).toBe('200');
+  await number.fill('120');
+  await number.press('Enter');
+  await expect(fitted).toContainText('f interpolates 120 of 200 points');
+  await settled(page);
+  await expect
+    .poll(() => page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl()))
+    .toContain('#v1');
+  await page.waitForFunction(() => location.hash !== '');
+  await page.reload();
+  await settled(page);
+  await expect(fitted).toContainText('f interpolates 120 of 200 points');
+  await clean();
+});
 
 test('a dropped file becomes the surface, keeps a tile of its own, and is there again among the points', async ({
   page,

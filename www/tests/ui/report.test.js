@@ -1,6 +1,7 @@
 import { beforeAll, describe, expect, it } from 'vitest';
 import { setLocale } from '../../src/ui/format.js';
 import { coarsen, overDiameters, trim } from '../../src/ui/report/bins.js';
+import { listOf, placeOf } from '../../src/ui/report/places.js';
 import {
   compare,
   figuresOf,
@@ -30,7 +31,50 @@ const row = (change) => ({
   ideal: '100',
   better: 'higher',
   help: '',
+  places: null,
   ...change,
+});
+
+describe('the places of a figure', () => {
+  const columns = /** @type {any} */ ({
+    count: 3,
+    positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 2, 0),
+    normals: Float32Array.of(0, 0, 1, 1, 0, 0, 0, 1, 0),
+    radii: Float32Array.of(0.5, 0.25, 0.5),
+  });
+  const report = /** @type {any} */ ({
+    places: {
+      pairs: [
+        { particles: [1, 2], ratio: 0.5 },
+        { particles: [0, 2], ratio: 0.7 },
+      ],
+      holes: [{ position: [0, 1.75, 0], radius: 0.75, ratio: 1.5 }],
+    },
+  });
+
+  it('are two particles, or a hole seen from outside', () => {
+    expect(placeOf(listOf(report, 'places.pairs'), 0, columns)).toEqual({
+      places: [
+        [1, 0, 0],
+        [0, 2, 0],
+      ],
+      radius: 0.5,
+      normal: [1, 0, 0],
+      text: '0.500 · 1 of 2',
+    });
+    expect(placeOf(listOf(report, 'places.holes'), 0, columns)).toEqual({
+      places: [[0, 1.75, 0]],
+      radius: 0.75,
+      normal: [0, 1, 0],
+      text: '1.50',
+    });
+  });
+
+  it('are none without a report, and for other figures', () => {
+    expect(listOf(null, 'places.pairs')).toEqual([]);
+    expect(listOf(report, null)).toEqual([]);
+    expect(listOf(report, 'places.none')).toEqual([]);
+  });
 });
 
 describe('the report', () => {
@@ -77,7 +121,7 @@ describe('the report', () => {
     expect(writeFigure(row({ unit: '', digits: 6 }), 0)).toBe('0');
     expect(writeFigure(row(), null)).toBe('–');
     expect(writeFigure(row(), 'complete')).toBe('complete');
-    expect(writeFigure(row(), 'searched')).toBe('by dense search');
+    expect(writeFigure(row(), 'searched')).toBe('by search');
   });
 
   it('writes a range as its ends, or as one figure', () => {

@@ -208,9 +208,10 @@ test('the particles and the picture can be taken away', async ({ page }) => {
     .split('\n')
     .filter((line) => !line.startsWith('#'));
   expect(lines.length).toBe(count + 1);
+  await page.getByRole('button', { name: 'Save picture' }).click();
   const [png] = await Promise.all([
     page.waitForEvent('download'),
-    page.getByRole('button', { name: 'Save picture' }).click(),
+    page.getByRole('button', { name: 'Save PNG' }).click(),
   ]);
   expect((await readFile(await png.path())).subarray(1, 4).toString()).toBe('PNG');
 });

@@ -236,8 +236,6 @@ pub(crate) struct Ring {
     closed: Vec<(f32, f32)>,
     pub(crate) arcs: Vec<Arc>,
     pub(crate) children: Vec<f32>,
-    /// Distance that was added between two children of the arc, in radians; negative where they are pressed together.
-    slack: f32,
 }
 
 impl Ring {
@@ -448,27 +446,15 @@ impl Ring {
         if arc.whole {
             // The last one stands where the first one does.
             self.children.pop();
-            self.slack = 0.0;
             let stretch = TAU / (at - arc.from);
             self.children.iter_mut().for_each(|angle| *angle *= stretch);
         } else {
             let slack = (arc.to - at) / (count + 1) as f32;
-            self.slack = slack;
             for (k, angle) in self.children.iter_mut().enumerate() {
                 *angle += slack * (k + 1) as f32;
             }
         }
         &self.children
-    }
-
-    /// Returns φ and τ of child `k`, of the given radius, in an arc that was spread: τ is the angle that the children before it
-    /// left.
-    pub(crate) fn room(&self, frame: &ParentFrame, arc: Arc, k: usize, radius: f32) -> Room {
-        let phi = taken(frame.radius, radius);
-        if arc.whole {
-            return Room { phi, tau: TAU - self.children[k] };
-        }
-        Room { phi, tau: arc.to - (self.children[k] - self.slack * (k + 1) as f32) + phi }
     }
 
     /// Returns two limits that the neighbours set to a particle at `offset` with the radius `radius`: the least distance beyond

@@ -17,22 +17,23 @@ mod prediction;
 mod pushing;
 mod vicinity;
 
+use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
+use crate::sampler::discovery::sheets::{SheetRule, lift};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
 use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shape_in};
 use crate::sampler::front::adaptive::placement::{DirectLanding, DirectPlacement, Proposal, SurfacePoint};
-use crate::sampler::front::adaptive::vicinity::{Vicinity, note_parent};
+use crate::sampler::front::adaptive::vicinity::Vicinity;
 use crate::sampler::front::level::{
     FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, is_same_sheet,
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
-use crate::sampler::projection::{Landing, Tolerance, tolerance};
+use crate::sampler::projection::{Landing, Projector, Tolerance, tolerance};
 use crate::sampler::settings::Placement;
 use crate::spatial::Neighbour;
-use crate::trace::{Step, Trace};
 use core::ops::Range;
 use glam::{Vec2, Vec3};
 
@@ -64,8 +65,6 @@ const MAX_FILLS: u32 = 4;
 struct AdaptiveChild {
     proposal: Proposal,
     slot: u32,
-    /// Number among the children of its parent.
-    number: u32,
     handle: GridHandle,
     /// Its parent's number in the level.
     parent: u32,
@@ -85,6 +84,7 @@ struct Rules {
     reach: f32,
     resolution: f32,
     gradient_scale: f32,
+    sheets: SheetRule,
 }
 
 impl Rules {
@@ -114,8 +114,6 @@ pub(crate) struct AdaptiveFront {
     /// Rounds of filling so far, and particles placed in them.
     fills: u32,
     filled: u64,
-    /// What is noted of a particle that is followed.
-    pub(crate) trace: Trace,
 }
 
 impl AdaptiveFront {
@@ -128,6 +126,7 @@ impl AdaptiveFront {
                 reach: REACH,
                 resolution: 0.0,
                 gradient_scale: 1.0,
+                sheets: SheetRule::default(),
             },
             level: Level::new(Bounds::cube(1.0), 0),
             parents: Parents::default(),
@@ -141,12 +140,12 @@ impl AdaptiveFront {
             landing: Vec::new(),
             fills: 0,
             filled: 0,
-            trace: Trace::default(),
         }
     }
 
     /// Makes a child a particle at its final place, unless another particle is in its way.
-    fn settle_at(&mut self, particles: &mut Particles, child: usize, spot: SurfacePoint) -> SlotFate {
+    fn settle_at(&mut self, context: &mut FrontContext, child: usize, spot: SurfacePoint) -> SlotFate {
+        let FrontContext { field, projector, particles, .. } = context;
         let AdaptiveChild { handle, parent, clearance, .. } = self.children.list[child];
         let parent = self.parents.level[parent as usize];
         let provisional = self.level.first_child + child;
@@ -154,7 +153,8 @@ impl AdaptiveFront {
         let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
         let room = clearance - moved - self.children.drift - self.rules.match_tolerance * grown;
         let is_clear = room > 0.0;
-        if !is_clear && self.collides(particles, spot.position, spot.normal, spot.radius) {
+        if !is_clear && self.collides(*field, projector, particles, (spot.position, spot.normal, spot.radius))
+        {
             self.parents.note_seam(parent);
             return SlotFate::Matched;
         }
@@ -178,7 +178,14 @@ impl AdaptiveFront {
     }
 
     /// Whether a settled particle of the same sheet is nearer than the match tolerance allows.
-    fn collides(&mut self, particles: &Particles, position: Vec3, normal: Vec3, radius: f32) -> bool {
+    fn collides(
+        &mut self,
+        field: &mut dyn Field,
+        projector: &mut Projector,
+        particles: &Particles,
+        (position, normal, radius): (Vec3, Vec3, f32),
+    ) -> bool {
+        let sheets = self.rules.sheets;
         let share = self.rules.match_tolerance;
         self.grids.gather(position, |largest| share * (radius + largest), &mut self.found);
         let settled = self.level.settled;
@@ -189,11 +196,38 @@ impl AdaptiveFront {
             j < settled
                 && near.distance_sq <= limit * limit
                 && is_same_sheet_by_size(near, normal, particles.normal[j], both)
+                && (!sheets.is_fine()
+                    || is_on_sheet(
+                        sheets,
+                        field,
+                        projector,
+                        (position, normal),
+                        near.offset,
+                        particles.normal[j],
+                    ))
         })
+    }
+
+    /// Removes the particles on another sheet that faces the same way as `parent` from those found around it.
+    fn drop_strangers(&self, context: &mut FrontContext, parent: usize, found: &mut Vec<Neighbour>) {
+        let FrontContext { field, projector, particles, .. } = context;
+        let from = (particles.position[parent], particles.normal[parent]);
+        let (sheets, settled) = (self.rules.sheets, self.level.settled);
+        found.retain(|near| {
+            let (j, other) = (near.index as usize, particles.normal[near.index as usize]);
+            j == parent
+                || j >= settled
+                || other.dot(from.1) <= 0.0
+                || is_on_sheet(sheets, *field, projector, from, near.offset, other)
+        });
     }
 }
 
 impl LevelFront for AdaptiveFront {
+    fn rule(&self) -> SheetRule {
+        self.rules.sheets
+    }
+
     fn reset(&mut self, setup: &FrontSetup) {
         let &FrontSetup { settings, bounds, survey, radii, .. } = setup;
         let grading = settings.grading as f32;
@@ -206,6 +240,7 @@ impl LevelFront for AdaptiveFront {
             reach: REACH.max(LISTED * (1.0 + ratio)),
             resolution: survey.resolution,
             gradient_scale: survey.gradient_scale,
+            sheets: setup.rule(radii),
         };
         self.level = Level::new(*bounds, settings.max_particles as usize);
         self.parents.clear();
@@ -213,7 +248,6 @@ impl LevelFront for AdaptiveFront {
         self.growth = 0.0;
         self.grids.reset(radii[0], radii[1], self.rules.reach);
         (self.fills, self.filled) = (0, 0);
-        self.trace.clear();
     }
 
     fn release(&mut self) {
@@ -246,10 +280,15 @@ impl LevelFront for AdaptiveFront {
         let reach = self.rules.reach * radius;
         let mut found = core::mem::take(&mut self.found);
         self.grids.gather(particles.position[parent], |_| reach, &mut found);
+        let is_fine = self.rules.sheets.is_fine();
+        if is_fine {
+            self.drop_strangers(context, parent, &mut found);
+        }
+        let particles = &*context.particles;
         // Every particle gets its neighbour list when it places its children for the first time.
         let again = context.neighbours.len() > parent;
         let alone_on_sheet =
-            self.around.read(&found, context.neighbours, particles, parent, self.level.settled);
+            self.around.read(&found, context.neighbours, particles, parent, self.level.settled) && !is_fine;
 
         let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent);
         let mut frame = ParentFrame { radius, u, w, n, shape: [0.0; 3], slope: Vec2::ZERO };
@@ -261,14 +300,11 @@ impl LevelFront for AdaptiveFront {
         }
         self.parents.level[which].has_placed = true;
         self.around.ring.find_arcs(&frame);
-        if self.trace.follows(particle) {
-            note_parent(&mut self.trace, &found, particles, parent, &frame);
-        }
         self.found = found;
         self.around.begin_circle(!again);
         match self.rules.method {
             Placement::Direct => {
-                self.predict_children(context.particles, parent, &frame, alone_on_sheet);
+                self.predict_children(&frame, alone_on_sheet);
             }
             Placement::Faithful => self.push_children(context, parent, &frame),
         }
@@ -282,8 +318,16 @@ impl LevelFront for AdaptiveFront {
         let (rules, sizing) = (&self.rules, context.sizing());
         let tolerance = |radius| rules.tolerance(radius);
         self.solver.land(context.field, context.projector, sizing, problems, &tolerance, solutions);
-        for (k, landing) in solutions.iter().enumerate() {
+        for (k, landing) in solutions.iter_mut().enumerate() {
             if let DirectLanding::On(spot) = landing {
+                let circle = &problems[k].circle;
+                let (from, offset) = ((circle.centre, circle.normal), spot.position - circle.centre);
+                if rules.sheets.is_fine()
+                    && !is_on_sheet(rules.sheets, context.field, context.projector, from, offset, spot.normal)
+                {
+                    *landing = DirectLanding::NotConverged;
+                    continue;
+                }
                 let provisional = self.level.first_child + children.start + k;
                 let moved = (spot.position - context.particles.position[provisional]).length();
                 *drift = drift.max(moved);
@@ -294,29 +338,19 @@ impl LevelFront for AdaptiveFront {
     }
 
     fn settle_child(&mut self, context: &mut FrontContext, child: usize) {
-        let particles = &mut *context.particles;
-        let AdaptiveChild { slot, number, handle, .. } = self.children.list[child];
-        let parent = particles.parent[self.level.first_child + child];
-        let landing = self.children.landings[child];
-        let fate = match landing {
+        let AdaptiveChild { slot, handle, .. } = self.children.list[child];
+        let parent = context.particles.parent[self.level.first_child + child];
+        let fate = match self.children.landings[child] {
             DirectLanding::NotConverged => SlotFate::NotConverged,
             DirectLanding::Undefined => SlotFate::Undefined,
             DirectLanding::On(spot) if !self.level.bounds.contains(spot.position) => SlotFate::Outside,
-            DirectLanding::On(spot) => self.settle_at(particles, child, spot),
+            DirectLanding::On(spot) => self.settle_at(context, child, spot),
         };
         if fate != SlotFate::Added {
             self.grids.remove(handle);
         }
-        if self.trace.follows(parent) {
-            if let DirectLanding::On(SurfacePoint { position, normal, radius, .. }) = landing {
-                self.trace.note_child(parent, number, || Step::Landed { position, normal, radius });
-            }
-            let particle =
-                if fate == SlotFate::Added { self.level.settled as u32 - 1 } else { Particles::NO_PARENT };
-            self.trace.note_child(parent, number, || Step::Fate { fate, particle });
-        }
         self.level.fates.count(fate);
-        particles.slots[parent as usize].set(slot as usize, fate);
+        context.particles.slots[parent as usize].set(slot as usize, fate);
     }
 
     fn end_level(&mut self) {
@@ -362,6 +396,11 @@ impl LevelFront for AdaptiveFront {
         self.parents.truncate(seed);
     }
 
+    fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour] {
+        self.grids.gather(position, |_| distance, &mut self.found);
+        &self.found
+    }
+
     fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour> {
         self.grids.gather(position, |largest| UNCOVERED * largest, &mut self.found);
         self.found.retain(|near| {
@@ -393,6 +432,20 @@ impl LevelFront for AdaptiveFront {
     fn filled(&self) -> u64 {
         self.filled
     }
+}
+
+/// Whether a particle at `offset` with the normal `other` lies on the sheet of the point `from`, which faces the same way: it is not
+/// doubtful, or the field between them says so.
+fn is_on_sheet(
+    sheets: SheetRule,
+    field: &mut dyn Field,
+    projector: &mut Projector,
+    from: (Vec3, Vec3),
+    offset: Vec3,
+    other: Vec3,
+) -> bool {
+    lift(offset, from.1, other) <= sheets.suspicious(0.0)
+        || sheets.is_one_sheet(field, projector, from, offset, other)
 }
 
 /// Whether a particle with the normal `other` belongs to the sheet of a point with the normal `normal` from which it was

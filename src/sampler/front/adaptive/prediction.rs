@@ -3,23 +3,16 @@
 
 use super::{AdaptiveChild, AdaptiveFront};
 use crate::particles::{Particles, SlotFate};
-use crate::sampler::front::adaptive::arcs::{Arc, ParentFrame, PredictedChild, Room};
+use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild};
 use crate::sampler::front::adaptive::placement::Proposal;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
 use crate::sampler::front::level::{MAX_SLOTS, initial_slots};
 use crate::sampler::projection::Circle;
-use crate::trace::Step;
 use core::f32::consts::TAU;
 
 impl AdaptiveFront {
     /// Spreads children over the free arcs.
-    pub(super) fn predict_children(
-        &mut self,
-        particles: &Particles,
-        parent: usize,
-        frame: &ParentFrame,
-        alone_on_sheet: bool,
-    ) {
+    pub(super) fn predict_children(&mut self, frame: &ParentFrame, alone_on_sheet: bool) {
         for k in 0..self.around.ring.arcs.len() {
             let arc = self.around.ring.arcs[k];
             let count = self.around.ring.spread(frame, arc).len();
@@ -33,14 +26,11 @@ impl AdaptiveFront {
                 let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
                 let fits = room >= 0.0;
                 let kind = if fits {
-                    OccupantKind::Child(child, self.around.born, clearance)
+                    OccupantKind::Child(child, clearance)
                 } else {
                     OccupantKind::Known(SlotFate::Matched)
                 };
                 self.around.enter(Occupant { angle: angle + turn, kind });
-                if self.trace.follows(parent as u32) {
-                    self.note_prediction(particles, parent, frame, (arc, m), &child, fits);
-                }
                 self.around.born += 1;
                 if fits {
                     self.around.ring.push(child.offset, child.radius, false);
@@ -64,27 +54,6 @@ impl AdaptiveFront {
         }
         child.largest = largest.min(frame.radius + self.rules.grading * child.distance);
         (child, room)
-    }
-
-    /// Notes a child of a parent that is followed: child `m` of the arc.
-    fn note_prediction(
-        &mut self,
-        particles: &Particles,
-        parent: usize,
-        frame: &ParentFrame,
-        (arc, m): (Arc, usize),
-        child: &PredictedChild,
-        fits: bool,
-    ) {
-        let (id, number, radius) = (parent as u32, self.around.born, child.radius);
-        let position = particles.position[parent] + child.offset;
-        let Room { phi, tau } = self.around.ring.room(frame, arc, m, radius);
-        self.trace.note_child(id, number, || Step::Start { position, radius });
-        self.trace.note_child(id, number, || Step::Room { phi_rad: phi, tau_rad: tau });
-        if !fits {
-            let (fate, particle) = (SlotFate::Matched, Particles::NO_PARENT);
-            self.trace.note_child(id, number, || Step::Fate { fate, particle });
-        }
     }
 
     /// Gives every occupant of the circle around parent `which` of the level a slot, and the children a provisional place. A
@@ -122,8 +91,8 @@ impl AdaptiveFront {
                     self.level.capped = true;
                     SlotFate::Capped
                 }
-                OccupantKind::Child(child, number, clearance) => {
-                    let child = (&child, number, clearance);
+                OccupantKind::Child(child, clearance) => {
+                    let child = (&child, clearance);
                     self.enter_child(particles, which, slot as u32, child);
                     SlotFate::Open
                 }
@@ -140,7 +109,7 @@ impl AdaptiveFront {
         particles: &mut Particles,
         which: usize,
         slot: u32,
-        (child, number, clearance): (&PredictedChild, u32, f32),
+        (child, clearance): (&PredictedChild, f32),
     ) {
         let parent = self.parents.level[which].particle as usize;
         let index = particles.len() as u32;
@@ -154,7 +123,6 @@ impl AdaptiveFront {
         self.children.list.push(AdaptiveChild {
             proposal: Proposal { circle, parent_radius, slope, largest },
             slot,
-            number,
             handle: self.grids.insert(position, child.radius, index),
             parent: which as u32,
             clearance,

@@ -14,7 +14,6 @@ use crate::sampler::front::adaptive::parents::LocalShape;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
 use crate::sampler::front::level::{FrontContext, MAX_SLOTS, initial_slots};
 use crate::sampler::projection::{Circle, Landing};
-use crate::trace::Step;
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
 
@@ -78,15 +77,9 @@ impl AdaptiveFront {
                 }
                 _ => Room::whole(frame.radius, child.radius),
             };
-            let id = parent as u32;
-            self.trace
-                .note_child(id, self.around.born, || Step::Room { phi_rad: room.phi, tau_rad: room.tau });
             let fits = room.tau >= FIT * room.phi;
             let fate =
                 if fits { self.settle_pushed(context, parent, frame, child) } else { SlotFate::Matched };
-            let particle =
-                if fate == SlotFate::Added { self.level.settled as u32 - 1 } else { Particles::NO_PARENT };
-            self.trace.note_child(id, self.around.born, || Step::Fate { fate, particle });
             self.around.born += 1;
             let around = if angle >= TAU { angle - TAU } else { angle };
             self.around.enter(Occupant { angle: around, kind: OccupantKind::Known(fate) });
@@ -107,7 +100,6 @@ impl AdaptiveFront {
         frame: &ParentFrame,
         last: Option<Disc>,
     ) -> Disc {
-        let id = parent as u32;
         let p = context.particles.position[parent];
         let place = |c: Vec2| p + frame.u * c.x + frame.w * c.y;
         // Start, Fig. 7c: I lies on the circle of the last child, square to the way there; s on the circle of the parent.
@@ -119,10 +111,6 @@ impl AdaptiveFront {
         };
         let mut child =
             Disc { centre: way * frame.radius, radius: self.radius_at(context, place(way * frame.radius)) };
-        self.trace.note_child(id, self.around.born, || Step::Start {
-            position: place(child.centre),
-            radius: child.radius,
-        });
         // Along V̂ until parent and child touch, Fig. 7b and 7e.
         for _ in 0..MAX_PUSHES {
             if child.centre.length() >= frame.radius + child.radius {
@@ -130,10 +118,6 @@ impl AdaptiveFront {
             }
             child.centre += way * (PUSH * frame.radius);
             child.radius = self.radius_at(context, place(child.centre));
-            self.trace.note_child(id, self.around.born, || Step::Push {
-                position: place(child.centre),
-                radius: child.radius,
-            });
         }
         // Along the circle until it overlaps least, Fig. 7f.
         let mut overlap = self.overlap(frame, child);
@@ -151,11 +135,6 @@ impl AdaptiveFront {
                 break;
             }
             (child, overlap, angle) = (next, next_overlap, angle + TURN);
-            self.trace.note_child(id, self.around.born, || Step::PushOnCircle {
-                position: place(child.centre),
-                radius,
-                overlap,
-            });
         }
         child
     }
@@ -212,8 +191,8 @@ impl AdaptiveFront {
         if !(radius > 0.0 && normal.is_finite()) {
             return SlotFate::Undefined;
         }
-        self.trace.note_child(id, self.around.born, || Step::Landed { position, normal, radius });
-        if self.collides(context.particles, position, normal, radius) {
+        let FrontContext { field, projector, particles, .. } = context;
+        if self.collides(*field, projector, particles, (position, normal, radius)) {
             return SlotFate::Matched;
         }
         let particles: &mut Particles = context.particles;

@@ -1,13 +1,11 @@
 //! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
 
 use super::{LISTED, RING, TOUCHING, is_same_sheet_by_size};
-use crate::math::functions::atan2;
 use crate::particles::{Particles, SlotFate};
-use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild, Ring};
+use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::spatial::Neighbour;
-use crate::trace::{Event, Trace};
 use core::f32::consts::TAU;
 
 /// A particle or a child on the circle around a parent.
@@ -23,8 +21,8 @@ pub(super) struct Occupant {
 pub(super) enum OccupantKind {
     /// A particle that was there, or a child whose fate is known.
     Known(SlotFate),
-    /// A child to be projected, with its number and its distance to the nearest collision.
-    Child(PredictedChild, u32, f32),
+    /// A child to be projected, with its distance to the nearest collision.
+    Child(PredictedChild, f32),
 }
 
 impl OccupantKind {
@@ -117,28 +115,6 @@ impl Vicinity {
         while at > 0 && self.occupants[at - 1].angle > occupant.angle {
             self.occupants.swap(at, at - 1);
             at -= 1;
-        }
-    }
-}
-
-/// Notes a parent that is followed and the particles of its sheet that were `found` around it.
-pub(super) fn note_parent(
-    trace: &mut Trace,
-    found: &[Neighbour],
-    particles: &Particles,
-    parent: usize,
-    frame: &ParentFrame,
-) {
-    let position = particles.position[parent];
-    let &ParentFrame { n: normal, u: zero, w, radius: own, .. } = frame;
-    trace.note(parent as u32, || Event::Parent { position, normal, radius: own, zero });
-    for near in found {
-        let j = near.index as usize;
-        let radius = particles.radius[j];
-        if j != parent && is_same_sheet_by_size(near, normal, particles.normal[j], own + radius) {
-            let angle_rad = atan2(near.offset.dot(w), near.offset.dot(zero));
-            let (particle, position) = (near.index, particles.position[j]);
-            trace.note(parent as u32, || Event::Neighbour { particle, position, radius, angle_rad });
         }
     }
 }

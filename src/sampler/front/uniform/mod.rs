@@ -17,7 +17,7 @@ mod surroundings;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::sheets::{MAX_LIFT, is_doubtful, is_near_own, is_one_sheet, lift};
+use crate::sampler::discovery::sheets::{SheetRule, is_near_own, lift};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::level::{
     FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, initial_slots, is_same_sheet,
@@ -62,6 +62,7 @@ pub(crate) struct UniformFront {
     radius: f32,
     match_radius: f32,
     tolerance: Tolerance,
+    rule: SheetRule,
     level: Level,
     /// Particles of the level, which place children.
     parents: Range<usize>,
@@ -81,6 +82,7 @@ impl UniformFront {
             radius: 1.0,
             match_radius: 1.0,
             tolerance: Tolerance::default(),
+            rule: SheetRule::default(),
             level: Level::new(Bounds::cube(1.0), 0),
             parents: 0..0,
             children: ProvisionalChildren::new(),
@@ -151,12 +153,12 @@ impl UniformFront {
         }
         let spacing = 2.0 * self.radius;
         // The normals of children under way are only predicted, but they belong to this front.
-        self.around.are_doubtful(normal, spacing)
+        (self.rule.is_fine() || self.around.are_doubtful(normal, spacing))
             && found.iter().any(|near| {
                 let other = particles.normal[near.index as usize];
                 (near.index as usize) < self.level.settled
                     && other.dot(normal) > 0.0
-                    && is_doubtful(near.offset, normal, other, spacing)
+                    && self.rule.is_doubtful(near.offset, normal, other, spacing)
             })
     }
 
@@ -171,15 +173,13 @@ impl UniformFront {
         found: &mut Vec<Neighbour>,
     ) {
         let (p, n) = (particles.position[parent], particles.normal[parent]);
-        // Where there is another sheet, a particle of it can be far away to the side, and the limit does not grow with the
-        // distance.
-        let suspicious = 0.5 * MAX_LIFT * 2.0 * self.radius;
+        let suspicious = self.rule.suspicious(2.0 * self.radius);
         found.retain(|near| {
             let other = particles.normal[near.index as usize];
             near.index as usize >= self.level.settled
                 || other.dot(n) <= 0.0
                 || lift(near.offset, n, other) <= suspicious
-                || is_one_sheet(field, projector, (p, n), near.offset, other)
+                || self.rule.is_one_sheet(field, projector, (p, n), near.offset, other)
         });
         self.around.clear();
         for near in &*found {
@@ -209,16 +209,21 @@ impl UniformFront {
                 && is_same_sheet(offset, offset.length_squared(), normal, particles.normal[j], slack_sq)
         });
         let spacing = 2.0 * self.radius;
-        is_near_own(field, projector, particles, (position, normal), &self.found, |_| spacing)
+        is_near_own(self.rule, field, projector, particles, (position, normal), &self.found, |_| spacing)
     }
 }
 
 impl LevelFront for UniformFront {
+    fn rule(&self) -> SheetRule {
+        self.rule
+    }
+
     fn reset(&mut self, setup: &FrontSetup) {
         let &FrontSetup { settings, bounds, survey, radius, .. } = setup;
         self.radius = radius;
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
         self.tolerance = tolerance(radius, survey.resolution, survey.gradient_scale);
+        self.rule = setup.rule([radius; 2]);
         self.level = Level::new(*bounds, settings.max_particles as usize);
         self.parents = 0..0;
         self.children.clear();
@@ -309,17 +314,30 @@ impl LevelFront for UniformFront {
         problems.extend(list[children.clone()].iter().map(|child| child.circle));
         projector.land_on_circles(*field, problems, self.tolerance, solutions);
         for (k, landing) in solutions.iter_mut().enumerate() {
-            if let Landing::On { position, normal } = *landing {
-                let Circle { centre, normal: above, .. } = problems[k];
-                let offset = position - centre;
-                // The circle may meet the far side of a rim or of a thin sheet, which is no place for a child.
-                let is_stranger = normal.dot(above) <= 0.0
-                    || is_doubtful(offset, above, normal, 2.0 * self.radius)
-                        && !is_one_sheet(*field, projector, (centre, above), offset, normal);
-                if is_stranger {
-                    *landing = Landing::NotConverged;
-                    continue;
+            // The circle may meet the far side of a rim or of a thin sheet, which is no place for a child.
+            let (rule, spacing) = (self.rule, 2.0 * self.radius);
+            let is_stranger =
+                |field: &mut dyn Field, projector: &mut Projector, position: Vec3, normal: Vec3| {
+                    let Circle { centre, normal: above, .. } = problems[k];
+                    let offset = position - centre;
+                    normal.dot(above) <= 0.0
+                        || rule.is_doubtful(offset, above, normal, spacing)
+                            && !rule.is_one_sheet(field, projector, (centre, above), offset, normal)
+                };
+            if let Landing::On { position, normal } = *landing
+                && is_stranger(*field, projector, position, normal)
+            {
+                *landing = Landing::NotConverged;
+                if rule.is_fine() {
+                    *landing = projector.walk(*field, &problems[k], self.tolerance);
+                    if let Landing::On { position, normal } = *landing
+                        && is_stranger(*field, projector, position, normal)
+                    {
+                        *landing = Landing::NotConverged;
+                    }
                 }
+            }
+            if let Landing::On { position, .. } = *landing {
                 let provisional = particles.position[self.level.first_child + children.start + k];
                 *drift = drift.max((position - provisional).length());
             }
@@ -392,6 +410,11 @@ impl LevelFront for UniformFront {
     fn forget_seed(&mut self, seed: usize) {
         self.grid.remove(self.seed);
         self.gaps.seams.retain(|&i| (i as usize) < seed);
+    }
+
+    fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour] {
+        self.grid.gather(position, distance, &mut self.found);
+        &self.found
     }
 
     fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour> {

@@ -40,7 +40,7 @@ pub(in super::super) fn clip(layer: &mut Layer, ground: &mut Ground, spacing: f3
         return open_end(layer).map_or(Ok(()), |v| Err(border(layer, v)));
     }
     if !layer.frame.lo.cmplt(layer.frame.hi).all() {
-        return Err(Refusal::Unsuitable);
+        return Err(Refusal::Cut { at: layer.frame.lo.into() });
     }
     let mut is_cut = false;
     for plane in 0..Planes::ALL {
@@ -65,13 +65,13 @@ pub(in super::super) fn clip(layer: &mut Layer, ground: &mut Ground, spacing: f3
         layer.mesh.twin(h) == NONE && a.common(b).is_none()
     };
     match layer.mesh.edges().find(is_off) {
-        Some(h) => Err(Refusal::Cut { at: layer.position[layer.mesh.origin(h) as usize].to_array() }),
+        Some(h) => Err(Refusal::Cut { at: layer.position[layer.mesh.origin(h) as usize].into() }),
         None => Ok(()),
     }
 }
 
 fn border(layer: &Layer, v: u32) -> Refusal {
-    Refusal::Border { at: layer.position[v as usize].to_array() }
+    Refusal::Border { at: layer.position[v as usize].into() }
 }
 
 fn is_beyond(layer: &Layer, v: u32, plane: usize) -> bool {
@@ -114,7 +114,7 @@ fn split(
     let (position, normal) = match super::slide(ground, planes.free(), place, reach) {
         Some(landing) => landing,
         None if clear > reach => (place, layer.normal[layer.mesh.origin(h) as usize]),
-        None => return Err(Refusal::Cut { at: place.to_array() }),
+        None => return Err(Refusal::Cut { at: place.into() }),
     };
     let v = layer.mesh.split(h);
     layer.put(v, position, normal, planes);
@@ -128,7 +128,7 @@ fn drop_beyond(layer: &mut Layer, plane: usize) -> Result<(), Refusal> {
         .triangles()
         .filter(|corners| !corners.iter().any(|&v| is_beyond(layer, v, plane)))
         .collect();
-    let at = layer.position.first().map_or([0.0; 3], |p| p.to_array());
+    let at = layer.position.first().copied().unwrap_or_default().into();
     layer.mesh = HalfEdges::from_triangles(layer.position.len(), &kept).map_err(|_| Refusal::Cut { at })?;
     if kept.is_empty() { Err(Refusal::Cut { at }) } else { Ok(()) }
 }

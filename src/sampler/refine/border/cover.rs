@@ -46,7 +46,7 @@ pub(in super::super) fn judge_cover<'a>(
             })
         });
         if !is_near {
-            return Err(Refusal::Missed { at: p.to_array() });
+            return Err(Refusal::Missed { at: p.into() });
         }
     }
     Ok(())

@@ -50,7 +50,7 @@ fn grid(field: &mut dyn Field, bounds: &Bounds, shift: [f32; 2]) -> Layer {
     // Formulas are moved to one side: which way is up depends on that.
     let mut tally = Tally::default();
     tally.inspect(&layer, 0..triangles.len() as u32);
-    if tally.inverted() > 0 {
+    if tally.inverted().is_some() {
         layer.normal.iter_mut().for_each(|n| *n = -*n);
     }
     layer

@@ -4,15 +4,28 @@
  * @module
  */
 import { shapeOf } from '../points/loader.js';
-import { fromPoints, modelOf, newParameter, surfaceOf, validBounds, validSetting } from '../share/state.js';
+import {
+  fromPoints,
+  modelOf,
+  newParameter,
+  surfaceOf,
+  validBounds,
+  validCentres,
+  validPlane,
+  validSetting,
+} from '../share/state.js';
 import { change, description } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
 /** Pause in typing after which a name counts as finished, although it could be the beginning of a longer one. */
 const NAME_MS = 1000;
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setSurface' | 'openFile' | 'setCentres' | 'cancelLoading' | 'setFormula' | 'restore'>} SurfaceCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setParameter' | 'resetParameter' | 'declareParameter' | 'setBounds' | 'setPlane' | 'fitBox' | 'setSetting' | 'resetSetting'>} InputCommands */
+
+/** Returns what of a state is sampled, as a text to compare. @param {import('../types.js').Shape} shape */
+const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, settings }) =>
+  JSON.stringify([surface, formula, parameters, declared, centres, bounds, settings]);
 
 /** @param {import('../index.js').Parts} parts @returns {SurfaceCommands} */
 export function surfaceCommands({ store, runs, look, framing }) {
@@ -31,6 +44,12 @@ export function surfaceCommands({ store, runs, look, framing }) {
       runs.forgetLater();
       return runs.loader.openFile(file);
     },
+    setCentres(count) {
+      const centres = validCentres(count, description(store), state.value.surface);
+      if (centres === undefined || centres === state.value.centres) return;
+      change(store, { centres });
+      runs.choose();
+    },
     cancelLoading: () => runs.loader.cancel(),
     setFormula(text, { unfinished = false } = {}) {
       const { surface, formula } = state.value;
@@ -38,17 +57,18 @@ export function surfaceCommands({ store, runs, look, framing }) {
       // A model has no formula. A formula typed in its place starts from the default surface.
       const fresh = fromPoints(store.description.value, surface);
       change(store, fresh ? shapeOf(description(store).default_surface, text) : { formula: text });
-      framing.written();
+      framing.written({ typed: true });
       framing.hold();
       if (unfinished) runs.chooseLater(NAME_MS);
       else runs.choose();
     },
     restore(shape) {
       const another = shape.surface !== state.value.surface;
+      const sampled = sampledOf(shape) !== sampledOf(state.value);
       if (another) look.allLevels();
       change(store, shape);
       look.show();
-      runs.choose({ grow: another, fit: another });
+      if (sampled) runs.choose({ grow: another, fit: another });
     },
   };
 }
@@ -81,6 +101,12 @@ export function inputCommands({ store, runs, look }) {
       change(store, { bounds: valid });
       look.show();
       resample(live);
+    },
+    setPlane(plane) {
+      const valid = plane === null ? null : validPlane(plane);
+      if (valid === undefined) return;
+      change(store, { plane: valid });
+      look.show();
     },
     fitBox() {
       const { box_mode: _, ...settings } = state.value.settings;

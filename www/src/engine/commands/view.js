@@ -6,7 +6,7 @@
 import { validView } from '../share/state.js';
 import { change } from '../store.js';
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissNotice'>} ViewCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {ViewCommands} */
 export function viewCommands({ store, picture, look }) {
@@ -17,9 +17,15 @@ export function viewCommands({ store, picture, look }) {
       if (patch.camera) viewer.camera.set(view.camera);
       change(store, { view });
       look.show();
+      // What is switched on around the surface is brought into view.
+      if ((patch.box !== undefined || patch.axes !== undefined) && viewer.camera.state.fit) viewer.fit();
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);
     },
     fit: () => viewer.fit(),
+    pointOut(place, { turns = true } = {}) {
+      store.spot.value = place;
+      if (place && turns) viewer.lookAt(place);
+    },
     zoom(factor) {
       viewer.camera.zoom(factor);
       viewer.moved();
@@ -30,7 +36,10 @@ export function viewCommands({ store, picture, look }) {
       viewer.moved();
     },
     setInsets: (insets) => viewer.set({ insets }),
+    dismissHover: () => picture.hover(null, 0, 0),
     pick: (x, y) => viewer.pick(x, y),
+    project: (place) => viewer.project(place),
+    rayThrough: (x, y) => viewer.rayThrough(x, y),
     dismissNotice() {
       store.notice.value = null;
     },

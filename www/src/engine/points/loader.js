@@ -19,12 +19,23 @@ import { PointsClient } from './client.js';
  */
 /**
  * The part of the state that determines the surface.
- * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'bounds'>} Shape
+ * @typedef {Pick<State, 'surface' | 'formula' | 'parameters' | 'declared' | 'centres' | 'bounds' | 'plane'>} Shape
  */
 /** @typedef {{grow?: boolean, fit?: boolean}} SampleOptions */
 
+/** Key of a solved model. @param {string} points  of the model or the file @param {number | null} centres */
+const keyOf = (points, centres) => (centres === null ? points : `${points}, ${centres} centres`);
+
 /** @param {string} surface @param {string} [formula] @returns {Shape} */
-export const shapeOf = (surface, formula = '') => ({ surface, formula, parameters: {}, declared: [], bounds: null });
+export const shapeOf = (surface, formula = '') => ({
+  surface,
+  formula,
+  parameters: {},
+  declared: [],
+  centres: null,
+  bounds: null,
+  plane: null,
+});
 
 export class ModelLoader {
   /**
@@ -43,9 +54,11 @@ export class ModelLoader {
         if (loading.value) loading.value = { ...loading.value, stage, label, fraction };
       },
     });
-    /** Key of the solved model of the file opened last. */
-    this.fileKey = '';
+    /** The file opened last, and the beginning of the keys of its models. @type {{file: File, key: string} | null} */
+    this.opened = null;
     this.files = 0;
+    /** Key of the model that is being solved; empty if none is. */
+    this.orderKey = '';
     /** The surface that was sampled last. @type {Shape | null} */
     this.last = null;
     /** Id of the current order. */
@@ -53,14 +66,14 @@ export class ModelLoader {
   }
 
   get hasFile() {
-    return this.fileKey !== '';
+    return this.opened !== null;
   }
 
   /** Returns the key of the state's model; undefined for a formula. */
   key() {
-    const { surface } = this.store.state.value;
+    const { surface, centres } = this.store.state.value;
     if (!fromPoints(this.store.description.value, surface)) return undefined;
-    return surface === FILE_SURFACE ? this.fileKey : surface;
+    return keyOf(surface === FILE_SURFACE ? (this.opened?.key ?? '') : surface, centres);
   }
 
   /** Returns whether the state's surface can be sampled now. */
@@ -71,8 +84,8 @@ export class ModelLoader {
 
   /** Records the state's surface, which is being sampled, as the one to return to. */
   settled() {
-    const { surface, formula, parameters, declared, bounds } = this.store.state.value;
-    this.last = { surface, formula, parameters, declared, bounds };
+    const { surface, formula, parameters, declared, centres, bounds, plane } = this.store.state.value;
+    this.last = { surface, formula, parameters, declared, centres, bounds, plane };
   }
 
   /** Returns the state; while its model is loading, the state with the previous surface. */
@@ -91,17 +104,28 @@ export class ModelLoader {
 
   /** Starts solving the state's model and samples it once it is solved. @param {SampleOptions} options */
   async load(options) {
-    const { state, loading, description } = this.store;
-    const id = state.value.surface;
-    const model = modelOf(description.value, id);
-    if (!model || loading.value?.id === id) return;
-    const done = await this.order(id, model.name, id, { model: id }, () => {
-      if (state.value.surface === id) this.sample(options);
+    const { state } = this.store;
+    const key = this.key();
+    const wanted = this.wanted();
+    if (key === undefined || !wanted || this.orderKey === key) return;
+    const { id, name, order } = wanted;
+    const done = await this.order(id, name, key, order, () => {
+      if (this.key() === key) this.sample(options);
     });
-    if (done || state.value.surface !== id || loading.value?.id === id) return;
+    if (done || this.key() !== key || this.orderKey === key) return;
     const nothing = this.last === null;
     state.value = { ...state.value, ...this.before() };
     if (nothing) this.sample(options);
+  }
+
+  /** Returns what is to be solved for the state; null for a formula. @returns {{id: string, name: string, order: Order} | null} */
+  wanted() {
+    const { surface, centres } = this.store.state.value;
+    const model = modelOf(this.store.description.value, surface);
+    if (model) return { id: surface, name: model.name, order: { model: surface, centres } };
+    if (surface !== FILE_SURFACE || !this.opened) return null;
+    const { file } = this.opened;
+    return { id: surface, name: file.name, order: { file, centres } };
   }
 
   /** @param {File} file */
@@ -118,8 +142,8 @@ export class ModelLoader {
     this.files += 1;
     const key = `file ${this.files}`;
     const { state } = this.store;
-    await this.order(FILE_SURFACE, file.name, key, { file }, () => {
-      this.fileKey = key;
+    await this.order(FILE_SURFACE, file.name, keyOf(key, null), { file, centres: null }, () => {
+      this.opened = { file, key };
       state.value = { ...state.value, ...shapeOf(FILE_SURFACE) };
       this.sample({ grow: true, fit: true });
     });
@@ -134,12 +158,14 @@ export class ModelLoader {
     const { loading, loadingError } = this.store;
     this.orderId += 1;
     const mine = this.orderId;
+    this.orderKey = key;
     batch(() => {
       loadingError.value = null;
       loading.value = { id, name, stage: 'starting', label: 'Starting', fraction: 0 };
     });
     const outcome = await this.client.load(key, order);
     if (this.orderId !== mine) return false;
+    this.orderKey = '';
     // A batch, so that no effect runs between the end of the loading and the start of the run.
     batch(() => {
       loading.value = null;

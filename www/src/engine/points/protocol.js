@@ -11,7 +11,10 @@
  * @typedef {import('../types.js').Loading} Loading
  */
 
-/** A request for a built-in model, by its id, or for a file. @typedef {{model: string} | {file: File}} Order */
+/**
+ * A request for a built-in model, by its id, or for a file, of whose points so many are to be fitted; null for the default number.
+ * @typedef {({model: string} | {file: File}) & {centres: number | null}} Order
+ */
 /**
  * A solved model. The core reads `field` together with `info`; `centres` has three coordinates per centre.
  * @typedef {{field: Uint8Array, info: {info: ModelInfo, bounds: Bounds}, centres: Float32Array}} Solved

@@ -14,7 +14,7 @@ import { words } from '../bundle/load.js';
 /**
  * The part of the bundle's class that the loop uses.
  * @typedef {object} PointsLike
- * @property {(id: string) => import('../types.js').PointsAnswer} model
+ * @property {(id: string, centres: number) => import('../types.js').PointsAnswer} model
  * @property {(name: string, bytes: Uint8Array, centres: number) => import('../types.js').PointsAnswer} file
  * @property {(budget: number) => import('../types.js').PointsAnswer} step
  * @property {() => Uint8Array} field
@@ -25,7 +25,7 @@ import { words } from '../bundle/load.js';
 /** Target duration of a step. A model of a thousand centres then reports its progress about a hundred times. */
 const STEP_MS = 30;
 const FIRST_BUDGET = 64;
-/** Selects the bundle's default number of centres. */
+/** Selects the bundle's default number of centres: of a built-in model all points. */
 const USUAL_CENTRES = 0;
 
 /**
@@ -39,7 +39,7 @@ export async function solve(points, order, env) {
   env.post({ type: 'progress', stage: 'reading', label: 'Reading', fraction: 0 });
   let begun;
   if ('model' in order) {
-    begun = points.model(order.model);
+    begun = points.model(order.model, order.centres ?? USUAL_CENTRES);
   } else {
     let bytes;
     try {
@@ -47,7 +47,7 @@ export async function solve(points, order, env) {
     } catch (error) {
       return refuse({ kind: 'unreadable', message: `the file cannot be read: ${words(error)}` });
     }
-    begun = points.file(order.file.name, bytes, USUAL_CENTRES);
+    begun = points.file(order.file.name, bytes, order.centres ?? USUAL_CENTRES);
   }
   if (!begun.ok) return refuse(begun.error);
   for (let budget = FIRST_BUDGET; ; ) {

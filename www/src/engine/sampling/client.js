@@ -415,24 +415,30 @@ export class SamplingClient {
     for (const request of [...this.files.keys()]) this.handOver(request, null);
     batch(() => {
       this.happened({ type: 'lost' });
-      this.presenter.idle();
+      // Before the core has described itself there has been no run that could be over.
+      this.presenter.idle({ phase: this.store.description.value ? 'done' : 'idle' });
     });
     return lost;
   }
 
-  /** @param {Crash} crash */
+  /**
+   * Makes the lost run again, in one step with the end of the old one: nothing on the page sees a sampler at rest in between.
+   * @param {Crash} crash
+   */
   restarted(crash) {
-    const lost = this.forget();
-    const input = lost ? inputOf(lost) : '';
-    const again = lost !== null && input !== this.runs.crashedInput;
-    this.happened({ type: 'crashed', input, again });
-    this.store.notice.value = restartNotice(crash, lost, { again, version: this.version });
-    if (again) {
-      this.scheduler.submit(lost);
-    } else {
-      this.dim();
-      this.settle();
-    }
+    batch(() => {
+      const lost = this.forget();
+      const input = lost ? inputOf(lost) : '';
+      const again = lost !== null && input !== this.runs.crashedInput;
+      this.happened({ type: 'crashed', input, again });
+      this.store.notice.value = restartNotice(crash, lost, { again, version: this.version });
+      if (again) {
+        this.scheduler.submit(lost);
+      } else {
+        this.dim();
+        this.settle();
+      }
+    });
   }
 
   /** @param {Crash} crash */

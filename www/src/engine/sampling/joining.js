@@ -6,8 +6,9 @@
 import { nextBudget } from '../bundle/budget.js';
 import { BEAT_MS } from './protocol.js';
 
-/** First budget, in slices of up to a tenth of a millisecond. */
+/** First budgets, in slices of up to a tenth of a millisecond, and of a millisecond for files. */
 const FIRST_SLICES = 32;
+const FIRST_ROWS = 4;
 
 /**
  * @typedef {import('./job.js').CoreLike} CoreLike
@@ -15,24 +16,55 @@ const FIRST_SLICES = 32;
  */
 
 /**
- * Returns the mesh, or null if another job replaces the particles before it is complete.
- * @param {Pick<CoreLike, 'join' | 'triangles'>} core
+ * Returns what the slices lead to, or null if another job replaces the particles before they are done.
+ * @template T
+ * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
+ * @param {number} slices  the first budget
  * @param {Surroundings} env
- * @returns {Promise<import('./protocol.js').Mesh | null>}
+ * @returns {Promise<T | null>}
  */
-export async function join(core, { nowMs, pause, post, interrupt }) {
-  let slices = FIRST_SLICES;
+async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
+  let budget = slices;
   let beatMs = nowMs();
   for (;;) {
     await pause();
     if (interrupt() === 'replace') return null;
     const before = nowMs();
-    const about = core.join(slices);
-    if (about) return { about, triangles: core.triangles() };
-    slices = nextBudget(slices, nowMs() - before);
+    const made = step(budget);
+    if (made !== undefined) return made;
+    budget = nextBudget(budget, nowMs() - before);
     if (nowMs() - beatMs > BEAT_MS) {
       post({ type: 'beat' });
       beatMs = nowMs();
     }
   }
 }
+
+/**
+ * Returns the mesh, or null if another job replaces the particles before it is complete.
+ * @param {Pick<CoreLike, 'join' | 'triangles'>} core
+ * @param {Surroundings} env
+ * @returns {Promise<import('./protocol.js').Mesh | null>}
+ */
+export async function join(core, env) {
+  const about = await inSlices((budget) => core.join(budget), FIRST_SLICES, env);
+  return about && { about, triangles: core.triangles() };
+}
+
+/**
+ * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces the particles
+ * before it is.
+ * @param {import('../../wasm/core/core.js').Core} core
+ * @param {string} format
+ * @param {Surroundings} env
+ * @returns {Promise<{bytes: Uint8Array<ArrayBuffer> | null} | null>}
+ */
+export const write = (core, format, env) =>
+  inSlices(
+    (budget) => {
+      const bytes = core.mesh_file(format, budget);
+      return bytes === undefined ? undefined : { bytes };
+    },
+    FIRST_ROWS,
+    env,
+  );

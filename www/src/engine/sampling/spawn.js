@@ -24,3 +24,6 @@ export function spawnSampler() {
   );
   return worker;
 }
+
+/** Resolves once the core has loaded, or could not be loaded. It has to be asked for by {@link spawnSampler} before. */
+export const coreFetched = () => Promise.resolve(core).catch(() => {});

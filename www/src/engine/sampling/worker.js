@@ -8,7 +8,7 @@ import init, { Core } from '../../wasm/core/core.js';
 import { words } from '../bundle/load.js';
 import { curvatureColumn, meshColumn, runJob } from './job.js';
 import { Jobs } from './jobs.js';
-import { join } from './joining.js';
+import { join, write } from './joining.js';
 import { BEAT_MS } from './protocol.js';
 
 /**
@@ -141,10 +141,12 @@ async function serve(ours) {
     memory.meshed = held;
     post(...meshColumn(ours, held, made));
   }
-  const wanted = files.shift();
+  const [wanted] = files;
   if (wanted) {
-    const bytes = /** @type {Uint8Array<ArrayBuffer> | null} */ ((made && ours.mesh_file(wanted.format)) ?? null);
-    post({ type: 'file', request: wanted.request, bytes }, bytes ? [bytes.buffer] : []);
+    const file = made ? await write(ours, wanted.format, surroundings(ours)) : { bytes: null };
+    if (!file) return true;
+    files.shift();
+    post({ type: 'file', request: wanted.request, bytes: file.bytes }, file.bytes ? [file.bytes.buffer] : []);
   }
   return true;
 }

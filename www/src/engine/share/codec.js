@@ -39,7 +39,9 @@ export function difference(state, description) {
   if (state.formula !== (surfaceOf(description, state.surface)?.formula ?? '')) out.formula = state.formula;
   if (Object.keys(state.parameters).length) out.parameters = state.parameters;
   if (state.declared.length) out.declared = state.declared;
+  if (state.centres !== null) out.centres = state.centres;
   if (state.bounds) out.bounds = state.bounds;
+  if (state.plane) out.plane = { normal: state.plane.normal.map((v) => short(v)), offset: short(state.plane.offset) };
   const defaults = completeSettings(description, {});
   const settings = Object.fromEntries(
     Object.entries(state.settings).filter(([name, value]) => value !== defaults[name]),
@@ -55,7 +57,11 @@ export function difference(state, description) {
     'edges',
     'marks',
     'theme',
+    'ghost',
     'box',
+    'axes',
+    'bar',
+    'measured',
     'points',
     'level',
   ]))

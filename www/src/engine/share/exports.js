@@ -107,21 +107,9 @@ export function csv(columns, all) {
 /** Rounds to nine significant digits, which identify any single-precision number. @param {number} v */
 const single = (v) => Number(v.toPrecision(9));
 
-/** Largest width or height of a saved picture. */
-export const LARGEST_PICTURE_PX = 8192;
-
-/**
- * Encodes RGBA pixels, rows from the top, as PNG.
- * @param {number} width @param {number} height @param {Uint8Array<ArrayBuffer>} pixels
- * @returns {Promise<Blob>}
- */
-export async function png(width, height, pixels) {
-  const image = new ImageData(
-    new Uint8ClampedArray(pixels.buffer, pixels.byteOffset, pixels.byteLength),
-    width,
-    height,
-  );
-  const canvas = new OffscreenCanvas(width, height);
+/** Encodes a picture as PNG. @param {ImageData} image @returns {Promise<Blob>} */
+export async function png(image) {
+  const canvas = new OffscreenCanvas(image.width, image.height);
   const context = canvas.getContext('2d');
   if (!context) throw new Error('The browser gives no 2-D canvas to encode the picture with.');
   context.putImageData(image, 0, 0);

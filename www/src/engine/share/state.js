@@ -54,7 +54,11 @@ const homeView = () => ({
   edges: true,
   marks: true,
   theme: 'auto',
+  ghost: false,
   box: false,
+  axes: false,
+  bar: false,
+  measured: null,
   points: true,
   level: null,
   camera: homeCamera(),
@@ -67,7 +71,9 @@ export const emptyState = () => ({
   formula: '',
   parameters: {},
   declared: [],
+  centres: null,
   bounds: null,
+  plane: null,
   settings: {},
   view: homeView(),
 });
@@ -164,6 +170,48 @@ export function validBounds(v, limits) {
   return fits && farthest <= limits.farthest_corner * diagonal ? { min, max } : undefined;
 }
 
+/** A plane with a unit normal. @param {unknown} v @returns {import('../types.js').CuttingPlane | undefined} */
+export function validPlane(v) {
+  if (!isRecord(v)) return undefined;
+  const [normal, offset] = [vec3(v.normal), within(v.offset, -LARGEST_SINGLE, LARGEST_SINGLE)];
+  const length = normal ? Math.hypot(...normal) : 0;
+  if (!normal || offset === undefined || !(length > 0 && length < Infinity)) return undefined;
+  // Adding 0 turns −0 into 0, as a link does.
+  return { normal: /** @type {Vec3} */ (normal.map((c) => c / length + 0)), offset: offset / length + 0 };
+}
+
+/** Largest index of a particle in a state; no run reaches it. */
+const LAST_PARTICLE = 2 ** 32 - 1;
+
+/** Up to two different particles. @param {unknown} v @returns {number[] | null | undefined} */
+function validMeasured(v) {
+  if (v === null) return null;
+  if (!Array.isArray(v) || v.length > 2 || new Set(v).size !== v.length) return undefined;
+  return v.every((index) => Number.isInteger(index) && index >= 0 && index <= LAST_PARTICLE) ? [...v] : undefined;
+}
+
+/**
+ * Numbers of points that can be fitted of a model or a file; null for a surface from a formula. How many a file has is not known here.
+ * @param {Description} description @param {string} id
+ */
+export function centresOf({ limits, models }, id) {
+  const most = id === FILE_SURFACE ? Infinity : models.find((model) => model.id === id)?.points;
+  if (most === undefined) return null;
+  const usual = Math.min(limits.centres, most);
+  return { min: Math.min(limits.centres_min, usual), max: Math.min(limits.centres_max, most), usual };
+}
+
+/**
+ * Returns the valid number of centres that is nearest; null for the default number, undefined where there can be none.
+ * @param {unknown} v @param {Description} description @param {string} id  of the surface
+ */
+export function validCentres(v, description, id) {
+  const range = centresOf(description, id);
+  const count = range && within(v, range.min, range.max);
+  if (!range || count === undefined || count === null) return undefined;
+  return Math.round(count) === range.usual ? null : Math.round(count);
+}
+
 /** The parameter of this name as the core would begin it. @param {Description} description @param {string} name @returns {Parameter} */
 export const newParameter = ({ new_parameter }, name) => ({ ...new_parameter, name, label: name });
 
@@ -242,10 +290,20 @@ export function sanitize(raw, description, hasFile = false) {
       }
     } else reset.push('declared parameters');
   }
+  if (raw.centres !== undefined && raw.centres !== null) {
+    const centres = validCentres(raw.centres, description, state.surface);
+    if (centres === undefined) reset.push('number of centres');
+    else state.centres = centres;
+  }
   if (raw.bounds !== undefined && raw.bounds !== null) {
     const bounds = validBounds(raw.bounds, description.limits);
     if (bounds) state.bounds = bounds;
     else reset.push('clip box');
+  }
+  if (raw.plane !== undefined && raw.plane !== null) {
+    const plane = validPlane(raw.plane);
+    if (plane) state.plane = plane;
+    else reset.push('cutting plane');
   }
   if (raw.settings !== undefined) {
     if (isRecord(raw.settings)) {
@@ -317,7 +375,10 @@ export function validView(raw, view, reset = []) {
     else reset.push(name);
   }
   for (const [key, name] of /** @type {const} */ ([
+    ['ghost', 'surface beneath the discs'],
     ['box', 'box'],
+    ['axes', 'axes'],
+    ['bar', 'scale bar'],
     ['points', 'points of the model'],
     ['edges', 'edges of the mesh'],
     ['marks', 'marks on the mesh'],
@@ -330,6 +391,11 @@ export function validView(raw, view, reset = []) {
     const level = raw.level === null ? null : within(raw.level, 0, LAST_LEVEL);
     if (level === undefined) reset.push('generation level');
     else out.level = level === null ? null : Math.round(level);
+  }
+  if (raw.measured !== undefined) {
+    const measured = validMeasured(raw.measured);
+    if (measured === undefined) reset.push('measured distance');
+    else out.measured = measured;
   }
   if (raw.camera !== undefined) {
     const c = isRecord(raw.camera) ? raw.camera : {};

@@ -13,6 +13,7 @@
  * @typedef {import('../types.js').Vec3} Vec3
  * @typedef {import('../types.js').Bounds} Bounds
  * @typedef {{left: number, right: number, top: number, bottom: number}} Insets  pixels covered by panels
+ * @typedef {{yaw: number, pitch: number}} Angles
  * @typedef {{
  *   clipFromWorld: Float32Array, eye: Vec3, forward: Vec3, right: Vec3, up: Vec3, tanX: number, tanY: number,
  *   shiftX: number, shiftY: number, worldPerPx: number, packed: Float32Array,
@@ -27,6 +28,15 @@ export const PITCH_LIMIT_RAD = (89 * Math.PI) / 180;
 const EASE_S = 0.11;
 /** Speed below which the rotation stops: 0.02 pixels per frame at 1,000 px. */
 const REST_RAD_PER_S = 0.002;
+
+/**
+ * The opening, which begins on the side of the seed: its largest pitch, the cosine with the normal from which a side is
+ * seen well, and the times before and during the turn.
+ */
+const OPENING_PITCH_RAD = 0.9;
+const OPENING_COSINE = 0.5;
+const OPENING_PAUSE_S = 0.5;
+const OPENING_TURN_S = 1.5;
 
 /** @param {number} v @param {number} low @param {number} high */
 const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
@@ -131,6 +141,19 @@ export function rayThrough(view, xPx, yPx, widthPx, heightPx) {
 }
 
 /**
+ * Returns where a place is in the picture; null behind the eye.
+ * @param {View} view @param {ArrayLike<number>} place @param {number} widthPx @param {number} heightPx
+ * @returns {import('../types.js').Spot | null}
+ */
+export function projected({ clipFromWorld: m, worldPerPx }, place, widthPx, heightPx) {
+  const row = (/** @type {number} */ k) => m[k] * place[0] + m[4 + k] * place[1] + m[8 + k] * place[2] + m[12 + k];
+  const w = row(3);
+  if (!(w > 0)) return null;
+  const [x, y] = [(0.5 + (0.5 * row(0)) / w) * widthPx, (0.5 - (0.5 * row(1)) / w) * heightPx];
+  return { x, y, perPx: worldPerPx * w };
+}
+
+/**
  * Returns the distance at which a ball of this radius fills the free part of the picture, with a margin of 5 %.
  * @param {number} radius
  */
@@ -152,8 +175,10 @@ export class Camera {
     this.state = { ...state };
     this.yawPerS = 0;
     this.pitchPerS = 0;
-    /** @type {{target: Vec3, distance: number} | null} */
+    /** @type {{target: Vec3, distance: number, yaw?: number, pitch?: number} | null} */
     this.glide = null;
+    /** A slow turn under way: its angles, and the time since its pause began. @type {{from: Angles, to: Angles, sinceS: number} | null} */
+    this.turn = null;
     /** Whether motion is reduced: no easing and no animation. */
     this.calm = false;
     /** Limits of the distance, from the size of the scene. */
@@ -171,6 +196,23 @@ export class Camera {
     this.yawPerS = 0;
     this.pitchPerS = 0;
     this.glide = null;
+    this.turn = null;
+  }
+
+  /**
+   * Looks at a side first and turns from there to the present angles, after a pause. Any input ends it where it is.
+   * @param {Vec3} normal  of that side
+   */
+  openOn([x, y, z]) {
+    const to = { yaw: this.state.yaw, pitch: this.state.pitch };
+    const pitch = clamp(Math.asin(clamp(z, -1, 1)), -OPENING_PITCH_RAD, OPENING_PITCH_RAD);
+    const { forward } = axes({ yaw: to.yaw, pitch });
+    // A tilt alone is calmer than a turn, where it shows the side.
+    const yaw = -dot(forward, [x, y, z]) > OPENING_COSINE ? to.yaw : Math.atan2(y, x);
+    const way = Math.atan2(Math.sin(yaw - to.yaw), Math.cos(yaw - to.yaw));
+    const from = { yaw: to.yaw + way, pitch };
+    this.turn = { from, to, sinceS: 0 };
+    this.state = { ...this.state, ...from };
   }
 
   /** @param {number} radius  of the scene */
@@ -221,6 +263,7 @@ export class Camera {
     }
     this.state = { ...this.state, distance: next, target: moved, fit: false };
     this.glide = null;
+    this.turn = null;
   }
 
   /** Moves the target by a drag in pixels. @param {number} dxPx @param {number} dyPx @param {View} view */
@@ -234,6 +277,7 @@ export class Camera {
       fit: false,
     };
     this.glide = null;
+    this.turn = null;
   }
 
   /**
@@ -251,6 +295,27 @@ export class Camera {
     } else {
       this.glide = goal;
     }
+  }
+
+  /**
+   * Moves the camera so that a ball is seen along a normal, at most from as far as now, with an animation.
+   * @param {{centre: Vec3, radius: number}} ball
+   * @param {Vec3} normal  towards the camera
+   */
+  lookAt({ centre, radius }, [x, y, z]) {
+    const distance = Math.max(this.nearLimit, Math.min(this.state.distance, fitDistance(radius)));
+    const turn = Math.hypot(x, y) > 1e-6 ? Math.atan2(y, x) - this.state.yaw : 0;
+    const goal = {
+      target: centre,
+      distance,
+      // The shorter way around.
+      yaw: this.state.yaw + Math.atan2(Math.sin(turn), Math.cos(turn)),
+      pitch: clamp(Math.atan2(z, Math.hypot(x, y)), -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD),
+    };
+    this.rest();
+    this.state = { ...this.state, fit: false };
+    if (this.calm) this.state = { ...this.state, ...goal, yaw: goal.yaw % (2 * Math.PI) };
+    else this.glide = goal;
   }
 
   /**
@@ -272,23 +337,42 @@ export class Camera {
         this.pitchPerS = 0;
       } else moving = true;
     }
-    if (this.glide) {
-      const { target, distance } = this.glide;
-      const state = this.state;
-      const log = Math.log(distance) + (Math.log(state.distance) - Math.log(distance)) * keep;
-      const next = /** @type {Vec3} */ (state.target.map((t, k) => target[k] + (t - target[k]) * keep));
-      const left =
-        Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance +
-        Math.abs(log - Math.log(distance));
-      // The motion ends at a thousandth of the distance, which is less than a pixel.
-      if (left < 1e-3) {
-        this.state = { ...state, target, distance };
-        this.glide = null;
-      } else {
-        this.state = { ...state, target: next, distance: Math.exp(log) };
-        moving = true;
-      }
-    }
-    return moving;
+    const turning = this.turnOn(dtS);
+    return this.follow(keep) || turning || moving;
+  }
+
+  /** Advances a turn by `dtS`. @param {number} dtS @returns {boolean} whether it continues */
+  turnOn(dtS) {
+    if (!this.turn) return false;
+    const { from, to } = this.turn;
+    this.turn.sinceS += dtS;
+    const t = clamp((this.turn.sinceS - OPENING_PAUSE_S) / OPENING_TURN_S, 0, 1);
+    const share = t * t * (3 - 2 * t);
+    const between = (/** @type {'yaw' | 'pitch'} */ key) => from[key] + (to[key] - from[key]) * share;
+    this.state = { ...this.state, ...(t < 1 ? { yaw: between('yaw'), pitch: between('pitch') } : to) };
+    if (t === 1) this.turn = null;
+    return t < 1;
+  }
+
+  /** Advances an animation, of which the share `keep` of the way stays. @param {number} keep @returns {boolean} whether it continues */
+  follow(keep) {
+    if (!this.glide) return false;
+    const { state } = this;
+    const { target, distance, yaw = state.yaw, pitch = state.pitch } = this.glide;
+    const log = Math.log(distance) + (Math.log(state.distance) - Math.log(distance)) * keep;
+    const next = /** @type {Vec3} */ (state.target.map((t, k) => target[k] + (t - target[k]) * keep));
+    const turned = { yaw: yaw + (state.yaw - yaw) * keep, pitch: pitch + (state.pitch - pitch) * keep };
+    const left =
+      Math.hypot(next[0] - target[0], next[1] - target[1], next[2] - target[2]) / distance +
+      Math.abs(log - Math.log(distance)) +
+      Math.abs(turned.yaw - yaw) +
+      Math.abs(turned.pitch - pitch);
+    // The motion ends at a thousandth of the distance, which is less than a pixel.
+    const ends = left < 1e-3;
+    if (ends) this.glide = null;
+    this.state = ends
+      ? { ...state, target, distance, yaw: yaw % (2 * Math.PI), pitch }
+      : { ...state, ...turned, target: next, distance: Math.exp(log) };
+    return !ends;
   }
 }

@@ -216,7 +216,7 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
     case 'level':
       return {
         title: 'Generation level',
-        unit: '',
+        unit: 'rings around the seed',
         kind: 'cyclic',
         range: [0, columns.lastLevel],
         colours: [...palette.levels].map(hexFromPacked),

@@ -61,7 +61,7 @@ export function attachControls(stage) {
     // A finger also leaves when it is lifted. The particle that it tapped stays selected.
     if (event.pointerType === 'touch') return;
     hover.cancel();
-    stage.leave();
+    stage.leave(false);
   });
   // The right button pans. Its context menu would swallow the release event.
   on('contextmenu', (event) => event.preventDefault());
@@ -112,7 +112,7 @@ function wheelZoom(event, pagePx) {
 }
 
 /** @param {KeyboardEvent} event @param {Stage} stage @returns {boolean} whether the key is handled */
-function pressed(event, { camera, currentView, fit }) {
+function pressed(event, { camera, currentView, fit, centre, point }) {
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
   camera.rest();
   const arrow = Object.hasOwn(ARROWS, event.key) ? ARROWS[event.key] : null;
@@ -131,6 +131,11 @@ function pressed(event, { camera, currentView, fit }) {
     case '_':
       camera.zoom(1 / KEY_ZOOM);
       return true;
+    case 'Enter': {
+      const at = centre();
+      if (at) point(at.x, at.y, true);
+      return at !== null;
+    }
     case 'f':
     case 'F':
     case '0':

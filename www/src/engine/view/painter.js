@@ -9,6 +9,7 @@
  */
 import { NO_LEVEL } from '../columns.js';
 import { encoded, linear } from './oklab.js';
+import { isBeyond } from './picking.js';
 
 /** Tables from a byte to linear light, and from linear light in steps of 1/1023 to a byte. */
 const LINEAR = Float32Array.from({ length: 256 }, (_, v) => linear(v / 255));
@@ -22,7 +23,7 @@ const RIM_FROM_PX = 4;
 /** Share by which discs of earlier levels fade towards the background. */
 const MUTE = 0.5;
 /** What the inside keeps of its light and of its distance from grey, as in shaders/common.wgsl. */
-const INSIDE_LIGHT = 0.3;
+const INSIDE_LIGHT = 0.4;
 const INSIDE_CHROMA = 0.5;
 
 /**
@@ -36,6 +37,7 @@ const INSIDE_CHROMA = 0.5;
  * @property {number | null} [level]  newest generation level drawn, null for all
  * @property {number} outline  index of the highlighted particle, −1 for none
  * @property {{min: number[], max: number[], colour: number[]} | null} box
+ * @property {import('../types.js').CuttingPlane | null} [plane]  discs whose centres are beyond it are hidden
  */
 
 /** Packs three linear components into a pixel. @param {number} r @param {number} g @param {number} b */
@@ -253,7 +255,8 @@ export class Painter {
     const { width, height } = image;
     const out = new Uint32Array(image.data.buffer);
     const target = { out, depth, width, height };
-    const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view, level = null } = this.style;
+    const { background, dim, dim_backfaces, disc_scale, outline, box, key_light_view } = this.style;
+    const { level = null, plane = null } = this.style;
     const ground = background.slice(0, 3).map((v) => linear(v));
     out.fill(transparent ? 0 : packed(ground[0], ground[1], ground[2]));
     // The depth buffer holds 1/w, which is linear in screen coordinates on a plane. Larger values are nearer.
@@ -270,6 +273,7 @@ export class Painter {
       if (births[i] > timeS) continue;
       const older = level !== null && levels[i] < level;
       if (level !== null && levels[i] > level && levels[i] !== NO_LEVEL) continue;
+      if (plane && isBeyond(plane, positions, 3 * i)) continue;
       const x = positions[3 * i];
       const y = positions[3 * i + 1];
       const z = positions[3 * i + 2];

@@ -26,9 +26,10 @@ const DENSE = 0.8;
  * @param {number} discScale  disc radius as a share of the particle's radius
  * @param {number} toleranceRad
  * @param {number} [lastLevel]  particles of later levels are hidden
+ * @param {import('../types.js').CuttingPlane | null} [plane]  particles beyond it are hidden
  * @returns {number | null}
  */
-export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity) {
+export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity, plane = null) {
   const { positions, normals, radii, levels, count } = columns;
   const [ex, ey, ez] = eye;
   const [dx, dy, dz] = ray;
@@ -50,7 +51,7 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
     const rGap = radii[i] * reachScale;
     const slack = toleranceRad * along;
     const reach = Math.max(rGap, slack);
-    if (offSq > reach * reach || levels[i] > lastLevel) continue;
+    if (offSq > reach * reach || levels[i] > lastLevel || (plane && isBeyond(plane, positions, j))) continue;
     const nx = normals[j];
     const ny = normals[j + 1];
     const nz = normals[j + 2];
@@ -89,6 +90,15 @@ export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Inf
   if (hit >= 0) return hit;
   return close >= 0 ? close : null;
 }
+
+/**
+ * Returns whether a plane hides a place, of which the coordinates begin at index `at`.
+ * @param {import('../types.js').CuttingPlane} plane
+ * @param {ArrayLike<number>} positions
+ * @param {number} at
+ */
+export const isBeyond = ({ normal, offset }, positions, at) =>
+  normal[0] * positions[at] + normal[1] * positions[at + 1] + normal[2] * positions[at + 2] > offset;
 
 /**
  * Returns whether two particles are at most second neighbours by their distance.

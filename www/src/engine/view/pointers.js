@@ -16,7 +16,8 @@
  * @property {() => void} moved
  * @property {() => void} fit
  * @property {(x: number, y: number, tapped: boolean) => void} point  the pointer hovers over or tapped this place
- * @property {() => void} leave
+ * @property {() => Place | null} centre  where the target of the camera is
+ * @property {(pressed: boolean) => void} leave  the pointer left, or was `pressed`
  */
 
 /** Rotation of a drag across the whole shorter side. */
@@ -70,7 +71,7 @@ export class Pointers {
     this.panning = event.button !== 0 || event.shiftKey;
     this.trail = [];
     this.press = this.held.size === 1 ? { ...at, atMs: event.timeStamp, still: true } : null;
-    leave();
+    leave(true);
   }
 
   /** @param {PointerEvent} event  of a pressed pointer */

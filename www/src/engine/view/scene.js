@@ -46,13 +46,17 @@ export class Scene {
   }
 
   /**
-   * Returns the ball that a fit shows: around the particles of the present field, or else its clip box.
+   * Returns the ball that a fit shows: around the particles, or the clip box where there are none. Where the particles are those
+   * of an earlier field, the clip box is shown with them if it is drawn.
    * @param {Columns} columns
-   * @param {boolean} boxDrawn
+   * @param {boolean} boxDrawn  the ball encloses the clip box
+   * @param {boolean} [axesDrawn]  the ball encloses the axes around the particles
    */
-  fitBall(columns, boxDrawn) {
-    const bounds = columns.stale ? null : columns.bounds();
-    return bounds ? ballAround(columns, ballOf(bounds).centre) : this.boxBall(boxDrawn);
+  fitBall(columns, boxDrawn, axesDrawn = false) {
+    const bounds = columns.bounds();
+    if (!bounds || (boxDrawn && !columns.stale)) return this.boxBall(boxDrawn);
+    if (boxDrawn) return ballOf({ min: least(bounds.min, this.bounds.min), max: most(bounds.max, this.bounds.max) });
+    return axesDrawn ? ballOf(bounds) : ballAround(columns, ballOf(bounds).centre);
   }
 }
 

@@ -21,8 +21,11 @@ const DIM_BACKFACES = 1;
  * @property {'smooth' | 'flat'} faces
  * @property {boolean} edges  whether the edges of faces are drawn
  * @property {boolean} marks  whether vertices without six neighbours are marked
+ * @property {boolean} ghost  whether the surface is drawn faintly beneath discs
  * @property {'light' | 'dark'} theme
  * @property {import('../types.js').Bounds | null} box  the clip box, or null if it is not drawn
+ * @property {boolean} axes  whether axes are drawn over the picture, which a fit leaves room for
+ * @property {import('../types.js').CuttingPlane | null} plane  what it hides is neither drawn nor picked
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
  * @property {number | null} level  the newest visible generation level, null for all
  * @property {number} highlight  index of the particle with an outline, −1 for none
@@ -30,15 +33,18 @@ const DIM_BACKFACES = 1;
  */
 
 /** @param {import('../types.js').ViewState} view @returns {Look} */
-export const firstLook = ({ colour, size, draw, faces, edges, marks }) => ({
+export const firstLook = ({ colour, size, draw, faces, edges, marks, ghost }) => ({
   colour,
   size,
   draw,
   faces,
   edges,
   marks,
+  ghost,
   theme: 'light',
   box: null,
+  axes: false,
+  plane: null,
   points: null,
   level: null,
   highlight: -1,
@@ -61,7 +67,7 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
   const palette = PALETTES[look.theme];
   return {
     background: [...rgbFromPacked(palette.ground), 1],
-    faces: look.draw === 'mesh' ? { flat: look.faces === 'flat', edge_px: look.edges ? EDGE_PX : 0 } : null,
+    faces: facesOf(look),
     disc_scale: look.size,
     dim,
     fade_s: calm ? 0 : FADE_S,
@@ -69,6 +75,13 @@ export function styleOf(look, { lastLevel, dim, calm, pixelRatio }) {
     dim_backfaces: DIM_BACKFACES,
     outline: look.highlight,
     box: look.box && { ...look.box, colour: [...rgbFromPacked(palette.box), 0.9] },
+    plane: look.plane,
     pixel_ratio: pixelRatio,
   };
+}
+
+/** Returns how the renderers draw faces; null for discs alone. @param {Look} look */
+function facesOf({ draw, faces, edges, ghost }) {
+  if (draw === 'mesh') return { flat: faces === 'flat', edge_px: edges ? EDGE_PX : 0 };
+  return ghost ? { ghost } : null;
 }

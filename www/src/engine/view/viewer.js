@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { ballOf, Camera, rayThrough, viewOf } from './camera.js';
+import { ballOf, Camera, projected, rayThrough, viewOf } from './camera.js';
 import { legendOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
@@ -31,11 +31,15 @@ import { ParticleUpload } from './upload.js';
  * @property {(kind: string, message: string) => void} onFallback
  * @property {(legend: import('../types.js').Legend) => void} onLegend
  * @property {(camera: import('../types.js').CameraState) => void} onCamera
+ * @property {() => void} onFrame  a picture was drawn
  * @property {(reveal: import('../types.js').Reveal | null) => void} onReveal
  */
 
 /** Picking tolerance around small discs, in page pixels. */
 const PICK_PX = 6;
+
+/** Radius around a place that is pointed out, in radii of its rings, that the picture shows. */
+const LOOK_RADII = 14;
 
 export class Viewer {
   /**
@@ -54,6 +58,8 @@ export class Viewer {
     this.look = firstLook(look);
     this.scene = new Scene();
     this.reveal = new Reveal();
+    /** Whether the next surface that grows is first seen from the side of its seed. */
+    this.opening = false;
     /** Whether the front is still placing particles. A reveal does not end before the front. */
     this.growing = false;
     this.dimmer = new Dimmer();
@@ -107,6 +113,11 @@ export class Viewer {
 
   /** @param {number} first @param {number} last @param {() => void} onDrawn */
   changed(first, last, onDrawn) {
+    if (this.opening && last > 0) {
+      this.opening = false;
+      const [x, y, z] = this.columns.normals;
+      if (this.reveal.active) this.camera.openOn([x, y, z]);
+    }
     this.upload.changed(first, last);
     this.due.legend = true;
     // The last level may have changed.
@@ -191,8 +202,17 @@ export class Viewer {
    */
   fit(jump = false) {
     const boxDrawn = this.look.box !== null;
-    const ball = jump ? this.scene.boxBall(boxDrawn) : this.scene.fitBall(this.columns, boxDrawn);
+    const ball = jump ? this.scene.boxBall(boxDrawn) : this.scene.fitBall(this.columns, boxDrawn, this.look.axes);
     this.camera.fit(ball, jump);
+    this.moved();
+  }
+
+  /** Brings a place before the camera, seen along its normal. @param {import('../types.js').Place} place */
+  lookAt({ places, radius, normal }) {
+    const target = /** @type {import('../types.js').Vec3} */ (
+      [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / places.length)
+    );
+    this.camera.lookAt({ centre: target, radius: LOOK_RADII * radius }, normal);
     this.moved();
   }
 
@@ -216,7 +236,20 @@ export class Viewer {
     const view = this.currentView();
     const ray = rayThrough(view, x, y, cssWidth, cssHeight);
     const newest = shownLevel(look, columns.lastLevel) ?? Infinity;
-    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest);
+    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest, look.plane);
+  }
+
+  /** Returns where a place is in the picture, in CSS pixels of the host; null behind the eye. @param {ArrayLike<number>} place */
+  project(place) {
+    const { cssWidth, cssHeight } = this.screen;
+    return projected(this.currentView(), place, cssWidth, cssHeight);
+  }
+
+  /** Returns the ray through a point of the host, in CSS pixels. @param {number} x @param {number} y @returns {import('../types.js').Ray} */
+  rayThrough(x, y) {
+    const view = this.currentView();
+    const { cssWidth, cssHeight } = this.screen;
+    return { eye: view.eye, direction: rayThrough(view, x, y, Math.max(1, cssWidth), Math.max(1, cssHeight)) };
   }
 
   // ---- drawing ------------------------------------------------------------------------------------------------------------
@@ -251,7 +284,10 @@ export class Viewer {
     const dimming = this.dimmer.moving(nowS);
     if (dimming) this.due.style = true;
     if (moving || revealing || dimming || this.upload.glide.active) this.frames.ask();
-    if (outcome === 'drawn') return 'drawn';
+    if (outcome === 'drawn') {
+      this.events.onFrame();
+      return 'drawn';
+    }
     return outcome === 'skipped' && this.screen.width > 0 && this.screen.height > 0 ? 'skipped' : 'none';
   }
 
@@ -264,7 +300,8 @@ export class Viewer {
     }
     const count = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
     if (kind !== 'canvas2d') {
-      const drawn = look.draw === 'mesh' && !reveal.active;
+      // The ghost of a surface shows where it will grow.
+      const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
       this.faces.write(/** @type {any} */ (renderer), look, { drawn, range: upload.range });
     }
     this.tellView(renderer, this.currentView(), count);
@@ -325,10 +362,27 @@ export class Viewer {
     const [width, height] = renderer.picture_size(widthPx, heightPx);
     const { cssWidth, cssHeight } = this.screen;
     const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.scene.ball());
+    fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
     this.tellView(renderer, view, Math.min(this.columns.count, renderer.max_particles()));
     renderer.set_style(JSON.stringify({ ...this.style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
     this.restyle();
     return { width, height, pixels: await picture };
+  }
+}
+
+/**
+ * Enlarges a view so that the surface fills the shorter side of a picture as it fills that of the window. A renderer shows in a picture
+ * all that the window shows, so that in one of another aspect ratio the surface would be smaller.
+ * @param {View} view @param {number} aspect  of the picture @param {number} windowAspect
+ */
+function fillFrame({ packed }, aspect, windowAspect) {
+  const shorter = (/** @type {number} */ a) => Math.min(1, a);
+  // Heights: the window has 1 and is scaled by this factor to lie within the picture, which has 1.
+  const within = Math.min(1, aspect / windowAspect);
+  const factor = shorter(aspect) / (shorter(windowAspect) * within);
+  for (let k = 0; k < 4; k += 1) {
+    packed[4 * k] *= factor;
+    packed[4 * k + 1] *= factor;
   }
 }

@@ -7,15 +7,9 @@ const NORMALS = { given: 'given', from_mesh: 'from the mesh', estimated: 'estima
  * @param {import('../../engine/types.js').ModelInfo} info
  * @returns {{ label: string, value: string, unit: string, help: string }[]}
  */
-export function factsOf({ points, centres, condition, residual_mean, residual_max, normals }) {
-  const rows = [
-    { label: 'Points read', value: formatCount(points), unit: '', help: 'Points of the model or the file.' },
-    {
-      label: 'Points fitted',
-      value: formatCount(centres),
-      unit: '',
-      help: 'Points that f is zero at, with its gradient along their normals: spread evenly over all that were read.',
-    },
+export function factsOf({ condition, residual_mean, residual_95, residual_max, normals }) {
+  const share = (/** @type {number} */ v) => formatSignificant(v * 100, 2);
+  return [
     {
       label: 'Normals',
       value: NORMALS[normals] ?? normals,
@@ -30,21 +24,30 @@ export function factsOf({ points, centres, condition, residual_mean, residual_ma
     },
     {
       label: 'Mean distance',
-      value: formatSignificant(residual_mean * 100, 2),
+      value: share(residual_mean),
       unit: '%',
-      help: 'Mean distance of all points read from the surface, as a share of the diagonal of their box.',
+      help: 'Mean distance of all points from the surface, |f|/|∇f|, as a share of the diagonal of their box.',
+    },
+    {
+      label: '95 % are nearer than',
+      value: share(residual_95),
+      unit: '%',
+      help: 'Distance from the surface below which 95 % of all points are, as a share of the diagonal of their box.',
     },
     {
       label: 'Largest distance',
-      value: formatSignificant(residual_max * 100, 2),
+      value: share(residual_max),
       unit: '%',
-      help: 'Largest distance of a point read from the surface, as a share of the diagonal of their box.',
+      help: 'Distance of the farthest of all points from the surface, as a share of the diagonal of their box.',
     },
   ];
-  // If every point is a centre, one row is enough.
-  return points === centres
-    ? rows
-        .filter(({ label }) => label !== 'Points read')
-        .map((row) => (row.label === 'Points fitted' ? { ...row, label: 'Points' } : row))
-    : rows;
+}
+
+/**
+ * Says what f is, and how many of the points it interpolates.
+ * @param {import('../../engine/types.js').ModelInfo} info
+ */
+export function fittedOf({ points, centres }) {
+  const which = points === centres ? `all ${formatCount(points)}` : `${formatCount(centres)} of ${formatCount(points)}`;
+  return `f interpolates ${which} points, with their normals, by Hermite radial basis functions; its zeros are the surface.`;
 }

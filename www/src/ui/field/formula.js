@@ -1,6 +1,6 @@
 /** The formula: its editor, the description of an error with possible repairs, and the formula as mathematics. */
 import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { fill, h, setAttribute, uniqueId } from '../dom.js';
 import { mathElement, mathParts } from '../mathml.js';
 import { beginsFunction, describeFault, segmentsOf } from './fault.js';
 import { openFunctions } from './functions.js';
@@ -46,7 +46,7 @@ export function createFormula(engine, description) {
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
     input.holder,
     input.error,
-    preview,
+    ...preview,
   );
   document.querySelector('.skip')?.addEventListener('click', (event) => {
     event.preventDefault();
@@ -184,7 +184,7 @@ const excerptElement = ({ excerpt }) =>
     excerpt.after,
   );
 
-/** Shows the formula as mathematics. @param {Engine} engine */
+/** Shows the formula as mathematics, and says so where it is not the one in the editor. @param {Engine} engine */
 function createPreview(engine) {
   const preview = h('div', {
     class: 'preview',
@@ -209,12 +209,19 @@ function createPreview(engine) {
   effect(() => {
     void math.value;
     fit();
-    preview.classList.toggle('stale', engine.fieldError.value !== null);
+  });
+  // Beside a formula that cannot be read, the last one that could stays. What it is must be said.
+  const last = h('p', { class: 'quiet', id: uniqueId('preview') }, 'The last formula that could be read:');
+  effect(() => {
+    const isLast = engine.fieldError.value !== null && math.value !== null;
+    last.hidden = !isLast;
+    preview.classList.toggle('stale', isLast);
+    setAttribute(preview, 'aria-describedby', isLast && last.id);
   });
   let width = 0;
   new ResizeObserver(() => {
     if (preview.clientWidth !== width) fit();
     width = preview.clientWidth;
   }).observe(preview);
-  return preview;
+  return [last, preview];
 }

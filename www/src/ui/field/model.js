@@ -4,7 +4,9 @@
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
-import { factsOf } from './facts.js';
+import { formatCount } from '../format.js';
+import { createSlider } from '../slider.js';
+import { factsOf, fittedOf } from './facts.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('../../engine/types.js').Shape} Shape */
@@ -14,6 +16,8 @@ import { factsOf } from './facts.js';
  * @param {import('../../engine/types.js').Description} description
  */
 export function createModel(engine, description) {
+  const model = computed(() => (engine.field.value?.kind === 'points' ? engine.field.value.model : null));
+  const fitted = h('p', { class: 'quiet' });
   const facts = h('dl', { class: 'facts' });
   const warnings = h('ul', { class: 'warnings' });
   const back = h(
@@ -25,11 +29,8 @@ export function createModel(engine, description) {
     'div',
     { class: 'section model' },
     h('div', { class: 'section-head' }, h('h2', null, 'Function'), back),
-    h(
-      'p',
-      { class: 'quiet' },
-      'f interpolates the points and their normals by Hermite radial basis functions; its zeros are the surface.',
-    ),
+    fitted,
+    createCentres(engine, description, model),
     facts,
     warnings,
   );
@@ -38,19 +39,18 @@ export function createModel(engine, description) {
   /** @type {Shape | null} */
   let left = null;
   effect(() => {
-    const { surface, formula, parameters, declared, bounds, settings } = engine.state.value;
-    if (formula !== '' && engine.field.value?.kind !== 'points')
-      left = { surface, formula, parameters, declared, bounds, settings };
+    const { v: _, view: __, ...shape } = engine.state.value;
+    if (shape.formula !== '' && engine.field.value?.kind !== 'points') left = shape;
   });
   function goBack() {
     if (left) engine.restore({ ...left, settings: engine.state.peek().settings });
     else engine.setSurface(description.default_surface);
   }
 
-  const model = computed(() => (engine.field.value?.kind === 'points' ? engine.field.value.model : null));
   effect(() => {
     section.hidden = engine.field.value?.kind !== 'points';
     const info = model.value;
+    fitted.textContent = info ? fittedOf(info) : '';
     fill(
       facts,
       info
@@ -74,4 +74,45 @@ export function createModel(engine, description) {
     );
   });
   return section;
+}
+
+/**
+ * Creates the control of the number of points that are fitted.
+ * @param {Engine} engine
+ * @param {import('../../engine/types.js').Description} description
+ * @param {import('@preact/signals-core').ReadonlySignal<import('../../engine/types.js').ModelInfo | null>} model
+ */
+function createCentres(engine, { limits }, model) {
+  const scale = { min: limits.centres_min, max: limits.centres_max, step: 10, integer: true };
+  /** The default number for the present model. */
+  let usual = limits.centres;
+  const slider = createSlider({
+    name: 'Points fitted',
+    scale,
+    value: usual,
+    describe: formatCount,
+    // Solving takes seconds, so it waits for the end of a drag.
+    change: (value, live) => {
+      if (!live) engine.setCentres(value);
+    },
+    reset: () => engine.setCentres(usual),
+  });
+  const caption = h('span', { class: 'name' }, 'Points fitted');
+  const row = h('div', { class: 'row centres' }, caption, slider.range, slider.box);
+  explain(caption, () => ({
+    title: 'Points fitted',
+    text: 'Points that f is zero at, with its gradient along their normals: as far from each other as can be. More follow finer details; the time to solve for them grows with the cube of their number.',
+  }));
+  effect(() => {
+    const info = model.value;
+    // While another number is being solved for, the slider shows that one.
+    const asked = engine.loading.value && engine.state.value.centres;
+    if (!info) return;
+    const max = Math.min(limits.centres_max, info.points);
+    usual = Math.min(limits.centres, max);
+    row.hidden = max <= limits.centres_min;
+    slider.setScale({ ...scale, max });
+    slider.set(asked ?? info.centres);
+  });
+  return row;
 }

@@ -1,7 +1,8 @@
-/** The field panel: the surface, its formula, its parameters and its clip box. */
+/** The field panel: the surface, its formula, its parameters, its clip box and the cutting plane. */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { createClipBox } from './clip-box.js';
+import { createCuttingPlane } from './cutting-plane.js';
 import { createFormula } from './formula.js';
 import { createGallery } from './gallery.js';
 import { createLoading } from './loading.js';
@@ -16,8 +17,9 @@ import { storyOf } from './story.js';
  * @param {HTMLElement} body
  * @param {Engine} engine
  * @param {Description} description
+ * @param {import('../motion.js').Motion} motion
  */
-export function mountField(body, engine, description) {
+export function mountField(body, engine, description, motion) {
   fill(
     body,
     createGallery(engine, description),
@@ -25,8 +27,9 @@ export function mountField(body, engine, description) {
     createStory(engine, description),
     createFormula(engine, description),
     createModel(engine, description),
-    createParameters(engine),
+    createParameters(engine, motion),
     ...createClipBox(engine),
+    createCuttingPlane(engine),
   );
 }
 

@@ -1,21 +1,27 @@
-/** Creates a slider and a number box for every parameter of the formula. */
+/** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
 import { computed, effect } from '@preact/signals-core';
 import { createScope, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatStep } from '../format.js';
+import { icon } from '../icons.js';
+import { createSegmented } from '../segmented.js';
 import { createSlider } from '../slider.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('../../engine/types.js').Parameter} Parameter */
 
-/** @param {Engine} engine */
-export function createParameters(engine) {
+/** Speeds at which a parameter is played, as multiples of the usual one. */
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+
+/** @param {Engine} engine @param {import('../motion.js').Motion} motion */
+export function createParameters(engine, motion) {
   const rows = h('div', { class: 'rows' });
   const section = h(
     'div',
     { class: 'section parameters' },
     h('div', { class: 'section-head' }, h('h2', null, 'Parameters'), resetAll(engine)),
     rows,
+    createCourse(motion),
   );
   // The controls are rebuilt only when the set of parameters changes, not when their values do.
   const shape = computed(() =>
@@ -32,7 +38,7 @@ export function createParameters(engine) {
     scope.end();
     fill(
       rows,
-      parameters.map((parameter) => createRow(engine, parameter, values, scope)),
+      parameters.map((parameter) => createRow(engine, parameter, { values, scope, motion })),
     );
   });
   return section;
@@ -63,10 +69,12 @@ function resetAll(engine) {
 /**
  * @param {Engine} engine
  * @param {Parameter} parameter
- * @param {import('@preact/signals-core').ReadonlySignal<Record<string, number>>} values
- * @param {ReturnType<typeof createScope>} scope
+ * @param {object} parts
+ * @param {import('@preact/signals-core').ReadonlySignal<Record<string, number>>} parts.values
+ * @param {ReturnType<typeof createScope>} parts.scope
+ * @param {import('../motion.js').Motion} parts.motion
  */
-function createRow(engine, { name, label, value, min, max, step }, values, scope) {
+function createRow(engine, { name, label, value, min, max, step }, { values, scope, motion }) {
   const title = label && label !== name ? label : `Parameter ${name}`;
   const slider = createSlider({
     // The accessible name includes the symbol, because a sampling setting may have the same label, such as the radius.
@@ -85,10 +93,59 @@ function createRow(engine, { name, label, value, min, max, step }, values, scope
     }),
   );
   const caption = h('span', { class: 'name' }, h('var', null, name));
-  const row = h('div', { class: 'row', data: { parameter: name } }, caption, slider.range, slider.box);
+  const play = h(
+    'button',
+    { type: 'button', class: 'button plain square play', on: { click: () => motion.toggle({ name, min, max, step }) } },
+    icon('play'),
+  );
+  scope.add(
+    effect(() => {
+      const isPlaying = motion.playing.value === name;
+      play.setAttribute('aria-label', `${isPlaying ? 'Pause' : 'Play'} ${name}`);
+      play.replaceChildren(icon(isPlaying ? 'pause' : 'play'));
+    }),
+  );
+  explain(play, () => ({ text: `Moves ${name} from ${formatStep(min, step)} to ${formatStep(max, step)}.` }));
+  const row = h('div', { class: 'row', data: { parameter: name } }, caption, slider.range, slider.box, play);
   explain(caption, () => ({
     title,
     text: `From ${formatStep(min, step)} to ${formatStep(max, step)}. Shift drags ten times finer, a double click resets.`,
   }));
   return row;
+}
+
+/** Creates the choice of how a parameter is played, which is shown while one is. @param {import('../motion.js').Motion} motion */
+function createCourse({ playing, course, speed }) {
+  const courses = createSegmented({
+    name: 'Course',
+    choices: [
+      { value: 'bounce', label: 'Bounce' },
+      { value: 'loop', label: 'Loop' },
+    ],
+    change: (value) => {
+      course.value = /** @type {import('../motion.js').Course} */ (value);
+    },
+  });
+  effect(() => courses.set(course.value));
+  const speeds = h(
+    'select',
+    {
+      class: 'select',
+      'aria-label': 'Speed',
+      on: {
+        change: () => {
+          speed.value = Number(speeds.value);
+        },
+      },
+    },
+    SPEEDS.map((value) => h('option', { value }, `${value}\u202f×`)),
+  );
+  effect(() => {
+    speeds.value = String(speed.value);
+  });
+  const line = h('div', { class: 'course' }, courses.element, speeds);
+  effect(() => {
+    line.hidden = playing.value === null;
+  });
+  return line;
 }

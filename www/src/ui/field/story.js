@@ -1,6 +1,6 @@
 /** Returns the description of the present surface. */
 import { FILE_SURFACE } from '../../engine/types.js';
-import { plural } from '../format.js';
+import { formatCount, plural } from '../format.js';
 
 /**
  * @param {import('../../engine/types.js').Description} description
@@ -15,7 +15,9 @@ export function storyOf(description, id, info) {
     return {
       name: info?.name ?? 'File',
       facts: info ? plural(info.points, 'point') : '',
-      text: 'The surface through the points of this file.',
+      text: info
+        ? `The surface through ${info.centres === info.points ? 'the' : `${formatCount(info.centres)} of the`} points of this file.`
+        : 'The surface through the points of this file.',
       credit: info?.credit ?? '',
     };
   }

@@ -5,7 +5,7 @@ import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, plural } from '../format.js';
-import { drawIcon } from '../icons.js';
+import { icon } from '../icons.js';
 import { clamp } from '../scale.js';
 import { Stepper } from './stepper.js';
 import { describeLevel, shortOf } from './table.js';
@@ -17,15 +17,6 @@ import { describeLevel, shortOf } from './table.js';
 /** Levels per second. */
 const SPEEDS = [2, 5, 10, 25];
 const USUAL_SPEED = 10;
-
-const ICONS = {
-  first: 'M4.500 4v8M11.500 4 7.500 8l4 4',
-  back: 'M9.800 4 5.800 8l4 4',
-  play: 'M5 3.500v9l7.500-4.500z',
-  pause: 'M5.500 4v8M10.500 4v8',
-  forward: 'M6.200 4l4 4-4 4',
-  all: 'M11.500 4v8M4.500 4l4 4-4 4',
-};
 
 /**
  * @param {HTMLElement} body
@@ -133,7 +124,7 @@ function buttonsOf({ chosen, some, playing }, commands) {
   const toggle = button('play', 'Play', 'Shows one level after another.', 'P', commands.toggle, some);
   effect(() => {
     toggle.setAttribute('aria-label', playing.value ? 'Pause' : 'Play');
-    toggle.replaceChildren(drawIcon(ICONS[playing.value ? 'pause' : 'play']));
+    toggle.replaceChildren(icon(playing.value ? 'pause' : 'play'));
   });
   return h(
     'div',
@@ -142,12 +133,12 @@ function buttonsOf({ chosen, some, playing }, commands) {
     button('back', 'Level back', 'One generation level less.', ',', commands.back, notFirst),
     toggle,
     button('forward', 'Level forward', 'One generation level more.', '.', commands.forward, notAll),
-    button('all', 'All levels', 'Every particle, all alike.', '>', commands.all, notAll),
+    button('last', 'All levels', 'Every particle, all alike.', '>', commands.all, notAll),
   );
 }
 
 /**
- * @param {keyof typeof ICONS} name
+ * @param {import('../icons.js').IconName} name
  * @param {string} label
  * @param {string} text
  * @param {string} key
@@ -167,7 +158,7 @@ function button(name, label, text, key, act, enabled) {
         },
       },
     },
-    drawIcon(ICONS[name]),
+    icon(name),
   );
   effect(() => element.setAttribute('aria-disabled', String(!enabled.value)));
   explain(element, () => ({ title: element.getAttribute('aria-label') ?? label, text: `${text} Key ${key}` }), {

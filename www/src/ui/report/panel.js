@@ -4,6 +4,7 @@ import { bindText, fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { withCounts } from '../format.js';
 import { createHistogram } from './histogram.js';
+import { listOf, placeOf } from './places.js';
 import { createTable } from './table.js';
 import { createTiming } from './timing.js';
 
@@ -57,14 +58,36 @@ export function mountReport(body, engine, description) {
     tap: true,
     side: 'left',
   });
+  const said = h('p', { class: 'visually-hidden', role: 'status' });
   const backend = h('p', { class: 'section quiet backend' }, drawn, h('span', null, `Version ${description.version}`));
   fill(
     body,
     waiting,
     warnings,
-    createTable(report, description.report, counted),
+    createTable(report, description.report, { counted, show: createShow(engine, said) }),
+    said,
     createTiming(engine, report),
     createHistogram(report, engine),
     backend,
   );
+}
+
+/**
+ * Returns a function that shows the places of a figure in the picture, one after the other.
+ * @param {Engine} engine
+ * @param {HTMLElement} said  tells assistive technology what is shown
+ */
+function createShow(engine, said) {
+  /** The list that was shown last, and the next place of it. @type {{ list: unknown, next: number }} */
+  let last = { list: null, next: 0 };
+  return (/** @type {import('../../engine/types.js').ReportRow} */ row) => {
+    const list = listOf(engine.report.peek(), row.places);
+    // During a run the figures are those of earlier particles.
+    if (list.length === 0) return;
+    const index = last.list === list ? last.next : 0;
+    const place = placeOf(list, index, engine.columns);
+    engine.pointOut(place);
+    said.textContent = `${row.label}: ${place.text}, in the middle of the picture`;
+    last = { list, next: (index + 1) % list.length };
+  };
 }

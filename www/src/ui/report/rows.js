@@ -61,7 +61,7 @@ export function isTold(report, { key, unless }) {
 export const headingsOf = (report) => [report?.refined_levels != null ? 'Refined' : 'Front', 'Relaxed'];
 
 /** Words shown for the core's values. @type {Record<string, string>} */
-const WORDS = { proven: 'proven', searched: 'by dense search' };
+const WORDS = { proven: 'proven', searched: 'by search' };
 
 /** Largest number of digits of a figure. Decimals of large numbers are not significant. */
 const MOST_DIGITS = 5;

@@ -2,6 +2,7 @@
 import { effect } from '@preact/signals-core';
 import { bindText, h } from '../dom.js';
 import { explain } from '../explain.js';
+import { listOf } from './places.js';
 import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
 
 /** @typedef {import('../../engine/types.js').Report} Report */
@@ -11,9 +12,11 @@ import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRa
  * Creates one table for all groups, so that the figures are aligned. Units are part of the labels.
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow[]} rows
- * @param {import('@preact/signals-core').ReadonlySignal<number>} counted  particles of a run without a report yet, or 0
+ * @param {object} parts
+ * @param {import('@preact/signals-core').ReadonlySignal<number>} parts.counted  particles of a run without a report yet, or 0
+ * @param {(row: ReportRow) => void} parts.show  shows the next place that a figure is about
  */
-export function createTable(report, rows, counted) {
+export function createTable(report, rows, parts) {
   const groups = [...groupRows(rows)];
   const headed = groups.findIndex(([, members]) => members.some(isPaired));
   const table = h(
@@ -33,7 +36,7 @@ export function createTable(report, rows, counted) {
             return heading;
           }),
         ),
-        members.map((row) => createRow(report, row, counted)),
+        members.map((row) => createRow(report, row, parts)),
       );
       effect(() => {
         body.hidden = !members.some((row) => isTold(report.value, row));
@@ -54,9 +57,9 @@ const isPaired = ({ key }) => key.startsWith('quality.');
 /**
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {ReportRow} row
- * @param {import('@preact/signals-core').ReadonlySignal<number>} counted
+ * @param {Parameters<typeof createTable>[2]} parts
  */
-function createRow(report, row, counted) {
+function createRow(report, row, { counted, show }) {
   const term = h(
     'button',
     { type: 'button', class: 'term' },
@@ -69,12 +72,16 @@ function createRow(report, row, counted) {
   });
   const before = h('td');
   const now = h('td', { class: 'now' });
+  const write = createFigure(row, show);
   effect(() => {
     const current = report.value;
     let figures = current ? figuresOf(current, row.key) : null;
     if (figures && row.key === 'count') figures = { ...figures, now: counted.value || figures.now };
-    before.textContent = writeFigure(row, figures?.before);
-    now.textContent = current && row.to ? writeRange(row, current) : writeFigure(row, figures?.now);
+    // The places are those of the present particles.
+    const has = listOf(current, row.places).length > 0;
+    const is = figures?.now === undefined ? 'before' : 'now';
+    write(before, writeFigure(row, figures?.before), has && is === 'before');
+    write(now, current && row.to ? writeRange(row, current) : writeFigure(row, figures?.now), has && is === 'now');
     now.dataset.change = figures ? compare(row, figures.before, figures.now) : 'same';
   });
   const paired = isPaired(row);
@@ -90,6 +97,29 @@ function createRow(report, row, counted) {
     now.colSpan = wide ? 2 : 1;
   });
   return line;
+}
+
+/**
+ * Returns a function that writes a figure into a cell, as a button if it has places in the picture.
+ * @param {ReportRow} row
+ * @param {(row: ReportRow) => void} show
+ */
+function createFigure(row, show) {
+  const button = h('button', { type: 'button', class: 'shows', on: { click: () => show(row) } });
+  explain(
+    button,
+    () => ({ title: 'Show it in the picture', text: 'The worst place comes first; press again for the next one.' }),
+    { side: 'left' },
+  );
+  return (/** @type {HTMLElement} */ cell, /** @type {string} */ text, /** @type {boolean} */ pressable) => {
+    if (!pressable) {
+      cell.textContent = text;
+      return;
+    }
+    button.textContent = text;
+    button.setAttribute('aria-label', `${row.label} ${text}, show it in the picture`);
+    if (button.parentElement !== cell) cell.replaceChildren(button);
+  };
 }
 
 const CHANGES = { better: 'Relaxation made it better.', worse: 'Relaxation made it worse.', same: '' };

@@ -9,25 +9,75 @@ import { clamp } from '../scale.js';
 
 const OFFSET_PX = 16;
 
-/** @param {HTMLElement} host @param {Engine} engine */
-export function mountHover(host, engine) {
+/**
+ * @param {HTMLElement} host @param {Engine} engine
+ * @param {{ view: HTMLElement, follow: (index: number) => void }} parts  `view` is the part of the picture that no panel covers
+ */
+export function mountHover(host, engine, { view, follow }) {
   const card = h('div', { class: 'hover-card', hidden: true });
+  const go = (/** @type {number} */ index) => {
+    engine.dismissHover();
+    follow(index);
+  };
   host.append(card);
-  let index = -1;
   effect(() => {
     const hover = engine.hover.value;
     card.hidden = hover === null;
+    card.toggleAttribute('data-tapped', hover?.tapped ?? false);
     if (!hover) return;
-    if (hover.index !== index) index = hover.index;
-    fill(card, rowsOf(hover));
-    const { width, height } = card.getBoundingClientRect();
-    const { left, top } = host.getBoundingClientRect();
-    const right = hover.x + OFFSET_PX + width < innerWidth - 8;
-    const x = right ? hover.x + OFFSET_PX : hover.x - OFFSET_PX - width;
-    const y = clamp(hover.y + OFFSET_PX, 8, innerHeight - height - 8);
-    card.style.transform = `translate(${Math.round(Math.max(8 - left, x))}px, ${Math.round(y - Math.min(0, top))}px)`;
+    fill(card, rowsOf(hover), hover.tapped ? followButton(() => go(hover.index)) : null);
   });
+  // The card of a pressed particle stays beside it while the picture turns.
+  effect(() => {
+    const hover = engine.hover.value;
+    if (!hover) return;
+    if (hover.tapped) void engine.frame.value;
+    put(card, hover.tapped ? (engine.project(hover.position) ?? hover) : hover, {
+      host: host.getBoundingClientRect(),
+      within: hover.tapped ? freeOf(view) : { left: 8, right: innerWidth - 8, top: 8, bottom: innerHeight - 8 },
+    });
+  });
+  host.addEventListener('keydown', (event) => press(event), true);
+
+  /** @param {KeyboardEvent} event */
+  function press(event) {
+    const hover = engine.hover.peek();
+    if (!hover?.tapped) return;
+    if (event.key === 'Escape') {
+      engine.dismissHover();
+      /** @type {HTMLElement | null} */ (host.querySelector('.canvas-host'))?.focus();
+    } else if (event.key === 'Enter' && !(event.target instanceof HTMLButtonElement)) {
+      // Enter takes the particle in the middle of the picture. Pressed again, it follows that one.
+      const middle = engine.project(engine.state.peek().view.camera.target);
+      if (!middle || engine.pick(middle.x, middle.y) !== hover.index) return;
+      go(hover.index);
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
 }
+
+/** @typedef {{ left: number, right: number, top: number, bottom: number }} Edges */
+
+/** @param {HTMLElement} view @returns {Edges} the part of the view beside the toolbar */
+function freeOf(view) {
+  const { left, right, top, bottom } = view.getBoundingClientRect();
+  const toolbar = view.querySelector('.toolbar')?.getBoundingClientRect();
+  return { left, right: toolbar ? Math.min(right, toolbar.left - 4) : right, top, bottom };
+}
+
+/** @param {HTMLElement} card @param {{ x: number, y: number }} at @param {{ host: DOMRect, within: Edges }} room */
+function put(card, at, { host, within }) {
+  const { width, height } = card.getBoundingClientRect();
+  const fits = at.x + OFFSET_PX + width < within.right;
+  const x = Math.max(within.left, fits ? at.x + OFFSET_PX : at.x - OFFSET_PX - width);
+  const y = clamp(at.y + OFFSET_PX, within.top, Math.max(within.top, within.bottom - height));
+  card.style.transform = `translate(${Math.round(x - host.left)}px, ${Math.round(y - Math.min(0, host.top))}px)`;
+}
+
+/** @param {() => void} act */
+const followButton = (act) =>
+  h('button', { type: 'button', class: 'button small', on: { click: act } }, 'Follow this particle');
 
 /** @param {Hover} hover */
 function rowsOf(hover) {

@@ -50,13 +50,14 @@ function swatch(colour) {
 /** @type {Record<Legend['kind'], (legend: Legend) => import('../dom.js').Child[]>} */
 const SCALES = {
   plain: () => [],
-  cyclic: ({ colours }) => [
+  cyclic: ({ colours, unit }) => [
     h(
       'div',
       { class: 'cycle', role: 'img', 'aria-label': `${colours.length} colours, repeating` },
       colours.map(swatch),
     ),
     h('div', { class: 'ends' }, h('span', null, '0'), h('span', null, `${colours.length - 1}, then again`)),
+    unit ? h('span', { class: 'unit' }, unit) : null,
   ],
   categories: ({ entries }) => [
     h(

@@ -5,7 +5,7 @@ import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { icon } from '../icons.js';
 import { attachMenu } from '../menu.js';
-import { copyLink, exportFile, exportMesh, savePicture } from '../share.js';
+import { copyLink, exportFile, exportMesh } from '../share.js';
 import { createSlider } from '../slider.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
@@ -23,9 +23,14 @@ const SIZE = { min: 0.2, max: 1.5, step: 0.01, initial: 0.92 };
 
 /**
  * @param {Engine} engine
- * @param {{ hide: () => void, shortcuts: () => void, toast: import('../toasts.js').Toast }} page
+ * @param {object} page
+ * @param {() => void} page.hide
+ * @param {() => void} page.shortcuts
+ * @param {() => void} page.picture  opens the dialog that takes the picture away
+ * @param {import('../motion.js').Motion} page.motion
+ * @param {import('../toasts.js').Toast} page.toast
  */
-export function createToolbar(engine, { hide, shortcuts, toast }) {
+export function createToolbar(engine, { hide, shortcuts, picture, motion, toast }) {
   const view = tool('options', 'View options', 'Turning, discs or mesh, theme.');
   const save = tool('save', 'Export', 'The particles, or the mesh over them, as a file.');
   const bar = h(
@@ -38,14 +43,25 @@ export function createToolbar(engine, { hide, shortcuts, toast }) {
     pointsToggle(engine),
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('link', 'Copy link', 'A link that holds the whole state and the camera.', () => copyLink(engine, toast)),
-    tool('picture', 'Save picture', 'The picture as a PNG file.', () => savePicture(engine, toast)),
+    tool('picture', 'Save picture', 'The picture as a file, on paper, or as a film.', picture),
     save,
     h('span', { class: 'rule', 'aria-hidden': 'true' }),
     tool('help', 'Keyboard shortcuts', 'Key ?', shortcuts),
   );
-  attachMenu(view, [turning(engine), ...drawing(engine), theme(engine), choice('Hide the panels', hide)], {
-    label: 'View options',
-  });
+  attachMenu(
+    view,
+    [
+      turning(engine, motion),
+      ...drawing(engine),
+      scale(engine),
+      theme(engine),
+      choice('Measure a distance', () => engine.setView({ measured: [] })),
+      choice('Hide the panels', hide),
+    ],
+    {
+      label: 'View options',
+    },
+  );
   attachMenu(
     save,
     [
@@ -104,8 +120,11 @@ function choice(label, act, note) {
   );
 }
 
-/** Creates buttons that turn the picture, for users who cannot drag. @param {Engine} engine */
-function turning(engine) {
+/**
+ * Creates buttons that turn the picture, for users who cannot drag, and one that keeps it turning.
+ * @param {Engine} engine @param {import('../motion.js').Motion} motion
+ */
+function turning(engine, motion) {
   /** @type {[import('../icons.js').IconName, string, number, number][]} */
   const turns = [
     ['left', 'Turn left', -1, 0],
@@ -113,6 +132,12 @@ function turning(engine) {
     ['up', 'Tilt up', 0, -1],
     ['down', 'Tilt down', 0, 1],
   ];
+  const turntable = h(
+    'button',
+    { type: 'button', class: 'button square', 'aria-label': 'Turntable', on: { click: motion.toggleTurning } },
+    icon('turntable'),
+  );
+  effect(() => turntable.setAttribute('aria-pressed', String(motion.turning.value)));
   return h(
     'div',
     { class: 'menu-line', role: 'group', 'aria-label': 'Turn' },
@@ -132,6 +157,7 @@ function turning(engine) {
           icon(name),
         ),
       ),
+      turntable,
     ),
   );
 }
@@ -174,7 +200,7 @@ function choices(engine, name, key, values) {
  * Creates a line of buttons that switch parts of the view on and off.
  * @param {Engine} engine
  * @param {string} name
- * @param {['edges' | 'marks', string, string][]} parts  key, label, explanation
+ * @param {['edges' | 'marks' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label, explanation
  */
 function switches(engine, name, parts) {
   const buttons = parts.map(([key, label, text]) => {
@@ -215,8 +241,12 @@ function drawing(engine) {
       'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.',
     ],
   ]);
+  const beneath = switches(engine, 'Beneath', [
+    ['ghost', 'Surface', 'The surface beneath the discs, faintly. Joining the particles takes a moment.'],
+  ]);
   effect(() => {
     discs.hidden = draw.value !== 'discs';
+    beneath.hidden = draw.value !== 'discs';
     faces.hidden = draw.value !== 'mesh';
     shown.hidden = draw.value !== 'mesh';
   });
@@ -224,8 +254,16 @@ function drawing(engine) {
     ['discs', 'Discs'],
     ['mesh', 'Mesh'],
   ]);
-  return [ways, discs, faces, shown];
+  return [ways, discs, beneath, faces, shown];
 }
+
+/** @param {Engine} engine */
+const scale = (engine) =>
+  switches(engine, 'Scale', [
+    ['axes', 'Axes', 'Axes with ticks around the surface.'],
+    ['box', 'Box', 'The clip box with a handle on each face and, without axes, its lengths.'],
+    ['bar', 'Bar', 'A scale bar. It holds in the middle of the picture; what is nearer looks longer.'],
+  ]);
 
 /** @param {Engine} engine */
 const theme = (engine) =>

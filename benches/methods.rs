@@ -1,0 +1,227 @@
+//! Both methods, the front and the refined one, side by side over the gallery and the models: `docs/methods.md` is what this writes.
+//!
+//! `cargo bench --bench methods > docs/methods.md` measures every surface with 4,000 and with 20,000 particles. `--count N` takes
+//! another number, `--seeds K` takes the worst of the seeds 0 to K − 1 in each column, `--adaptive` takes sizes that follow the
+//! curvature, and names of surfaces take these alone.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
+
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::rbf::RbfField;
+use marching_particles::field::{Field, gallery, model};
+use marching_particles::math::Bounds;
+use marching_particles::pointcloud::models;
+use marching_particles::quality::{self, Figures, Sizes};
+use marching_particles::sampler::{Method, Sampler, Sampling, Settings, SizeMode};
+use std::io::{self, Write};
+use std::time::Instant;
+
+/// Numbers of particles.
+const COUNTS: [u32; 2] = [4_000, 20_000];
+/// Runs of which the mean counts: the system counts time in ticks of a few milliseconds.
+const RUNS: u32 = 3;
+
+/// What stands above the tables.
+const HEAD: &str = "\
+The front with ten relaxation steps and the refined method, with the same number of particles wanted: the gallery's surfaces and the
+models from points, one after the other. This page is written by `cargo bench --bench methods > docs/methods.md`. The quality
+figures, seed 0, are the same on every machine; README.md says what they mean, and on which machine the times were taken, which are
+processor time, mean of three runs. *Refined 3 ×* means that every edge of the coarse front was halved three times.";
+
+/// What is measured.
+struct Plan {
+    names: Vec<String>,
+    counts: Vec<u32>,
+    seeds: u64,
+    sampling: Sampling,
+}
+
+impl Plan {
+    /// The plan of the command line.
+    fn of(mut arguments: impl Iterator<Item = String>) -> Self {
+        let mut plan = Self { names: Vec::new(), counts: Vec::new(), seeds: 1, sampling: Sampling::Uniform };
+        while let Some(argument) = arguments.next() {
+            let mut number = || {
+                let number = arguments.next().and_then(|number| number.parse().ok());
+                number.unwrap_or_else(|| panic!("{argument} takes a whole number"))
+            };
+            match argument.as_str() {
+                "--count" => plan.counts.push(number()),
+                "--seeds" => plan.seeds = u64::from(number()),
+                "--adaptive" => plan.sampling = Sampling::Adaptive,
+                // From cargo.
+                "--bench" => {}
+                name => plan.names.push(name.to_owned()),
+            }
+        }
+        if plan.counts.is_empty() {
+            plan.counts.extend(COUNTS);
+        }
+        plan
+    }
+
+    fn has(&self, id: &str) -> bool {
+        self.names.is_empty() || self.names.iter().any(|name| name == id)
+    }
+}
+
+/// The worst figures of some runs.
+struct Row {
+    particles: usize,
+    /// Times that the coarse front was refined, the fewest; or why it was not.
+    levels: Result<u32, String>,
+    figures: Figures,
+    /// Seconds of processor time of a run, with the fastest of the seeds.
+    seconds: f64,
+}
+
+/// Processor time of this thread in seconds, so that other work on the machine does not count, or wall time if the
+/// system does not report it.
+fn processor_seconds(start: Instant) -> f64 {
+    std::fs::read_to_string("/proc/thread-self/schedstat")
+        .ok()
+        .and_then(|text| text.split(' ').next()?.parse::<f64>().ok())
+        .map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
+}
+
+/// The worse of two in each figure of the table.
+fn worse(a: Figures, b: Figures) -> Figures {
+    Figures {
+        six: a.six.min(b.six),
+        ang_min_mean: a.ang_min_mean.min(b.ang_min_mean),
+        ang_min: a.ang_min.min(b.ang_min),
+        gt90: a.gt90.max(b.gt90),
+        rho: a.rho.min(b.rho),
+        cover: a.cover.max(b.cover),
+        size_cv: a.size_cv.max(b.size_cv),
+        ..a
+    }
+}
+
+/// Runs with all seeds, on a field of which a new one is made for each run.
+fn row(make: &dyn Fn() -> Box<dyn Field>, bounds: &Bounds, settings: Settings, seeds: u64) -> Row {
+    let start = Instant::now();
+    let mut row: Option<Row> = None;
+    for seed in 0..seeds {
+        let settings = Settings { seed, ..settings };
+        let mut seconds = 0.0;
+        let mut sampler = Sampler::new();
+        for _ in 0..RUNS {
+            let mut field = make();
+            let begun = processor_seconds(start);
+            sampler.start(&mut *field, bounds, &settings).expect("valid settings");
+            while sampler.step(&mut *field, 65_536).stop_reason.is_none() {}
+            seconds += (processor_seconds(start) - begun) / f64::from(RUNS);
+        }
+        let particles = sampler.particles();
+        let sizes = match settings.sampling {
+            Sampling::Uniform => quality::Options::default().sizes,
+            Sampling::Adaptive => Sizes::Given(&particles.radius),
+        };
+        let options = quality::Options { sizes, ..quality::Options::default() };
+        let (position, normal) = (&particles.position, &particles.normal);
+        let figures = quality::measure(position, normal, &mut *make(), Some(bounds), &options).figures;
+        let counts = sampler.counts();
+        let reason = || counts.refusal.map(|refusal| refusal.to_string()).unwrap_or_default();
+        let next = Row {
+            particles: particles.len(),
+            levels: counts.refined_levels.ok_or_else(reason),
+            figures,
+            seconds,
+        };
+        row = Some(match row.take() {
+            None => next,
+            Some(row) => Row {
+                particles: row.particles,
+                levels: row.levels.and_then(|levels| next.levels.map(|other| levels.min(other))),
+                figures: worse(row.figures, next.figures),
+                seconds: row.seconds.min(next.seconds),
+            },
+        });
+    }
+    row.expect("at least one seed")
+}
+
+fn write_row(out: &mut dyn Write, name: &str, method: &str, row: &Row, is_adaptive: bool) -> io::Result<()> {
+    let f = &row.figures;
+    let evenness = if is_adaptive {
+        format!("{:.2} %", 100.0 * f.size_cv)
+    } else {
+        format!("{:.3} | {:.3}", f.cover, f.rho)
+    };
+    writeln!(
+        out,
+        "| {name} | {method} | {} | {:.2} % | {:.2} | {:.1} | {:.4} % | {evenness} | {:.2} |",
+        row.particles,
+        100.0 * f.six,
+        f.ang_min_mean,
+        f.ang_min,
+        100.0 * f.gt90,
+        1e6 * row.seconds / row.particles as f64
+    )
+}
+
+/// A surface: its identifier, its field and its box.
+type Source = (&'static str, Box<dyn Fn() -> Box<dyn Field>>, Bounds);
+
+fn sources(plan: &Plan) -> Vec<Source> {
+    let surfaces = gallery::SURFACES.iter().filter(|surface| plan.has(surface.id)).map(|surface| {
+        let field: FormulaField = surface.field();
+        let make: Box<dyn Fn() -> Box<dyn Field>> = Box::new(move || Box::new(field.clone()));
+        (surface.id, make, surface.bounds)
+    });
+    let models = model::MODELS.iter().filter(|model| plan.has(model.id)).map(|model| {
+        let fit = models::begin(model).finish().expect("a built-in model can be solved for");
+        let data = fit.data.clone();
+        let make: Box<dyn Fn() -> Box<dyn Field>> =
+            Box::new(move || Box::new(RbfField::new(data.clone()).expect("a solved system is a field")));
+        (model.id, make, fit.bounds)
+    });
+    surfaces.chain(models).collect()
+}
+
+fn main() -> io::Result<()> {
+    let plan = Plan::of(std::env::args().skip(1));
+    let is_adaptive = plan.sampling == Sampling::Adaptive;
+    let out = &mut io::stdout();
+    writeln!(out, "# Both methods over the gallery\n\n{HEAD}")?;
+    for &count in &plan.counts {
+        let evenness = if is_adaptive { "`size_cv`" } else { "Largest hole | Closest pair" };
+        writeln!(out, "\n## {count} particles\n")?;
+        writeln!(
+            out,
+            "| Surface | Method | Particles | Six neighbours | Mean smallest angle | Smallest angle | Triangles > 90° | \
+             {evenness} | µs per particle |"
+        )?;
+        writeln!(
+            out,
+            "|---|---|---:|---:|---:|---:|---:|---:|{}---:|",
+            if is_adaptive { "" } else { "---:|" }
+        )?;
+        let mut reasons = Vec::new();
+        for (id, make, bounds) in sources(&plan) {
+            let settings = Settings {
+                size_mode: SizeMode::Count,
+                count,
+                sampling: plan.sampling,
+                max_particles: count.saturating_mul(2),
+                ..Settings::default()
+            };
+            let front = row(&*make, &bounds, settings, plan.seeds);
+            write_row(out, id, "front", &front, is_adaptive)?;
+            let refined = row(&*make, &bounds, Settings { method: Method::Refined, ..settings }, plan.seeds);
+            match &refined.levels {
+                Ok(levels) => {
+                    write_row(out, "", &format!("refined {levels} ×"), &refined, is_adaptive)?;
+                }
+                Err(reason) => reasons.push((id, reason.clone())),
+            }
+        }
+        if !reasons.is_empty() {
+            writeln!(out, "\nWhere the front stands:\n")?;
+        }
+        for (id, reason) in reasons {
+            writeln!(out, "- {id}: {reason}")?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,146 @@
+//! Periods of a formula along the axes, found in its syntax tree.
+
+use super::ast::{Constant, Equation, Expr, Factor, Function, Kind, Sign};
+use core::f64::consts::{PI, TAU};
+
+/// Largest numerator and denominator of the ratio of two periods that have a common multiple. What comes together only after
+/// more of them is taken for not periodic.
+const MOST_PERIODS: u32 = 12;
+/// Largest relative error of such a ratio, by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// How a value changes along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Along {
+    /// It does not; its value where it is a number.
+    Constant(Option<f64>),
+    /// By this factor of the coordinate, and something that does not change.
+    Linear(f64),
+    /// It comes again after this length.
+    Periodic(f64),
+    /// Otherwise.
+    Other,
+}
+
+/// The length after which f comes again along an axis: 0 if it does not change along it, none if it is not known to come again.
+pub(super) fn period(equation: &Equation, axis: u8, parameter: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+    let walk = Walk { axis, parameter };
+    let left = walk.along(&equation.left);
+    let whole = match &equation.right {
+        Some(right) => sum(left, negated(walk.along(right))),
+        None => left,
+    };
+    match whole {
+        Along::Constant(_) => Some(0.0),
+        Along::Periodic(period) => Some(period),
+        Along::Linear(_) | Along::Other => None,
+    }
+}
+
+struct Walk<'a> {
+    axis: u8,
+    parameter: &'a dyn Fn(&str) -> Option<f64>,
+}
+
+impl Walk<'_> {
+    fn along(&self, expr: &Expr) -> Along {
+        match &expr.kind {
+            Kind::Number(value) => Along::Constant(Some(*value)),
+            Kind::Constant(constant) => Along::Constant(Some(Constant::value(*constant))),
+            Kind::Parameter(name) => Along::Constant((self.parameter)(name)),
+            Kind::Coordinate(axis) if *axis == self.axis => Along::Linear(1.0),
+            Kind::Coordinate(_) => Along::Constant(None),
+            Kind::Negated(inner) => negated(self.along(inner)),
+            Kind::Sum(terms) => terms.iter().fold(Along::Constant(Some(0.0)), |before, (sign, term)| {
+                let term = self.along(term);
+                sum(before, if *sign == Sign::Minus { negated(term) } else { term })
+            }),
+            Kind::Product(factors) => {
+                factors.iter().fold(Along::Constant(Some(1.0)), |before, (factor, term)| {
+                    let term = self.along(term);
+                    product(before, if *factor == Factor::Over { inverse(term) } else { term })
+                })
+            }
+            Kind::Power(base, exponent) => joined(self.along(base), self.along(exponent)),
+            Kind::Call(function, arguments) => self.call(*function, arguments),
+        }
+    }
+
+    fn call(&self, function: Function, arguments: &[Expr]) -> Along {
+        let turn = match function {
+            Function::Sin | Function::Cos => Some(TAU),
+            Function::Tan => Some(PI),
+            _ => None,
+        };
+        let values: Vec<Along> = arguments.iter().map(|argument| self.along(argument)).collect();
+        match (turn, values.as_slice()) {
+            (Some(turn), [Along::Linear(factor)]) => Along::Periodic(turn / factor.abs()),
+            _ => values.into_iter().fold(Along::Constant(None), joined),
+        }
+    }
+}
+
+fn negated(value: Along) -> Along {
+    match value {
+        Along::Constant(Some(value)) => Along::Constant(Some(-value)),
+        Along::Linear(factor) => Along::Linear(-factor),
+        other => other,
+    }
+}
+
+fn inverse(value: Along) -> Along {
+    match value {
+        Along::Constant(Some(value)) if value != 0.0 => Along::Constant(Some(1.0 / value)),
+        Along::Constant(_) => Along::Constant(None),
+        Along::Periodic(period) => Along::Periodic(period),
+        Along::Linear(_) | Along::Other => Along::Other,
+    }
+}
+
+fn sum(a: Along, b: Along) -> Along {
+    match (a, b) {
+        (Along::Constant(Some(a)), Along::Constant(Some(b))) => Along::Constant(Some(a + b)),
+        (Along::Linear(a), Along::Linear(b)) if a + b == 0.0 => Along::Constant(None),
+        (Along::Linear(a), Along::Linear(b)) => Along::Linear(a + b),
+        (Along::Linear(factor), Along::Constant(_)) | (Along::Constant(_), Along::Linear(factor)) => {
+            Along::Linear(factor)
+        }
+        (a, b) => joined(a, b),
+    }
+}
+
+fn product(a: Along, b: Along) -> Along {
+    match (a, b) {
+        (Along::Constant(Some(a)), Along::Constant(Some(b))) => Along::Constant(Some(a * b)),
+        (Along::Linear(factor), Along::Constant(Some(by)))
+        | (Along::Constant(Some(by)), Along::Linear(factor))
+            if by != 0.0 =>
+        {
+            Along::Linear(factor * by)
+        }
+        (a, b) => joined(a, b),
+    }
+}
+
+/// What is made of two values by a function of both.
+fn joined(a: Along, b: Along) -> Along {
+    match (a, b) {
+        (Along::Constant(_), Along::Constant(_)) => Along::Constant(None),
+        (Along::Periodic(period), Along::Constant(_)) | (Along::Constant(_), Along::Periodic(period)) => {
+            Along::Periodic(period)
+        }
+        (Along::Periodic(a), Along::Periodic(b)) => common(a, b).map_or(Along::Other, Along::Periodic),
+        _ => Along::Other,
+    }
+}
+
+/// The least common multiple of two periods.
+fn common(a: f64, b: f64) -> Option<f64> {
+    (1..=MOST_PERIODS).find_map(|n| {
+        let whole = f64::from(n) * a;
+        let times = whole / b;
+        let nearest = times.round();
+        let is_whole = nearest >= 1.0 && (times - nearest).abs() <= ROUNDING * nearest;
+        (is_whole && nearest <= f64::from(MOST_PERIODS)).then_some(whole)
+    })
+}

@@ -1,0 +1,327 @@
+//! Non-uniform sampling, paper §5: children of different sizes, pushed until they touch their parent (Figs 7 and 8).
+//!
+//! # Differs from the paper
+//!
+//! * The paper names no step lengths.
+//! * A child is added if the free angle τ is at least a share of φ ([`Settings::fit`](super::Settings::fit)).
+//! * The radius of a child is evaluated once more where it lands. A child nearer to a particle than the match tolerance
+//!   allows is not added.
+
+use super::event::{Event, Nearby};
+use super::settings::Order;
+use super::state::is_same_sheet;
+use super::surface::{Circle, Landing, Surface};
+use super::uniform::Frame;
+use super::walk::{Setup, Walk};
+use crate::particles::SlotFate;
+use core::f64::consts::TAU;
+use glam::{DVec2, DVec3};
+
+/// Neighbours are gathered within this many radii of the parent, and of the largest particle.
+const REACH: f64 = 3.7;
+
+/// A neighbour within this share of r_i + r_j lies on the circle around the parent.
+const TOUCHING: f64 = 1.25;
+
+/// Slack of the sheet test, as a share of r_i + r_j.
+const RISE_SLACK: f64 = 0.35;
+
+/// Length of a push away from the parent, as a share of the parent's radius.
+const PUSH: f64 = 1.0 / 16.0;
+
+/// Angle of a push along the circle, in radians.
+const TURN_RAD: f64 = 1.0 / 32.0;
+
+/// Most pushes in each direction.
+const MAX_PUSHES: u32 = 200;
+
+/// Slots of a particle, at most.
+const MAX_SLOTS: u32 = 10;
+
+/// A particle as a disc in the tangent plane, at its true distance from the parent.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    centre: DVec2,
+    radius: f64,
+}
+
+impl Disc {
+    /// Direction in the tangent plane, from 0 to 2π.
+    fn angle(&self) -> f64 {
+        let angle = libm::atan2(self.centre.y, self.centre.x);
+        if angle < 0.0 { angle + TAU } else { angle }
+    }
+}
+
+/// A particle of the sheet around a parent.
+#[derive(Clone, Copy, Debug)]
+struct Around {
+    particle: u32,
+    disc: Disc,
+    touches: bool,
+}
+
+/// The parent whose children are placed, and what is around it.
+struct Circumference {
+    parent: u32,
+    p: DVec3,
+    radius: f64,
+    frame: Frame,
+    around: Vec<Around>,
+    /// The next slot.
+    slot: u32,
+}
+
+impl Circumference {
+    fn place(&self, centre: DVec2) -> DVec3 {
+        self.p + self.frame.u * centre.x + self.frame.w * centre.y
+    }
+
+    fn disc(&self, position: DVec3, radius: f64) -> Disc {
+        let offset = position - self.p;
+        let flat = DVec2::new(offset.dot(self.frame.u), offset.dot(self.frame.w));
+        Disc { centre: flat.normalize_or_zero() * offset.length(), radius }
+    }
+
+    /// Largest overlap of a disc with a particle around, as a share of r_i + r_j; negative if there is none.
+    fn overlap(&self, child: Disc) -> f64 {
+        let shares = self
+            .around
+            .iter()
+            .map(|other| 1.0 - other.disc.centre.distance(child.centre) / (child.radius + other.disc.radius));
+        shares.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// φ: the angle that the diameter of a child takes on the circle.
+    fn taken(&self, child: Disc) -> f64 {
+        2.0 * libm::asin(child.radius / (self.radius + child.radius))
+    }
+
+    /// Angle at the parent between a child that touches it and another disc that touches the child.
+    fn beside(&self, child: Disc, other: Disc) -> f64 {
+        let (d, e) = (self.radius + child.radius, other.centre.length());
+        let apart = child.radius + other.radius;
+        libm::acos(((d * d + e * e - apart * apart) / (2.0 * d * e)).clamp(-1.0, 1.0))
+    }
+
+    /// τ: the free angle between two discs; φ where the child just fits between them.
+    fn free(&self, child: Disc, before: Disc, behind: Disc) -> f64 {
+        let apart = behind.angle() - before.angle();
+        let apart = if apart <= 0.0 { apart + TAU } else { apart };
+        apart - self.beside(child, before) - self.beside(child, behind) + self.taken(child)
+    }
+}
+
+impl Walk {
+    /// Treats a particle: places children in each of the free spaces around it (§5.3).
+    pub(super) fn treat_adaptive(&mut self, surface: &mut Surface, setup: &Setup, log: &mut Vec<Event>) {
+        let next = match setup.settings.order {
+            Order::Queue => self.place.waiting.pop_front(),
+            Order::Stack => self.place.waiting.pop_back(),
+        };
+        let Some(particle) = next else { return };
+        log.push(Event::Taken { particle });
+        let own = self.particles[particle as usize];
+        // Gather the neighbouring particles (Fig. 8a).
+        let reach = REACH * own.radius;
+        let mut neighbours = self.buckets.near(&self.particles, own.p(), reach);
+        neighbours.retain(|near| near.particle != particle);
+        log.push(Event::Gathered { particle, reach, neighbours: neighbours.clone() });
+        let frame = self.tangent_frame(particle);
+        self.note_frame(particle, &frame, None, log);
+        let mut ring = Circumference {
+            parent: particle,
+            p: own.p(),
+            radius: own.radius,
+            frame,
+            around: Vec::new(),
+            slot: 0,
+        };
+        ring.around = neighbours.iter().filter_map(|near| self.around(&ring, near)).collect();
+        if let Some(parent) = own.parent {
+            self.decide((particle, 0), SlotFate::Parent, Some(parent), log);
+            ring.slot = 1;
+        }
+        // "If we have n existing particles we have n free available spaces."
+        let mut touching: Vec<Around> = ring.around.iter().filter(|other| other.touches).copied().collect();
+        touching.sort_by(|a, b| a.disc.angle().total_cmp(&b.disc.angle()));
+        if touching.is_empty() {
+            let (parent, angles_rad) = (particle, [0.0, TAU]);
+            log.push(Event::Arc { parent, before: None, behind: None, angles_rad });
+            self.fill_arc(surface, setup, &mut ring, None, log);
+        }
+        for (k, &before) in touching.iter().enumerate() {
+            let behind = touching[(k + 1) % touching.len()];
+            log.push(Event::Arc {
+                parent: particle,
+                before: Some(before.particle),
+                behind: Some(behind.particle),
+                angles_rad: [before.disc.angle(), behind.disc.angle()],
+            });
+            self.fill_arc(surface, setup, &mut ring, Some([before.disc, behind.disc]), log);
+        }
+        self.finish(particle, surface, log);
+    }
+
+    /// A neighbour of the parent's sheet as a disc.
+    fn around(&self, ring: &Circumference, near: &Nearby) -> Option<Around> {
+        let other = &self.particles[near.particle as usize];
+        let both = ring.radius + other.radius;
+        let offset = other.p() - ring.p;
+        is_same_sheet(offset, ring.frame.n, other.n(), RISE_SLACK * both).then(|| Around {
+            particle: near.particle,
+            disc: ring.disc(other.p(), other.radius),
+            touches: near.distance <= TOUCHING * both,
+        })
+    }
+
+    /// Places children in a free space, from its beginning on, until the next one has no room.
+    fn fill_arc(
+        &mut self,
+        surface: &mut Surface,
+        setup: &Setup,
+        ring: &mut Circumference,
+        ends: Option<[Disc; 2]>,
+        log: &mut Vec<Event>,
+    ) {
+        let mut last = ends.map(|[before, _]| before);
+        let mut behind = ends.map(|[_, behind]| behind);
+        while ring.slot < MAX_SLOTS && !self.place.is_capped {
+            let of = (ring.parent, ring.slot);
+            let child = pushed(surface, setup, ring, last, log);
+            let phi_rad = ring.taken(child);
+            let tau_rad = match (last, behind) {
+                (Some(last), Some(behind)) => ring.free(child, last, behind),
+                _ => TAU,
+            };
+            let fits = tau_rad >= setup.settings.fit * phi_rad;
+            log.push(Event::Room { parent: of.0, slot: of.1, phi_rad, tau_rad, fits });
+            if fits {
+                self.settle_pushed(surface, setup, ring, child, log);
+            } else {
+                self.decide(of, SlotFate::Matched, None, log);
+            }
+            ring.slot += 1;
+            if !fits {
+                break;
+            }
+            last = Some(child);
+            behind = behind.or(last);
+        }
+    }
+
+    /// "Finally we re-project the children of P on the surface" (§4.3), and adds the child unless a particle is in its way.
+    fn settle_pushed(
+        &mut self,
+        surface: &mut Surface,
+        setup: &Setup,
+        ring: &mut Circumference,
+        child: Disc,
+        log: &mut Vec<Event>,
+    ) {
+        let of = (ring.parent, ring.slot);
+        let direction = ring.frame.u * child.centre.x + ring.frame.w * child.centre.y;
+        let distance = child.centre.length();
+        let direction = direction / distance;
+        let circle = Circle { centre: ring.p, normal: ring.frame.n, direction, radius: distance };
+        let landing = self.land(surface, setup, of, &circle, 0.0, log);
+        let landing = match landing {
+            Landing::On { position, .. } if setup.radius_at(surface, position).is_none() => {
+                Landing::Undefined
+            }
+            landing => landing,
+        };
+        let Some((position, normal)) = self.usable(surface, of, landing, log) else { return };
+        let Some(radius) = setup.radius_at(surface, position) else { return };
+        let share = setup.settings.match_tolerance;
+        let nearest = self
+            .buckets
+            .near(&self.particles, position, share * (radius + setup.largest()))
+            .iter()
+            .filter_map(|near| {
+                let other = &self.particles[near.particle as usize];
+                let both = radius + other.radius;
+                let is_same = is_same_sheet(other.p() - position, normal, other.n(), RISE_SLACK * both);
+                is_same.then_some((near.distance / both, near.distance, both, near.particle))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let collision = nearest.filter(|near| near.0 <= share);
+        log.push(Event::Compared {
+            parent: of.0,
+            slot: of.1,
+            position: position.to_array(),
+            against: nearest.map(|near| near.3),
+            distance: nearest.map(|near| near.1),
+            limit: share * nearest.map_or(radius + ring.radius, |near| near.2),
+            corresponds: collision.is_some(),
+        });
+        if let Some((.., other)) = collision {
+            self.decide(of, SlotFate::Matched, Some(other), log);
+        } else if self.particles.len() >= setup.settings.max_particles as usize {
+            self.place.is_capped = true;
+            self.decide(of, SlotFate::Capped, None, log);
+        } else {
+            let particle = self.add(ring.parent, position, normal, radius, log);
+            self.place.waiting.push_back(particle);
+            self.decide(of, SlotFate::Added, Some(particle), log);
+            let disc = ring.disc(position, radius);
+            ring.around.push(Around { particle, disc, touches: true });
+        }
+    }
+}
+
+/// A child beside `last`, pushed until it touches its parent and overlaps the others least (§5.1, Fig. 7).
+fn pushed(
+    surface: &mut Surface,
+    setup: &Setup,
+    ring: &Circumference,
+    last: Option<Disc>,
+    log: &mut Vec<Event>,
+) -> Disc {
+    let (parent, slot) = (ring.parent, ring.slot);
+    let mut sized = |centre: DVec2| {
+        // Where the curvature has no value, the smallest radius is that of its limit.
+        let radius = setup.radius_at(surface, ring.place(centre)).unwrap_or(setup.settings.radius_min);
+        Disc { centre, radius }
+    };
+    // I lies on the circle of the last child, perpendicular to the way there; s on the circle of the parent (Fig. 7c).
+    let tangent = last.map(|last| last.centre + last.centre.perp().normalize_or_zero() * last.radius);
+    let way = tangent.map_or(DVec2::X, |tangent| tangent.normalize_or(DVec2::X));
+    let mut child = sized(way * ring.radius);
+    log.push(Event::Start {
+        parent,
+        slot,
+        tangent: tangent.map(|tangent| ring.place(tangent).to_array()),
+        position: ring.place(child.centre).to_array(),
+        radius: child.radius,
+    });
+    // Along V̂ until parent and child do not overlap any more (Fig. 7b and 7e).
+    for _ in 0..MAX_PUSHES {
+        if child.centre.length() >= ring.radius + child.radius {
+            break;
+        }
+        child = sized(child.centre + way * (PUSH * ring.radius));
+        let position = ring.place(child.centre).to_array();
+        log.push(Event::Push { parent, slot, position, radius: child.radius });
+    }
+    // Along the circle until it overlaps least (Fig. 7f).
+    let mut overlap = ring.overlap(child);
+    let mut angle = child.angle();
+    for _ in 0..MAX_PUSHES {
+        if overlap <= 0.0 {
+            break;
+        }
+        angle += TURN_RAD;
+        let turned = DVec2::new(libm::cos(angle), libm::sin(angle));
+        let radius = sized(turned * (ring.radius + child.radius)).radius;
+        let next = Disc { centre: turned * (ring.radius + radius), radius };
+        let next_overlap = ring.overlap(next);
+        if next_overlap >= overlap {
+            break;
+        }
+        (child, overlap) = (next, next_overlap);
+        let position = ring.place(child.centre).to_array();
+        log.push(Event::PushOnCircle { parent, slot, position, radius, overlap });
+    }
+    child
+}

@@ -1,0 +1,296 @@
+//! The events of a run: plain data, in the order in which they happen.
+//!
+//! Events of a child name its `parent` and its `slot`, since the children of a level may be placed together. Lengths are in the
+//! field's coordinates, angles in radians.
+
+use super::state::Particle;
+use crate::particles::SlotFate;
+use serde::Serialize;
+
+/// A point or a direction.
+pub type Vector = [f64; 3];
+
+/// A particle near another one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonNearby"))]
+pub struct Nearby {
+    /// Its index.
+    pub particle: u32,
+    /// Distance to it.
+    pub distance: f64,
+}
+
+/// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`] and [`Event::Moved`] change the particles; the
+/// others tell why.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Event {
+    /// A front begins at a seed (Algorithm 2, "a particle seed").
+    Seed {
+        /// Index of the seed.
+        particle: u32,
+        /// Its columns.
+        data: Particle,
+    },
+    /// A generation level begins: these particles wait to be treated.
+    LevelBegins {
+        /// Number of the level.
+        level: u32,
+        /// Particles that wait.
+        waiting: u32,
+    },
+    /// A particle that is not done is taken from the queue ("while it exists one particle marked as not done").
+    Taken {
+        /// The particle.
+        particle: u32,
+    },
+    /// The tangent frame in which the children are placed (§4.2, Fig. 3).
+    Frame {
+        /// The particle.
+        particle: u32,
+        /// Unit normal N̂.
+        normal: Vector,
+        /// Unit tangent vector of slot 0, towards the parent; any for a seed.
+        u: Vector,
+        /// N̂ × u.
+        w: Vector,
+        /// Second fundamental form [a, b, c] in (u, w), where it was asked for.
+        form: Option<Vector>,
+    },
+    /// A child is proposed ("place its six children").
+    Slot {
+        /// The particle that places it.
+        parent: u32,
+        /// Number of the slot, at an angle of slot · π/3 in uniform sampling.
+        slot: u32,
+        /// Unit tangent vector V̂.
+        direction: Vector,
+        /// Angle θ₀ on the circle.
+        theta_rad: f64,
+        /// The place there.
+        place: Vector,
+    },
+    /// The field is evaluated on the way to the surface (§4.3).
+    Iterate {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// Number of the evaluation, from 0.
+        step: u32,
+        /// Angle θₖ on the circle; none for Newton's method in space.
+        theta_rad: Option<f64>,
+        /// The place.
+        position: Vector,
+        /// f there.
+        value: f64,
+        /// |∇f| there.
+        slope: f64,
+        /// Angles between which f changes its sign, where Newton's method has given way to a bracketed search.
+        bracket_rad: Option<[f64; 2]>,
+    },
+    /// The child has come to the surface.
+    Landed {
+        /// The particle that places it.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// The place.
+        position: Vector,
+        /// Unit normal there.
+        normal: Vector,
+        /// Distance to the parent: 2r on the circle.
+        distance: f64,
+    },
+    /// The neighbouring particles are gathered.
+    Gathered {
+        /// The particle.
+        particle: u32,
+        /// Distance within which they are looked for.
+        reach: f64,
+        /// The particles of any sheet that were found, by index.
+        neighbours: Vec<Nearby>,
+    },
+    /// A child is compared with the nearest particle of its sheet ("if an existing particle correspond").
+    Compared {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// Where the child was compared: as predicted, or where it landed.
+        position: Vector,
+        /// The nearest particle; none if none is near, or if it is a child that still has to be projected.
+        against: Option<u32>,
+        /// Distance to the nearest; none if nothing is near.
+        distance: Option<f64>,
+        /// Match radius.
+        limit: f64,
+        /// Whether the distance is within it.
+        corresponds: bool,
+    },
+    /// The child met a particle out of step: the front meets itself or another one, and a seam begins.
+    FrontsMeet {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// The particle that the child met.
+        particle: u32,
+        /// Whether that particle belongs to the front of another seed.
+        is_other: bool,
+    },
+    /// The child becomes a particle, marked as not done ("add the child to the particle set").
+    Added {
+        /// Its index.
+        particle: u32,
+        /// Its columns.
+        data: Particle,
+    },
+    /// The fate of a slot.
+    Fate {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// The fate.
+        fate: SlotFate,
+        /// The new particle, or the one that was there.
+        particle: Option<u32>,
+    },
+    /// The particle is marked as done.
+    Done {
+        /// The particle.
+        particle: u32,
+        /// Evaluations of the field so far.
+        evaluations: u64,
+    },
+    /// A free space on the circle around an adaptive particle, between two particles that touch it (§5.3, Fig. 8a).
+    Arc {
+        /// The particle.
+        parent: u32,
+        /// The particle before it; none if the whole circle is free.
+        before: Option<u32>,
+        /// The particle behind it, in the direction of growing angles.
+        behind: Option<u32>,
+        /// Their directions in the frame.
+        angles_rad: [f64; 2],
+    },
+    /// An adaptive child starts on the circle of its parent (§5.1, Figs 7a and 7c).
+    Start {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// The point I of Fig. 7c, on the circle of the child before it; none for the first child of a seed.
+        tangent: Option<Vector>,
+        /// The point s, in the tangent plane.
+        position: Vector,
+        /// Repulsion radius there.
+        radius: f64,
+    },
+    /// It is pushed away from its parent, until the two do not overlap (Figs 7b and 7e).
+    Push {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// Place after the push.
+        position: Vector,
+        /// Repulsion radius there.
+        radius: f64,
+    },
+    /// It is pushed along the circle, until it overlaps the others least (Fig. 7f).
+    PushOnCircle {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// Place after the push.
+        position: Vector,
+        /// Repulsion radius there.
+        radius: f64,
+        /// Largest overlap with another particle, as a share of r_i + r_j; negative if there is none.
+        overlap: f64,
+    },
+    /// The angle φ that it takes on the circle is compared with the free angle τ (Figs 7g, 8c and 8e).
+    Room {
+        /// The particle that places the child.
+        parent: u32,
+        /// Number of the slot.
+        slot: u32,
+        /// Angle that the child's diameter takes.
+        phi_rad: f64,
+        /// Angle that is free.
+        tau_rad: f64,
+        /// Whether there is room.
+        fits: bool,
+    },
+    /// A gap beside a particle is looked at: the widest empty circle through it and two neighbours.
+    Gap {
+        /// The particle.
+        particle: u32,
+        /// Radius of that circle; none if it is too narrow or too wide to be a gap.
+        width: Option<f64>,
+    },
+    /// A relaxation step begins (§4.5).
+    StepBegins {
+        /// Number of the step, from 1.
+        step: u32,
+        /// Size of the step: the share of the force by which a particle moves.
+        size: f64,
+        /// Energy per particle before it.
+        energy: f64,
+    },
+    /// A particle is moved by its neighbours' repulsion and returns to the surface.
+    Moved {
+        /// The particle.
+        particle: u32,
+        /// Sum of the repulsion, in the tangent plane; the step size times it is the move.
+        force: Vector,
+        /// Where the move leads, in the tangent plane.
+        target: Vector,
+        /// The place on the surface.
+        position: Vector,
+        /// Unit normal there.
+        normal: Vector,
+        /// Repulsion radius there.
+        radius: f64,
+        /// Whether it stayed where it was, because the move leads out of the box, off the surface or around a fold.
+        is_kept: bool,
+    },
+    /// A relaxation step is over.
+    StepEnds {
+        /// Number of the step, from 1.
+        step: u32,
+        /// Energy per particle after it.
+        energy: f64,
+        /// Longest move, in radii.
+        largest_move: f64,
+    },
+}
+
+impl Event {
+    /// Changes the particles as the event did: all that a replay needs.
+    ///
+    /// # Panics
+    ///
+    /// If the event belongs to other particles.
+    pub fn apply(&self, particles: &mut Vec<Particle>) {
+        match *self {
+            Self::Seed { particle, data } | Self::Added { particle, data } => {
+                assert_eq!(particle as usize, particles.len(), "particles are added in their order");
+                particles.push(data);
+            }
+            Self::Fate { parent, slot, fate, .. } => {
+                particles[parent as usize].slots.set(slot as usize, fate);
+            }
+            Self::Done { particle, .. } => particles[particle as usize].is_done = true,
+            Self::Moved { particle, position, normal, radius, .. } => {
+                let moved = &mut particles[particle as usize];
+                (moved.position, moved.normal, moved.radius) = (position, normal, radius);
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Filling of the gaps that fronts leave where they meet. The paper leaves them to the relaxation (§4.5).
+
+use super::event::Event;
+use super::surface::{Circle, Landing, Surface};
+use super::walk::{Setup, Walk};
+use crate::math::frame_of;
+use crate::particles::SlotFate;
+use glam::{DVec2, DVec3};
+
+/// A gap is filled if its centre is at least this far from every particle, in 2r. The triangles of a lattice have 0.577.
+const NARROWEST: f64 = 0.8;
+
+/// A wider circle, in 2r, lies at the border of the surface.
+const WIDEST: f64 = 1.25;
+
+/// Neighbours within this many radii border a gap.
+const REACH: f64 = 3.4;
+
+impl Walk {
+    /// Fills the widest gap beside a particle, if another one has room there.
+    pub(super) fn fill_beside(
+        &mut self,
+        surface: &mut Surface,
+        setup: &Setup,
+        beside: u32,
+        log: &mut Vec<Event>,
+    ) {
+        let own = self.particles[beside as usize];
+        let (p, n, r) = (own.p(), own.n(), setup.radius());
+        let (u, w) = frame_of(own.normal);
+        let (u, w): (DVec3, DVec3) = (u.into(), w.into());
+        // Neighbours keep their direction in the tangent plane and their distance in space. The unit is 2r.
+        let plane: Vec<DVec2> = self
+            .buckets
+            .near(&self.particles, p, REACH * r)
+            .iter()
+            .filter_map(|near| {
+                let other = &self.particles[near.particle as usize];
+                let flat = DVec2::new((other.p() - p).dot(u), (other.p() - p).dot(w));
+                let is_listed = near.particle != beside && other.n().dot(n) > 0.0 && flat.length() > 0.0;
+                is_listed.then(|| flat * (near.distance / (flat.length() * 2.0 * r)))
+            })
+            .collect();
+        let centre = widest_gap(&plane);
+        log.push(Event::Gap { particle: beside, width: centre.map(|centre| centre.length() * 2.0 * r) });
+        let Some(centre) = centre else { return };
+        if self.particles.len() >= setup.settings.max_particles as usize {
+            return;
+        }
+        let direction = (u * centre.x + w * centre.y) / centre.length();
+        let circle = Circle { centre: p, normal: n, direction, radius: centre.length() * 2.0 * r };
+        let Landing::On { position, normal } =
+            surface.land_on_circle(&circle, 0.0, setup.residual(r), &mut |_| {})
+        else {
+            return;
+        };
+        let is_free = self
+            .buckets
+            .near(&self.particles, position, NARROWEST * 2.0 * r)
+            .iter()
+            .all(|near| self.particles[near.particle as usize].n().dot(normal) <= 0.0);
+        if !is_free || !surface.contains(position) || normal.dot(n) <= 0.0 {
+            return;
+        }
+        // It has neighbours all around and places no children.
+        let particle = self.add(beside, position, normal, r, log);
+        self.decide((particle, 0), SlotFate::Parent, Some(beside), log);
+        for slot in 1..6 {
+            self.decide((particle, slot), SlotFate::Matched, None, log);
+        }
+        self.finish(particle, surface, log);
+    }
+}
+
+/// Centre of the widest empty circle through the origin and two of the points, if it is a gap.
+fn widest_gap(points: &[DVec2]) -> Option<DVec2> {
+    let mut widest = NARROWEST;
+    let mut found = None;
+    for (k, &a) in points.iter().enumerate() {
+        for &b in &points[..k] {
+            let twice_area = a.perp_dot(b);
+            let (aa, bb) = (a.length_squared(), b.length_squared());
+            let centre = DVec2::new(b.y * aa - a.y * bb, a.x * bb - b.x * aa) / (2.0 * twice_area);
+            let width = centre.length();
+            let is_empty = || points.iter().all(|q| q.distance(centre) >= width * (1.0 - 5e-5));
+            if width > widest && width < WIDEST && is_empty() {
+                (widest, found) = (width, Some(centre));
+            }
+        }
+    }
+    found
+}

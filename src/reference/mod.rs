@@ -1,0 +1,419 @@
+//! The paper, word for word, in one readable place: its algorithms written sequentially in double precision, with a log of
+//! every event.
+//!
+//! Each block stands under the paper's own number. §4.2 to §4.4 with Algorithm 2 are in `uniform`, §4.3 in `surface`, §4.5 in
+//! `relaxation`, §5 in `adaptive`. What the paper discusses or leaves open is an option ([`Settings`]). Nothing here is made for speed, and a run
+//! has at most [`MAX_PARTICLES`] particles. The tests hold the fast fronts to it, particle by particle.
+//!
+//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps. Before each chapter a
+//! snapshot is taken. The events of a chapter are not kept: they are made again from its snapshot, which gives the same events
+//! to the last bit. So [`Reference::seek`] goes to any event, forwards or backwards.
+//!
+//! ```
+//! use marching_particles::field::gallery;
+//! use marching_particles::reference::{Event, Reference, Settings};
+//!
+//! let sphere = gallery::find("sphere").expect("a surface of the gallery");
+//! let settings = Settings { radius: 0.1, relax_steps: 2, ..Settings::default() };
+//! let mut lesson = Reference::new(Box::new(sphere.field()), &sphere.bounds, &settings)?;
+//! while !lesson.step(1_000).is_done {}
+//!
+//! // The first level treats the seed: all six children are new.
+//! let first = lesson.chapters()[0].clone();
+//! assert_eq!(first.fates.added, 6);
+//! let events = lesson.events(first.first_event, first.events);
+//! assert!(matches!(events[0], Event::Seed { particle: 0, .. }));
+//! // Back to the moment before the first event.
+//! lesson.seek(first.first_event);
+//! assert!(lesson.particles().is_empty());
+//! # Ok::<(), marching_particles::reference::ReferenceError>(())
+//! ```
+//!
+//! # Differs from the paper
+//!
+//! * Fronts begin at the seeds that are given, or where a grid of the box shows the surface and no particle covers it.
+//!   Components smaller than a cell of the grid may stay without particles.
+//! * A child whose search does not converge is not placed; the paper says nothing of it.
+
+mod adaptive;
+mod buckets;
+mod event;
+mod gaps;
+mod outlook;
+mod relaxation;
+mod run;
+mod section;
+mod settings;
+mod state;
+mod surface;
+mod uniform;
+mod walk;
+
+pub use event::{Event, Nearby, Vector};
+pub use section::Iterate;
+pub use settings::{
+    LessonField, MAX_PARTICLES, Matched, Order, Placing, Projection, ReferenceError, Seeding, Settings, Start,
+};
+pub use state::{Particle, digest};
+pub use walk::ChapterKind;
+
+use crate::field::Field;
+use crate::math::{Bounds, SQRT_3};
+use crate::sampler::{FateCounts, Sampling};
+use outlook::{look_around, shuffled};
+use serde::Serialize;
+use surface::Surface;
+use walk::{Place, Setup, Walk};
+
+/// A part of a run, before which a snapshot is taken.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonChapter"))]
+pub struct Chapter {
+    /// What it is.
+    #[serde(flatten)]
+    pub kind: ChapterKind,
+    /// Number of its first event in the run.
+    pub first_event: u32,
+    /// Number of its events so far.
+    pub events: u32,
+    /// Particles when it begins.
+    pub before: u32,
+    /// Particles when it ends.
+    pub after: u32,
+    /// What became of the children.
+    pub fates: FateCounts,
+    /// Energy per particle when it ends; of relaxation steps only.
+    pub energy: Option<f64>,
+    /// Longest move, in radii; of relaxation steps only.
+    pub largest_move: Option<f64>,
+    /// Whether it is over.
+    pub is_over: bool,
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProgress"))]
+pub struct Progress {
+    /// Chapters so far.
+    pub chapters: u32,
+    /// Events so far.
+    pub events: u32,
+    /// Particles so far.
+    pub particles: u32,
+    /// Evaluations of the field so far.
+    pub evaluations: u64,
+    /// Whether the limit on particles was reached.
+    pub is_capped: bool,
+    /// Whether the run has ended.
+    pub is_done: bool,
+}
+
+/// When a particle was added, was treated and was done: numbers of events.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonLife"))]
+pub struct Life {
+    /// It was added.
+    pub born: Option<u32>,
+    /// It was taken from the queue.
+    pub taken: Option<u32>,
+    /// It was marked as done.
+    pub done: Option<u32>,
+}
+
+/// What is kept at the beginning of a chapter.
+enum Snapshot {
+    /// The first so many particles, as they were placed: until the relaxation nothing moves.
+    Placed(Place, usize),
+    /// All particles.
+    Whole(Place, Vec<Particle>),
+}
+
+/// What is looked at.
+#[derive(Default)]
+struct View {
+    /// The chapter whose events are at hand.
+    chapter: Option<usize>,
+    events: Vec<Event>,
+    /// Number of events of the run that have happened.
+    at: u32,
+    particles: Vec<Particle>,
+}
+
+/// A run of the paper's algorithms, and the place in it that is looked at.
+pub struct Reference {
+    setup: Setup,
+    surface: Surface,
+    /// The end of the run so far.
+    walk: Walk,
+    /// Events of the chapter under way.
+    log: Vec<Event>,
+    chapters: Vec<Chapter>,
+    snapshots: Vec<Snapshot>,
+    lives: Vec<Life>,
+    is_done: bool,
+    view: View,
+}
+
+impl Reference {
+    /// Prepares a run on the surface of `field` in a box, at which it takes a first look: some 36,000 evaluations.
+    ///
+    /// # Errors
+    ///
+    /// If a setting or the box is invalid, or more than [`MAX_PARTICLES`] particles are to be expected.
+    pub fn new(field: Box<dyn Field>, bounds: &Bounds, settings: &Settings) -> Result<Self, ReferenceError> {
+        settings.validate()?;
+        if !bounds.is_valid() {
+            return Err(ReferenceError::Box);
+        }
+        let mut surface = Surface { field, bounds: *bounds, evaluations: 0 };
+        let mut setup = Setup { settings: settings.clone(), candidates: Vec::new() };
+        let outlook = look_around(&mut surface);
+        let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
+        let expected: f64 = outlook
+            .iter()
+            .filter_map(|part| Some(part.area / cell(setup.radius_at(&mut surface, part.point)?)))
+            .sum();
+        surface.evaluations = 0;
+        let limit = f64::from(MAX_PARTICLES);
+        if expected > limit {
+            // A little more, since the area is an estimate and the number is shown rounded.
+            let factor = 1.01 * (expected / limit).sqrt();
+            let (expected, limit) = (expected as u64, MAX_PARTICLES);
+            return Err(match settings.sampling {
+                Sampling::Uniform => {
+                    let radius = factor * settings.radius;
+                    ReferenceError::TooMany { expected, limit, radius }
+                }
+                Sampling::Adaptive => ReferenceError::TooManySizes { expected, limit, factor },
+            });
+        }
+        setup.candidates = if settings.seeds.is_empty() {
+            shuffled(outlook.iter().map(|part| part.point).collect(), settings.seed)
+        } else {
+            settings.seeds.iter().map(|&seed| seed.into()).collect()
+        };
+        Ok(Self {
+            walk: Walk::at(&setup, Place::default(), Vec::new()),
+            setup,
+            surface,
+            log: Vec::new(),
+            chapters: Vec::new(),
+            snapshots: Vec::new(),
+            lives: Vec::new(),
+            is_done: false,
+            view: View::default(),
+        })
+    }
+
+    /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
+    /// steps does not change it.
+    pub fn step(&mut self, budget: u32) -> Progress {
+        let mut left = budget;
+        while left > 0 && !self.is_done {
+            if !self.walk.is_in_chapter() {
+                self.begin_chapter();
+                continue;
+            }
+            let is_over = self.walk.work(&mut self.surface, &self.setup, &mut self.log);
+            left -= 1;
+            if is_over {
+                self.close_chapter(true);
+                self.log.clear();
+            }
+        }
+        if self.walk.is_in_chapter() {
+            self.close_chapter(false);
+        }
+        self.progress()
+    }
+
+    /// How far the run has come.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        Progress {
+            chapters: self.chapters.len() as u32,
+            events: self.events_so_far(),
+            particles: self.walk.particles.len() as u32,
+            evaluations: self.walk.place.evaluations,
+            is_capped: self.walk.place.is_capped,
+            is_done: self.is_done,
+        }
+    }
+
+    fn events_so_far(&self) -> u32 {
+        self.chapters.last().map_or(0, |last| last.first_event + last.events)
+    }
+
+    /// The chapters so far.
+    #[must_use]
+    pub fn chapters(&self) -> &[Chapter] {
+        &self.chapters
+    }
+
+    /// When a particle was added, treated and done, as far as the run has come; `None` if there is none of this number.
+    #[must_use]
+    pub fn life(&self, particle: u32) -> Option<Life> {
+        self.lives.get(particle as usize).copied()
+    }
+
+    /// Up to `count` events from number `first` on. Those of an earlier chapter are made again from its snapshot.
+    pub fn events(&mut self, first: u32, count: u32) -> Vec<Event> {
+        let end = first.saturating_add(count).min(self.events_so_far());
+        let mut found = Vec::new();
+        let mut next = first;
+        while next < end {
+            let chapter = self.chapter_of(next);
+            self.open(chapter);
+            let Chapter { first_event, events, .. } = self.chapters[chapter];
+            let last = end.min(first_event + events);
+            found.extend_from_slice(
+                &self.view.events[(next - first_event) as usize..(last - first_event) as usize],
+            );
+            next = last;
+        }
+        found
+    }
+
+    /// Goes to the moment before event number `event`, or to the end of the run so far, and returns the number of events that
+    /// have happened then.
+    pub fn seek(&mut self, event: u32) -> u32 {
+        let event = event.min(self.events_so_far());
+        if self.chapters.is_empty() {
+            return 0;
+        }
+        // The end of a chapter is looked at as its end, not as the beginning of the next one.
+        let chapter = self.chapter_of(event.saturating_sub(1));
+        let is_ahead = self.view.chapter == Some(chapter) && event >= self.view.at;
+        self.open(chapter);
+        let first = self.chapters[chapter].first_event;
+        if !is_ahead || self.view.at < first {
+            self.view.particles = self.particles_before(chapter);
+            self.view.at = first;
+        }
+        for k in self.view.at..event {
+            self.view.events[(k - first) as usize].apply(&mut self.view.particles);
+        }
+        self.view.at = event;
+        event
+    }
+
+    /// Goes to the beginning of a chapter, as [`Reference::seek`] does.
+    pub fn seek_chapter(&mut self, chapter: u32) -> u32 {
+        let event = self.chapters.get(chapter as usize).map_or(u32::MAX, |chapter| chapter.first_event);
+        self.seek(event)
+    }
+
+    /// The particles at the moment that was sought.
+    #[must_use]
+    pub fn particles(&self) -> &[Particle] {
+        &self.view.particles
+    }
+
+    /// The box that is sampled.
+    #[must_use]
+    pub fn bounds(&self) -> &Bounds {
+        &self.surface.bounds
+    }
+
+    fn begin_chapter(&mut self) {
+        let before = self.walk.particles.len();
+        let place = self.walk.place.clone();
+        let Some(kind) = self.walk.begin_chapter(&mut self.surface, &self.setup, &mut self.log) else {
+            self.is_done = true;
+            return;
+        };
+        self.snapshots.push(match kind {
+            ChapterKind::Relaxation { .. } => Snapshot::Whole(place, self.walk.particles.clone()),
+            _ => Snapshot::Placed(place, before),
+        });
+        self.chapters.push(Chapter {
+            kind,
+            first_event: self.events_so_far(),
+            events: 0,
+            before: before as u32,
+            after: before as u32,
+            fates: FateCounts::default(),
+            energy: None,
+            largest_move: None,
+            is_over: false,
+        });
+    }
+
+    /// Brings what is said of the last chapter up to date with its events.
+    fn close_chapter(&mut self, is_over: bool) {
+        let after = self.walk.particles.len();
+        self.lives.resize(after, Life::default());
+        let Some(chapter) = self.chapters.last_mut() else { return };
+        for (event, number) in
+            self.log[chapter.events as usize..].iter().zip(chapter.first_event + chapter.events..)
+        {
+            match *event {
+                Event::Seed { particle, .. } | Event::Added { particle, .. } => {
+                    self.lives[particle as usize].born = Some(number);
+                }
+                Event::Taken { particle } => self.lives[particle as usize].taken = Some(number),
+                Event::Done { particle, .. } => self.lives[particle as usize].done = Some(number),
+                Event::Fate { fate, .. } if chapter.kind != ChapterKind::Filling => chapter.fates.count(fate),
+                Event::StepEnds { energy, largest_move, .. } => {
+                    (chapter.energy, chapter.largest_move) = (Some(energy), Some(largest_move));
+                }
+                _ => {}
+            }
+        }
+        chapter.events = self.log.len() as u32;
+        chapter.after = after as u32;
+        chapter.is_over = is_over;
+    }
+
+    /// The chapter to which an event belongs.
+    fn chapter_of(&self, event: u32) -> usize {
+        self.chapters.partition_point(|chapter| chapter.first_event <= event).saturating_sub(1)
+    }
+
+    /// Has the events of a chapter at hand.
+    fn open(&mut self, chapter: usize) {
+        let known = &self.chapters[chapter];
+        if self.view.chapter == Some(chapter) && self.view.events.len() == known.events as usize {
+            return;
+        }
+        self.view.events = if known.is_over { self.replay(chapter) } else { self.log.clone() };
+        if self.view.chapter != Some(chapter) {
+            // No particle has been looked at in this chapter yet.
+            self.view.at = 0;
+        }
+        self.view.chapter = Some(chapter);
+    }
+
+    /// Makes the events of a chapter that is over again.
+    fn replay(&mut self, chapter: usize) -> Vec<Event> {
+        let place = match &self.snapshots[chapter] {
+            Snapshot::Placed(place, _) | Snapshot::Whole(place, _) => place.clone(),
+        };
+        let mut walk = Walk::at(&self.setup, place, self.particles_before(chapter));
+        let mut log = Vec::with_capacity(self.chapters[chapter].events as usize);
+        if walk.begin_chapter(&mut self.surface, &self.setup, &mut log).is_some() {
+            while !walk.work(&mut self.surface, &self.setup, &mut log) {}
+        }
+        debug_assert_eq!(log.len(), self.chapters[chapter].events as usize, "a replay gives the same events");
+        log
+    }
+
+    /// The particles at the beginning of a chapter.
+    fn particles_before(&self, chapter: usize) -> Vec<Particle> {
+        match &self.snapshots[chapter] {
+            Snapshot::Whole(_, particles) => particles.clone(),
+            Snapshot::Placed(place, count) => {
+                let whole = self.snapshots[chapter..].iter().find_map(|snapshot| match snapshot {
+                    Snapshot::Whole(_, particles) => Some(particles),
+                    Snapshot::Placed(..) => None,
+                });
+                let mut particles = whole.unwrap_or(&self.walk.particles)[..*count].to_vec();
+                for &waiting in &place.waiting {
+                    let particle = &mut particles[waiting as usize];
+                    *particle = particle.untreated();
+                }
+                particles
+            }
+        }
+    }
+}

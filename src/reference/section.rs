@@ -1,0 +1,89 @@
+//! What a figure asks of the field beside the events: the surface cut by a plane, and where Newton's method would have led.
+
+use super::Reference;
+use super::event::Vector;
+use super::surface::Trial;
+use glam::DVec3;
+use serde::Serialize;
+
+/// A step of Newton's method in space.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonIterate"))]
+pub struct Iterate {
+    /// The place.
+    pub position: Vector,
+    /// f there.
+    pub value: f64,
+    /// |∇f| there.
+    pub slope: f64,
+}
+
+/// Most cells of a section along a side.
+const MAX_CELLS: u32 = 200;
+
+impl Reference {
+    /// The curve f = 0 in the plane of a point and two perpendicular unit vectors, in the square of half side `half` around the
+    /// point: line segments as x₀, y₀, x₁, y₁, x along `right` and y along `up`, from a grid of `cells`² cells (at most 200²).
+    pub fn section(
+        &mut self,
+        centre: Vector,
+        right: Vector,
+        up: Vector,
+        half: f64,
+        cells: u32,
+    ) -> Vec<[f64; 4]> {
+        let cells = cells.clamp(1, MAX_CELLS) as usize;
+        let evaluations = self.surface.evaluations;
+        let [centre, right, up] = [centre, right, up].map(DVec3::from);
+        let at = |k: usize| half * (2.0 * k as f64 / cells as f64 - 1.0);
+        let values: Vec<f64> = (0..(cells + 1) * (cells + 1))
+            .map(|k| {
+                let (x, y) = (at(k % (cells + 1)), at(k / (cells + 1)));
+                self.surface.sample(centre + right * x + up * y).value
+            })
+            .collect();
+        self.surface.evaluations = evaluations;
+        let node = |i: usize, j: usize| ([at(i), at(j)], values[j * (cells + 1) + i]);
+        let mut segments = Vec::new();
+        for j in 0..cells {
+            for i in 0..cells {
+                let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
+                // Two triangles, in each of which the curve is one segment at most.
+                for [p, q, r] in [[a, b, c], [a, c, d]] {
+                    let crossings: Vec<[f64; 2]> =
+                        [(p, q), (q, r), (r, p)].into_iter().filter_map(|(s, t)| crossing(s, t)).collect();
+                    if let [[x0, y0], [x1, y1]] = crossings[..] {
+                        segments.push([x0, y0, x1, y1]);
+                    }
+                }
+            }
+        }
+        segments
+    }
+
+    /// The steps of Newton's method from a point, until it has come to the surface or left the neighbourhood of `reach`.
+    pub fn newton(&mut self, start: Vector, reach: f64) -> Vec<Iterate> {
+        let evaluations = self.surface.evaluations;
+        let residual = self.setup.residual(self.setup.largest());
+        let mut steps = Vec::new();
+        let mut note = |trial: Trial| {
+            steps.push(Iterate {
+                position: trial.position.to_array(),
+                value: trial.sample.value,
+                slope: trial.sample.slope,
+            });
+        };
+        self.surface.land_by_newton(start.into(), reach, residual, &mut note);
+        self.surface.evaluations = evaluations;
+        steps
+    }
+}
+
+/// Where f vanishes between two nodes, if it changes its sign.
+fn crossing((a, fa): ([f64; 2], f64), (b, fb): ([f64; 2], f64)) -> Option<[f64; 2]> {
+    if !(fa.is_finite() && fb.is_finite()) || (fa <= 0.0) == (fb <= 0.0) {
+        return None;
+    }
+    let t = fa / (fa - fb);
+    Some([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])])
+}

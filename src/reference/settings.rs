@@ -1,0 +1,280 @@
+//! What a reader of the paper may choose: the points that its text leaves open or discusses.
+
+use crate::field::formula::Parameter;
+use crate::math::Bounds;
+use crate::sampler::{GapPolicy, LawKind, Sampling};
+use serde::{Deserialize, Serialize};
+
+/// The reference follows no more particles than this: its event log and its snapshots are for reading, not for speed.
+pub const MAX_PARTICLES: u32 = 20_000;
+
+/// A surface given by a formula, as the page knows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub struct LessonField {
+    /// Text of the formula.
+    pub formula: String,
+    /// Parameters with their values.
+    pub parameters: Vec<Parameter>,
+    /// Box that is sampled.
+    pub bounds: Bounds,
+}
+
+/// How a child is moved onto the surface (§4.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
+#[serde(rename_all = "snake_case")]
+pub enum Projection {
+    /// Along the circle C(p, 2r), which keeps the distance to the parent: the paper's way.
+    Circle,
+    /// By Newton's method in space, "the most common technique", which does not keep it.
+    Newton,
+}
+
+/// Where the search on the circle begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonStart"))]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// In the tangent plane, θ₀ = 0, as in Fig. 4 (left).
+    Tangent,
+    /// Where the normal curvature of the parent puts the surface, sin θ₀ = −κ_V r.
+    Curvature,
+}
+
+/// Which of the particles that are not done is treated next (§4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonOrder"))]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// The one that has waited longest: this gives the rings of Fig. 11.
+    Queue,
+    /// The one that came last, as the word "stack" in the text says.
+    Stack,
+}
+
+/// What becomes of a particle with which a child was identified (§4.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
+#[serde(rename_all = "snake_case")]
+pub enum Matched {
+    /// It leaves the neighbours, so that no second child of the same parent is identified with it: the paper's way.
+    Leave,
+    /// It stays, and so do the new children. No two particles are then closer than the match radius.
+    Stay,
+}
+
+/// When a child is compared with the particles that exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPlacing"))]
+#[serde(rename_all = "snake_case")]
+pub enum Placing {
+    /// One particle after the other: its children are projected, then compared, as in Algorithm 2.
+    OneByOne,
+    /// A whole generation level together, as in the fast front. A child is compared where the curvature around its parent
+    /// predicts it; only free ones are projected, and then compared again.
+    LevelByLevel,
+}
+
+/// When the fronts of a surface with several components begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSeeding"))]
+#[serde(rename_all = "snake_case")]
+pub enum Seeding {
+    /// The next seed is placed when the queue is empty.
+    OneByOne,
+    /// All given seeds are in the queue from the beginning, and their levels grow side by side.
+    Together,
+}
+
+/// The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
+#[serde(default)]
+pub struct Settings {
+    /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
+    #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]
+    pub sampling: Sampling,
+    /// Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates.
+    pub radius: f64,
+    /// How the radius of an adaptive particle follows from the curvature.
+    #[cfg_attr(test, ts(type = "'chord_error' | 'max_curvature' | 'sum_of_curvatures'"))]
+    pub law: LawKind,
+    /// The number that the law scales: for `chord_error` the gap between the surface and a triangle of neighbours, a length; for
+    /// the other two the radius over the radius of curvature.
+    pub law_scale: f64,
+    /// Smallest radius of an adaptive particle, a length.
+    pub radius_min: f64,
+    /// Largest radius of an adaptive particle, a length.
+    pub radius_max: f64,
+    /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
+    /// them as they are, which is 1: on a lattice, where the two are equal, rounding then decides.
+    pub fit: f64,
+    /// Points near the surface at which fronts begin, in this order. Further seeds are looked for only if there is none.
+    pub seeds: Vec<[f64; 3]>,
+    /// Chooses the first seed where none is given.
+    pub seed: u32,
+    /// How the fronts of several seeds begin.
+    pub seeding: Seeding,
+    /// How a child comes to the surface.
+    pub projection: Projection,
+    /// Where that begins.
+    pub start: Start,
+    /// Which particle is treated next.
+    pub order: Order,
+    /// Whether matched particles leave the neighbours.
+    pub matched: Matched,
+    /// A child is identified with a particle within this distance, in 2r.
+    pub match_tolerance: f64,
+    /// One particle after the other, or level by level.
+    pub placing: Placing,
+    /// Whether gaps between fronts are filled.
+    #[cfg_attr(test, ts(type = "'fill' | 'leave'"))]
+    pub gaps: GapPolicy,
+    /// A point is on the surface if |f|/|∇f| is at most this, in r.
+    pub residual: f64,
+    /// Relaxation steps.
+    pub relax_steps: u32,
+    /// Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive.
+    pub step_size: Option<f64>,
+    /// The run stops at this many particles, at most [`MAX_PARTICLES`].
+    pub max_particles: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            sampling: Sampling::Uniform,
+            radius: 0.0,
+            law: LawKind::SumOfCurvatures,
+            law_scale: 0.05,
+            radius_min: 0.0,
+            radius_max: 0.0,
+            fit: 0.5,
+            seeds: Vec::new(),
+            seed: 0,
+            seeding: Seeding::OneByOne,
+            projection: Projection::Circle,
+            start: Start::Tangent,
+            // The text says stack, but the rings of Fig. 11 are those of a queue.
+            order: Order::Queue,
+            matched: Matched::Leave,
+            match_tolerance: 0.7,
+            placing: Placing::OneByOne,
+            gaps: GapPolicy::Leave,
+            residual: 1e-4,
+            relax_steps: 10,
+            step_size: None,
+            max_particles: MAX_PARTICLES,
+        }
+    }
+}
+
+impl Settings {
+    /// The choices of the fast uniform front, whose particles these settings reproduce.
+    #[must_use]
+    pub fn of_fast_front() -> Self {
+        Self { placing: Placing::LevelByLevel, matched: Matched::Stay, ..Self::default() }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    ///
+    /// The first one that is out of its range, or does not go with another.
+    pub fn validate(&self) -> Result<(), ReferenceError> {
+        let limit = f64::from(MAX_PARTICLES);
+        let ranges = [
+            ("match_tolerance", self.match_tolerance, 0.1, 0.95),
+            ("residual", self.residual, 1e-10, 0.01),
+            ("relax_steps", f64::from(self.relax_steps), 0.0, 100.0),
+            ("step_size", self.step_size.unwrap_or_default(), 0.0, 3.0),
+            ("max_particles", f64::from(self.max_particles), 1.0, limit),
+        ];
+        let sizes = match self.sampling {
+            Sampling::Uniform => vec![("radius", self.radius, f64::MIN_POSITIVE, f64::MAX)],
+            Sampling::Adaptive => vec![
+                ("law_scale", self.law_scale, f64::MIN_POSITIVE, f64::MAX),
+                ("radius_max", self.radius_max, f64::MIN_POSITIVE, f64::MAX),
+                ("radius_min", self.radius_min, f64::MIN_POSITIVE, self.radius_max),
+                ("fit", self.fit, 0.1, 1.0),
+            ],
+        };
+        for (name, value, min, max) in sizes.into_iter().chain(ranges) {
+            if !(min..=max).contains(&value) {
+                return Err(ReferenceError::OutOfRange { name, value, min, max });
+            }
+        }
+        if self.placing == Placing::LevelByLevel
+            && (self.order, self.projection, self.matched)
+                != (Order::Queue, Projection::Circle, Matched::Stay)
+        {
+            return Err(ReferenceError::Levels);
+        }
+        if self.sampling == Sampling::Adaptive
+            && (self.placing, self.projection, self.gaps)
+                != (Placing::OneByOne, Projection::Circle, GapPolicy::Leave)
+        {
+            return Err(ReferenceError::Adaptive);
+        }
+        if self.seeding == Seeding::Together && self.seeds.is_empty() {
+            return Err(ReferenceError::Seeds);
+        }
+        Ok(())
+    }
+}
+
+/// Why a run cannot begin.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// A setting is no number within its range.
+    #[error("{name} is {value}, but must lie between {min} and {max}")]
+    OutOfRange {
+        /// Name of the setting.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+    },
+    /// The box is not one.
+    #[error("the box {}", Bounds::REQUIREMENT)]
+    Box,
+    /// Placing level by level goes with one choice of the others.
+    #[error("placing level by level needs a queue, the circle, and matched particles that stay")]
+    Levels,
+    /// Adaptive sampling goes with one choice of some others.
+    #[error("adaptive sampling places one particle after the other, on circles, and leaves gaps")]
+    Adaptive,
+    /// Seeds that begin together have to be known.
+    #[error("seeds that begin together have to be given")]
+    Seeds,
+    /// More particles than the reference follows.
+    #[error(
+        "about {expected} particles are to be expected, and the event log follows at most {limit}: \
+         choose a radius of {radius:.2e} or more"
+    )]
+    TooMany {
+        /// Particles to expect.
+        expected: u64,
+        /// The most that are followed.
+        limit: u32,
+        /// Radius with which there would be no more.
+        radius: f64,
+    },
+    /// The same in adaptive sampling.
+    #[error(
+        "about {expected} particles are to be expected, and the event log follows at most {limit}: \
+         choose radii {factor:.2} times as large"
+    )]
+    TooManySizes {
+        /// Particles to expect.
+        expected: u64,
+        /// The most that are followed.
+        limit: u32,
+        /// By what all radii have to be multiplied.
+        factor: f64,
+    },
+}

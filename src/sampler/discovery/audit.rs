@@ -1,0 +1,264 @@
+//! The audit at the end of a run: whether a particle lies on the component of every witness.
+//!
+//! What a run says of its components must hold for the particles as they are, wherever the relaxation has moved them. So each
+//! witness is connected with a particle anew, by proof. Where that fails and no particle near it even seems to be on its sheet,
+//! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
+
+use crate::field::{Enclosure, Field};
+use crate::particles::Particles;
+use crate::sampler::discovery::completeness::Unsampled;
+use crate::sampler::discovery::octree::Seed;
+use crate::sampler::discovery::sheets::{
+    Oriented, SheetRule, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
+};
+use crate::sampler::projection::Projector;
+use crate::spatial::tree::Tree;
+use glam::DVec3;
+
+/// Particles within this many of their radii of a witness are tried. A closed cover leaves no hole larger than 1.85.
+const REACH: f32 = 2.5;
+/// Largest number of particles around a witness that are looked at: a few of each of several sheets.
+const MOST_NEAR: usize = 30;
+/// Largest number of particles with which a connection through a chain of segments is tried.
+const MOST_TRIED_BY_SEGMENTS: usize = 3;
+/// Particles that are handed to the witnesses around them, for one unit of work.
+const SCANNED: usize = 8;
+/// Units of work that a witness counts for.
+const UNITS: u32 = 64;
+/// Largest number of components that are named.
+pub(crate) const MOST_NAMED: usize = 256;
+/// Witnesses without a proof after which the others are not looked at, and count as open.
+const MOST_FAILED: u64 = 512;
+/// Distance, in radii, to which a component without a particle is followed.
+const FOLLOWED: f64 = 4.0;
+
+/// The state of an audit, and its findings.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Audit {
+    /// The particles nearest to each witness, with their squared distances, nearest first.
+    near: Vec<Vec<(f32, u32)>>,
+    /// Next particle, then next witness.
+    next: usize,
+    /// Whether all particles have been handed out.
+    is_scanned: bool,
+    is_done: bool,
+    /// Number of witnesses that are neither proven to be on the component of a particle nor named.
+    pub(crate) open: u64,
+    /// Witnesses without a particle.
+    pub(crate) without: Vec<Unsampled>,
+}
+
+/// What an audit looks at.
+pub(crate) struct Audited<'a> {
+    pub(crate) field: &'a mut dyn Field,
+    pub(crate) projector: &'a mut Projector,
+    pub(crate) particles: &'a Particles,
+    pub(crate) seeds: &'a [Seed],
+    /// Largest distance of a particle from the surface.
+    pub(crate) slack: f64,
+    /// Usual radius of a particle.
+    pub(crate) radius: f64,
+    /// How sheets are told apart.
+    pub(crate) rule: SheetRule,
+    /// What was searched, and the margin in it.
+    pub(crate) within: ([DVec3; 2], f64),
+}
+
+impl Audit {
+    /// Begins anew.
+    pub(crate) fn restart(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Whether the audit is complete.
+    pub(crate) fn is_done(&self) -> bool {
+        self.is_done
+    }
+
+    /// Does up to `budget` units of the audit and returns what is left.
+    pub(crate) fn step(&mut self, audited: &mut Audited, mut budget: u32) -> u32 {
+        if !self.is_scanned {
+            budget = self.scan(audited, budget);
+        }
+        while budget > 0 && self.is_scanned && !self.is_done {
+            let Some(seed) = audited.seeds.get(self.next).copied() else {
+                self.is_done = true;
+                self.near = Vec::new();
+                break;
+            };
+            if self.open + self.without.len() as u64 >= MOST_FAILED {
+                self.open += (audited.seeds.len() - self.next) as u64;
+                self.next = audited.seeds.len();
+                continue;
+            }
+            let near = core::mem::take(&mut self.near[self.next]);
+            self.look_at(audited, seed, &near);
+            self.next += 1;
+            budget = budget.saturating_sub(UNITS);
+        }
+        budget
+    }
+
+    /// Hands particles to the witnesses near them.
+    fn scan(&mut self, audited: &Audited, mut budget: u32) -> u32 {
+        let Audited { particles, seeds, .. } = audited;
+        self.near.resize(seeds.len(), Vec::new());
+        let tree = Tree::of(seeds.iter().map(|seed| seed.position).zip(0..).collect());
+        let mut found = Vec::new();
+        while budget > 0 && self.next < particles.len() {
+            let last = (self.next + SCANNED).min(particles.len());
+            for i in self.next..last {
+                let (p, reach) = (particles.position[i], REACH * particles.radius[i]);
+                found.clear();
+                tree.within_box(p - reach, p + reach, &mut found);
+                for &k in &found {
+                    let distance_sq = tree.position[k as usize].distance_squared(p);
+                    let near = &mut self.near[tree.origin[k as usize] as usize];
+                    let is_nearer = near.len() < MOST_NEAR || distance_sq < near[MOST_NEAR - 1].0;
+                    if distance_sq <= reach * reach && is_nearer {
+                        near.truncate(MOST_NEAR - 1);
+                        let place = near.partition_point(|&(other, _)| other <= distance_sq);
+                        near.insert(place, (distance_sq, i as u32));
+                    }
+                }
+            }
+            self.next = last;
+            budget -= 1;
+        }
+        if self.next == particles.len() {
+            (self.is_scanned, self.next) = (true, 0);
+        }
+        budget
+    }
+
+    /// Decides whether the component of a witness holds one of the particles near it.
+    fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[(f32, u32)]) {
+        let Audited { field, projector, particles, slack, radius, rule, within, .. } = audited;
+        let Seed { exact, part, .. } = seed;
+        let from = (exact, value_at(*field, part, exact).1.try_normalize().unwrap_or(DVec3::Z));
+        // On the factor of the witness: the others are on other sheets.
+        let mut on_part = near.to_vec();
+        let boxes: Vec<[DVec3; 2]> =
+            near.iter().map(|&(_, j)| [particles.position[j as usize].as_dvec3(); 2]).collect();
+        let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
+        field.enclose(part, &boxes, &mut known);
+        let mut place = known.iter().map(|known| {
+            let steepest = DVec3::from_array(known.gradient.map(|[lo, hi]| hi.max(-lo))).length();
+            known.value[1].max(-known.value[0]) <= 2.0 * *slack * steepest
+        });
+        on_part.retain(|_| place.next() == Some(true));
+        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
+        let pairs: Vec<(Oriented, DVec3)> =
+            on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
+        let is_held = are_connected(*field, part, &pairs, *slack, None).contains(&true)
+            || on_part.iter().take(MOST_TRIED_BY_SEGMENTS).any(|&(_, j)| {
+                is_connected_by_segments(*field, part, from, place_of(j), *slack, *within)
+                    || is_connected_around(*field, part, from, place_of(j), *slack, *within)
+            });
+        if is_held {
+            return;
+        }
+        let seems_held = on_part.iter().take(TOGETHER).any(|&(_, j)| {
+            let (position, normal) = (particles.position[j as usize], particles.normal[j as usize]);
+            normal.dot(seed.normal) > 0.0
+                && rule.is_one_sheet(
+                    *field,
+                    projector,
+                    (seed.position, seed.normal),
+                    position - seed.position,
+                    normal,
+                )
+        });
+        if seems_held || self.without.len() >= MOST_NAMED {
+            self.open += 1;
+            return;
+        }
+        let Piece { reach, goes_on } = follow(*field, part, exact, FOLLOWED * *radius);
+        self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
+    }
+}
+
+/// How far the part of the surface around a point reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    /// Largest distance from the point.
+    pub(crate) reach: f64,
+    /// Whether it goes on beyond the distance to which it was followed.
+    pub(crate) goes_on: bool,
+}
+
+/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight half-planes
+/// through the normal.
+pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64) -> Piece {
+    const PATHS: usize = 8;
+    /// Steps of a path, of which a half-circle takes sixteen.
+    const STEPS: u32 = 64;
+    /// A step as a share of the radius of curvature, and largest step as a share of `most`.
+    const SHARE: f64 = 0.2;
+    const LARGEST: f64 = 1.0 / 16.0;
+    /// A path has turned back where it is at this share of its largest distance.
+    const TURNED: f64 = 0.9;
+    let gradient = value_at(field, part, from).1;
+    let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
+    let (u, v) = crate::math::tangent_frame(normal.as_vec3());
+    let mut second = [[[0.0; 2]; 6]];
+    field.enclose_second(part, &[[from, from]], &mut second);
+    let mut known = [Enclosure::UNKNOWN; PATHS];
+    let bend =
+        second[0].iter().fold(0.0_f64, |most, [lo, hi]| most.max(hi.abs()).max(lo.abs())) / gradient.length();
+    // `min` passes over a NaN.
+    let step = (SHARE / bend).min(LARGEST * most);
+    let mut at = [from; PATHS];
+    let mut heading: [DVec3; PATHS] = core::array::from_fn(|k| {
+        let angle = core::f64::consts::TAU * k as f64 / PATHS as f64;
+        u.as_dvec3() * libm::cos(angle) + v.as_dvec3() * libm::sin(angle)
+    });
+    // The half-plane of each path is perpendicular to this.
+    let across = heading.map(|direction| normal.cross(direction));
+    let mut farthest = [0.0_f64; PATHS];
+    let mut has_turned = [false; PATHS];
+    let reach_of = |farthest: [f64; PATHS]| farthest.into_iter().fold(0.0, f64::max);
+    for _ in 0..STEPS {
+        let mut next: [DVec3; PATHS] = core::array::from_fn(|k| at[k] + heading[k] * step);
+        // Two Newton steps in the half-planes.
+        for _ in 0..2 {
+            field.enclose(part, &next.map(|p| [p, p]), &mut known);
+            for k in 0..PATHS {
+                let (value, gradient) = known[k].middle();
+                let within = gradient - across[k] * gradient.dot(across[k]);
+                let correction = within * (value / within.length_squared());
+                if correction.is_finite() {
+                    next[k] -= correction.clamp_length_max(step);
+                }
+                let along = across[k].cross(within).normalize_or_zero();
+                let along = if along.dot(next[k] - at[k]) < 0.0 { -along } else { along };
+                heading[k] = if along == DVec3::ZERO { heading[k] } else { along };
+            }
+        }
+        at = next;
+        for k in 0..PATHS {
+            let distance = (at[k] - from).length();
+            farthest[k] = farthest[k].max(distance);
+            has_turned[k] |= distance < TURNED * farthest[k];
+        }
+        if reach_of(farthest) > most {
+            return Piece { reach: most, goes_on: true };
+        }
+    }
+    Piece { reach: reach_of(farthest), goes_on: has_turned.contains(&false) }
+}
+
+/// Whether one of the particles with these indices lies on the small piece around a seed that reaches so far.
+pub(crate) fn holds_any(
+    field: &mut dyn Field,
+    particles: &Particles,
+    (seed, reach): (Seed, f64),
+    mut indices: impl Iterator<Item = usize>,
+    slack: f64,
+) -> bool {
+    indices.any(|j| {
+        let p = particles.position[j].as_dvec3();
+        let (value, gradient) = value_at(field, seed.part, p);
+        (p - seed.exact).length() <= reach && value.abs() <= 2.0 * slack * gradient.length()
+    })
+}

@@ -1,0 +1,84 @@
+//! Whether single precision holds the values of a field. Where it does not, the field is to be evaluated in double precision,
+//! compressed to a scale that is found here.
+
+use crate::field::Field;
+use crate::math::Bounds;
+use glam::{DVec3, Vec3};
+
+/// Nodes along each side of the grid on which both precisions are compared.
+const SIDE: usize = 9;
+/// Share of them that single precision may lose.
+const MOST_LOST: f64 = 0.02;
+/// Nodes along each side of the grid on which the gradient at the surface is looked for.
+const FINE_SIDE: usize = 16;
+/// Largest number of points of the surface at which it is taken.
+const MOST_ROOTS: usize = 64;
+/// Halvings of an edge between two nodes.
+const HALVINGS: u32 = 60;
+/// Cells of the survey's grid along the longest side of the box: the scale is the value of f a cell away from the surface.
+const CELLS: f64 = 32.0;
+
+/// The nodes of a grid in a box, off its faces and its planes of symmetry.
+fn nodes(bounds: &Bounds, side: usize) -> impl Iterator<Item = DVec3> {
+    let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
+    (0..side * side * side).map(move |i| {
+        let node = DVec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
+        lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / side as f64
+    })
+}
+
+/// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
+/// a value, beyond underflow, at nearly all places where double precision has one.
+pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64> {
+    let points: Vec<Vec3> = nodes(bounds, SIDE).map(|p| p.as_vec3()).collect();
+    let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
+    field.gradients(&points, &mut value, &mut gradient);
+    let mut lost = 0;
+    for (k, &p) in points.iter().enumerate() {
+        let overflows = !(value[k].is_finite() && gradient[k].is_finite());
+        if overflows || value[k].abs() < f32::MIN_POSITIVE {
+            let jet = field.jet(p.as_dvec3());
+            let is_there = jet.value.is_finite() && jet.gradient.is_finite();
+            lost += usize::from(is_there && (overflows || jet.value != 0.0));
+        }
+    }
+    (lost as f64 > MOST_LOST * points.len() as f64).then(|| scale(field, bounds))
+}
+
+/// Whether f is beyond double precision somewhere.
+pub(crate) fn overflows_double(field: &mut dyn Field, bounds: &Bounds) -> bool {
+    nodes(bounds, SIDE).any(|p| field.jet(p).value.is_infinite())
+}
+
+/// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no surface is seen.
+fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
+    let grid: Vec<DVec3> = nodes(bounds, FINE_SIDE).collect();
+    let value: Vec<f64> = grid.iter().map(|&p| field.jet(p).value).collect();
+    let mut edges = Vec::new();
+    for i in 0..grid.len() {
+        for (axis, step) in [1, FINE_SIDE, FINE_SIDE * FINE_SIDE].into_iter().enumerate() {
+            let is_last = i / FINE_SIDE.pow(axis as u32) % FINE_SIDE == FINE_SIDE - 1;
+            if !is_last && value[i] * value[i + step].signum() < 0.0 && value[i + step].is_finite() {
+                edges.push([i, i + step]);
+            }
+        }
+    }
+    let mut slopes = Vec::new();
+    for &[a, b] in edges.iter().step_by(edges.len().div_ceil(MOST_ROOTS).max(1)) {
+        let (mut from, mut to) = (grid[a], grid[b]);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (from + to);
+            let is_before = (field.jet(middle).value > 0.0) == (value[a] > 0.0);
+            if is_before { from = middle } else { to = middle }
+        }
+        slopes.push(field.jet(from).gradient.length());
+    }
+    let cell = (bounds.hi() - bounds.lo()).max_element() / CELLS;
+    let usual = |mut sizes: Vec<f64>| {
+        sizes.retain(|size| size.is_finite() && *size > 0.0);
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).copied()
+    };
+    let of_slopes = usual(slopes).map(|slope| slope * cell);
+    of_slopes.or_else(|| usual(value.iter().map(|v| v.abs()).collect())).unwrap_or(1.0)
+}

@@ -1,0 +1,207 @@
+//! The lesson's bundle: a [`Reference`] behind plain objects and copies of its particles.
+
+use super::values::{answer, to_js};
+use crate::field::formula::FormulaField;
+use crate::field::rbf::{RbfData, RbfField};
+use crate::field::{Field, Interval, Jet};
+use crate::math::{Bounds, Sym3};
+use crate::reference::{self, LessonField, Particle, Reference, Settings};
+use crate::session::{Fault, FaultKind};
+use glam::{DVec3, Vec3};
+use serde::de::DeserializeOwned;
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Lesson {
+    run: Option<Reference>,
+}
+
+fn read<T: DeserializeOwned>(value: JsValue, kind: FaultKind) -> Result<T, Fault> {
+    serde_wasm_bindgen::from_value(value).map_err(|error| Fault::new(kind, &error))
+}
+
+/// A field that is only asked for jets. Evaluation in lanes and bounds over boxes stay out of the bundle.
+struct Pointwise<F>(F);
+
+impl<F: Field> Pointwise<F> {
+    fn jets(&mut self, points: &[Vec3]) -> impl Iterator<Item = (usize, Jet)> {
+        points.iter().map(|p| self.0.jet(p.as_dvec3())).enumerate()
+    }
+}
+
+impl<F: Field> Field for Pointwise<F> {
+    fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
+        self.jets(points).for_each(|(k, jet)| value[k] = jet.value as f32);
+    }
+
+    fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
+        self.jets(points).for_each(|(k, jet)| {
+            (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
+        });
+    }
+
+    fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        self.jets(points).for_each(|(k, jet)| {
+            (value[k], gradient[k]) = (jet.value as f32, jet.gradient.as_vec3());
+            hessian[k] = jet.hessian.map(|entry| entry as f32);
+        });
+    }
+
+    fn jet(&mut self, p: DVec3) -> Jet {
+        self.0.jet(p)
+    }
+
+    fn interval(&mut self, _: DVec3, _: DVec3) -> Interval {
+        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: false }
+    }
+}
+
+fn formula(field: &LessonField) -> Result<Box<dyn Field>, Fault> {
+    let parsed = FormulaField::parse(&field.formula, &field.parameters)
+        .map_err(|error| Fault::in_formula(error, &field.formula))?;
+    Ok(Box::new(Pointwise(parsed.without_powers())))
+}
+
+fn points(system: &[u8]) -> Result<Box<dyn Field>, Fault> {
+    let field = RbfData::from_bytes(system).and_then(RbfField::new);
+    Ok(Box::new(Pointwise(field.map_err(|error| Fault::new(FaultKind::Points, &error))?)))
+}
+
+#[wasm_bindgen]
+impl Lesson {
+    /// Nothing begun.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Self {
+        console_error_panic_hook::set_once();
+        Self::default()
+    }
+
+    /// Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`, of which what is missing has its
+    /// default; to an `Answer` with `LessonProgress`.
+    pub fn start(&mut self, field: JsValue, settings: JsValue) -> JsValue {
+        let field = read::<LessonField>(field, FaultKind::Request);
+        self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
+    }
+
+    /// The same on a model from points: the solved system as `Points.field` gives it, and its `Bounds`.
+    pub fn start_points(&mut self, system: &[u8], bounds: JsValue, settings: JsValue) -> JsValue {
+        let bounds = read::<Bounds>(bounds, FaultKind::Request);
+        self.begin(bounds.and_then(|bounds| Ok((points(system)?, bounds))), settings)
+    }
+
+    /// Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
+    pub fn step(&mut self, budget: u32) -> JsValue {
+        to_js(&self.run.as_mut().map(|run| run.step(budget)))
+    }
+
+    /// The chapters from number `first` on: an array of `LessonChapter`.
+    pub fn chapters(&self, first: usize) -> JsValue {
+        let chapters = self.run.as_ref().map(Reference::chapters).unwrap_or_default();
+        to_js(&chapters.get(first..).unwrap_or_default())
+    }
+
+    /// Up to `count` events from number `first` on: an array of `LessonEvent`.
+    pub fn events(&mut self, first: u32, count: u32) -> JsValue {
+        to_js(&self.run.as_mut().map(|run| run.events(first, count)).unwrap_or_default())
+    }
+
+    /// Goes to the moment before event number `event`; returns the number of events that have happened then.
+    pub fn seek(&mut self, event: u32) -> u32 {
+        self.run.as_mut().map_or(0, |run| run.seek(event))
+    }
+
+    /// When a particle was added, treated and done: `LessonLife`; null if there is none.
+    pub fn life(&self, particle: u32) -> JsValue {
+        to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
+    }
+
+    /// Positions at the moment that was sought, three floats each.
+    pub fn positions(&self) -> Vec<f32> {
+        self.column(|particle| particle.p().as_vec3().to_array()).into_flattened()
+    }
+
+    /// Unit normals, three floats each.
+    pub fn normals(&self) -> Vec<f32> {
+        self.column(|particle| particle.n().as_vec3().to_array()).into_flattened()
+    }
+
+    /// Repulsion radii.
+    pub fn radii(&self) -> Vec<f32> {
+        self.column(|particle| particle.radius as f32)
+    }
+
+    /// Generation levels.
+    pub fn levels(&self) -> Vec<u32> {
+        self.column(|particle| particle.level)
+    }
+
+    /// Parents; 0xffffffff for a seed.
+    pub fn parents(&self) -> Vec<u32> {
+        self.column(|particle| particle.parent.unwrap_or(u32::MAX))
+    }
+
+    /// Numbers of the fronts.
+    pub fn fronts(&self) -> Vec<u32> {
+        self.column(|particle| particle.front)
+    }
+
+    /// Three-bit fates of the slots, as those of the sampler.
+    pub fn slots(&self) -> Vec<u32> {
+        self.column(|particle| particle.slots.0)
+    }
+
+    /// 1 for a particle that is done, 0 for one that waits.
+    pub fn done(&self) -> Vec<u8> {
+        self.column(|particle| u8::from(particle.is_done))
+    }
+
+    /// The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half` of the centre: segments as four
+    /// floats each, x along `right` and y along `up`.
+    pub fn section(&mut self, centre: &[f64], right: &[f64], up: &[f64], half: f64, cells: u32) -> Vec<f32> {
+        let (Some(run), Some(centre), Some(right), Some(up)) =
+            (&mut self.run, vector(centre), vector(right), vector(up))
+        else {
+            return Vec::new();
+        };
+        let segments = run.section(centre, right, up, half, cells);
+        segments.as_flattened().iter().map(|&x| x as f32).collect()
+    }
+
+    /// The steps of Newton's method in space from a point: an array of `LessonIterate`.
+    pub fn newton(&mut self, start: &[f64], reach: f64) -> JsValue {
+        let run = self.run.as_mut().zip(vector(start));
+        to_js(&run.map(|(run, start)| run.newton(start, reach)).unwrap_or_default())
+    }
+
+    /// Digest of the particles at the moment that was sought, 16 hexadecimal digits.
+    pub fn digest(&self) -> String {
+        format!("{:016x}", reference::digest(self.run.as_ref().map(Reference::particles).unwrap_or_default()))
+    }
+
+    fn begin(&mut self, field: Result<(Box<dyn Field>, Bounds), Fault>, settings: JsValue) -> JsValue {
+        self.run = None;
+        let settings = read::<Settings>(settings, FaultKind::Settings);
+        answer(field.and_then(|(field, bounds)| {
+            let run = Reference::new(field, &bounds, &settings?)
+                .map_err(|error| Fault::new(FaultKind::Settings, &error))?;
+            Ok(self.run.insert(run).progress())
+        }))
+    }
+
+    fn column<T>(&self, of: impl Fn(&Particle) -> T) -> Vec<T> {
+        self.run.as_ref().map(Reference::particles).unwrap_or_default().iter().map(of).collect()
+    }
+}
+
+fn vector(numbers: &[f64]) -> Option<[f64; 3]> {
+    numbers.try_into().ok()
+}

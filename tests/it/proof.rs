@@ -1,0 +1,282 @@
+//! A property of random surfaces whose components are known: where the search says `proven`, every component holds particles
+//! or is named in the report, with its place and its size.
+//!
+//! `PROOF_CASES` sets the number of cases of each family, 400 by default.
+
+use glam::DVec3;
+use marching_particles::field::formula::FormulaField;
+use marching_particles::math::Bounds;
+use marching_particles::sampler::{Sampler, Sampling, Search, Settings, Unsampled};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// A component, or a family of parallel ones of which it is one.
+#[derive(Clone, Copy, Debug)]
+enum Piece {
+    Sphere {
+        centre: DVec3,
+        radius: f64,
+    },
+    /// Around the z-axis.
+    Torus {
+        centre: DVec3,
+        major: f64,
+        minor: f64,
+    },
+    /// z = height + depth sin(wave x): a plane if the depth is 0.
+    Sheet {
+        height: f64,
+        depth: f64,
+        wave: f64,
+    },
+    /// |x|⁴ + |y|⁴ + |z|⁴ = radius⁴ around a centre: flat at the ends of its axes, and its function is flat in its middle.
+    Quartic {
+        centre: DVec3,
+        radius: f64,
+    },
+}
+
+impl Piece {
+    fn formula(&self) -> String {
+        let about = |c: DVec3| format!("(x-({})), (y-({})), (z-({}))", c.x, c.y, c.z);
+        let powers = |c: DVec3, n: u32| {
+            let terms: Vec<String> = about(c).split(", ").map(|t| format!("{t}^{n}")).collect();
+            terms.join("+")
+        };
+        match *self {
+            Self::Sphere { centre, radius } => format!("({}-({radius})^2)", powers(centre, 2)),
+            Self::Torus { centre: c, major, minor } => {
+                let [x, y, z] = c.to_array().map(|c| format!("({c})"));
+                format!("((sqrt((x-{x})^2+(y-{y})^2)-{major})^2+(z-{z})^2-({minor})^2)")
+            }
+            Self::Sheet { height, depth, wave } => format!("(z-({height})-{depth}*sin({wave}*x))"),
+            Self::Quartic { centre, radius } => format!("({}-({radius})^4)", powers(centre, 4)),
+        }
+    }
+
+    /// Distance of a point from it, to first order.
+    fn distance(&self, p: DVec3) -> f64 {
+        match *self {
+            Self::Sphere { centre, radius } => ((p - centre).length() - radius).abs(),
+            Self::Torus { centre, major, minor } => {
+                let q = p - centre;
+                (libm::hypot(q.truncate().length() - major, q.z) - minor).abs()
+            }
+            Self::Sheet { height, depth, wave } => {
+                let (rise, slope) = (depth * libm::sin(wave * p.x), depth * wave * libm::cos(wave * p.x));
+                ((p.z - height - rise) / libm::hypot(1.0, slope)).abs()
+            }
+            Self::Quartic { centre, radius } => {
+                let q = p - centre;
+                let value = (q * q * q * q).element_sum() - radius.powi(4);
+                (value / (4.0 * (q * q * q).length())).abs()
+            }
+        }
+    }
+
+    /// Largest distance between two of its points; none if the box cuts it.
+    fn width(&self) -> Option<f64> {
+        match *self {
+            Self::Sphere { radius, .. } => Some(2.0 * radius),
+            _ => None,
+        }
+    }
+}
+
+struct Random(Pcg32);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / 4_294_967_296.0
+    }
+
+    fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+
+    /// A length whose logarithm is uniform.
+    fn length(&mut self, lo: f64, hi: f64) -> f64 {
+        lo * libm::pow(hi / lo, self.unit())
+    }
+
+    fn count(&mut self, lo: u32, hi: u32) -> u32 {
+        lo + self.0.next_u32() % (hi - lo + 1)
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        loop {
+            let p = DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0));
+            if (0.01..1.0).contains(&p.length_squared()) {
+                return p / p.length();
+            }
+        }
+    }
+
+    fn near_middle(&mut self, most: f64) -> DVec3 {
+        self.direction() * self.between(0.0, most)
+    }
+
+    /// A gap between sheets, from a thousandth of the radius of a particle to ten of them.
+    fn gap(&mut self, r: f64) -> f64 {
+        self.length(1e-3 * r, 10.0 * r)
+    }
+}
+
+/// What was asked and what was answered.
+struct Case {
+    formula: String,
+    pieces: Vec<Piece>,
+    settings: Settings,
+}
+
+/// Says whether the search was proven; panics if it says so and a component is neither sampled nor named.
+fn holds(case: &Case, context: &str) -> bool {
+    let Case { formula, pieces, settings } = case;
+    let mut field = FormulaField::parse(formula, &[]).unwrap_or_else(|e| panic!("{formula}: {e}"));
+    let mut sampler = Sampler::new();
+    sampler.start(&mut field, &Bounds::cube(1.0), settings).unwrap_or_else(|e| panic!("{formula}: {e}"));
+    while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
+    let sampled = sampler.sampled();
+    if sampler.search() != Search::Proven {
+        return false;
+    }
+    let nearest = |p: DVec3| {
+        let distances = pieces.iter().map(|piece| piece.distance(p)).enumerate();
+        distances.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
+    };
+    let mut is_told = vec![false; pieces.len()];
+    for p in &sampler.particles().position {
+        nearest(p.as_dvec3()).iter().for_each(|&k| is_told[k] = true);
+    }
+    for &Unsampled { position, reach, goes_on } in &sampled.without {
+        let place = DVec3::from_array(position);
+        let Some(k) = nearest(place) else { continue };
+        is_told[k] = true;
+        // Only what the box cuts, or what is larger than is followed, goes on.
+        if let (false, Some(width)) = (goes_on, pieces[k].width()) {
+            let is_right = (0.9 * width..=1.1 * width).contains(&reach);
+            assert!(is_right, "{context}: {formula} at {place}: {reach} for {width}");
+        }
+        assert!(goes_on || sampled.above.is_none_or(|above| above >= reach), "{context}: {sampled:?}");
+    }
+    assert!(
+        is_told.iter().all(|&told| told),
+        "{context}: {formula}, {settings:?}: {is_told:?} of {pieces:?}"
+    );
+    true
+}
+
+/// Runs the cases of a family. At least this share of them must be proven.
+fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>) {
+    let cases: u64 = std::env::var("PROOF_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
+    let mut proven = 0;
+    for seed in 0..cases {
+        let mut random = Random(Pcg32::seed_from_u64(seed));
+        let r = random.between(0.05, 0.09);
+        let pieces = make(&mut random, r);
+        let formula: Vec<String> = pieces.iter().map(Piece::formula).collect();
+        let adaptive = random.unit() < 0.2;
+        let settings = Settings {
+            radius_share: r / 12.0_f64.sqrt(),
+            relax_steps: random.count(0, 3),
+            seed,
+            sampling: if adaptive { Sampling::Adaptive } else { Sampling::Uniform },
+            ..Settings::default()
+        };
+        let case = Case { formula: formula.join("*"), pieces, settings };
+        proven += u32::from(holds(&case, &format!("{name} {seed}")));
+    }
+    println!("{name}: {proven} of {cases} proven");
+    assert!(f64::from(proven) >= share * cases as f64, "{name}: {proven} of {cases} proven");
+}
+
+#[test]
+fn of_nested_spheres_none_is_missing_without_a_word() {
+    family("nested spheres", 0.9, |random, r| {
+        let (centre, mut radius) = (random.near_middle(0.1), random.between(0.2, 0.5));
+        let mut all = vec![Piece::Sphere { centre, radius }];
+        for _ in 1..random.count(2, 4) {
+            radius += random.gap(r).min(0.1);
+            all.push(Piece::Sphere { centre, radius });
+        }
+        all
+    });
+}
+
+#[test]
+fn of_stacked_sheets_none_is_missing_without_a_word() {
+    family("stacked sheets", 0.9, |random, r| {
+        let is_plane = random.unit() < 0.5;
+        let wave = random.length(3.0, 60.0);
+        // The slope is at most a half.
+        let depth = if is_plane { 0.0 } else { random.between(0.0, 0.5) / wave };
+        let mut height = random.between(-0.6, 0.0);
+        let mut all = vec![Piece::Sheet { height, depth, wave }];
+        for _ in 1..random.count(2, 4) {
+            height += random.gap(r).min(0.2);
+            all.push(Piece::Sheet { height, depth, wave });
+        }
+        all
+    });
+}
+
+#[test]
+fn of_tiny_spheres_beside_a_large_one_none_is_missing_without_a_word() {
+    family("tiny beside large", 0.9, |random, r| {
+        let (centre, large) = (random.near_middle(0.1), random.between(0.3, 0.6));
+        let mut all = vec![Piece::Sphere { centre, radius: large }];
+        let mut placed: Vec<(DVec3, f64)> = Vec::new();
+        for _ in 0..random.count(1, 4) {
+            let (radius, gap) =
+                (random.length(0.05 * r, 3.0 * r).min(0.2), random.length(1e-3 * r, 3.0 * r).min(0.1));
+            let side = if random.unit() < 0.7 { 1.0 } else { -1.0 };
+            let at = centre + random.direction() * (large + side * (radius + gap));
+            let is_free =
+                placed.iter().all(|&(other, size)| (other - at).length() > size + radius + 1e-3 * r);
+            if is_free
+                && (side > 0.0 || radius + gap < 0.5 * large)
+                && (at.abs().max_element() + radius) < 1.0
+            {
+                placed.push((at, radius));
+                all.push(Piece::Sphere { centre: at, radius });
+            }
+        }
+        all
+    });
+}
+
+#[test]
+fn of_scattered_spheres_none_is_missing_without_a_word() {
+    family("scattered spheres", 0.9, |random, r| {
+        let mut placed: Vec<(DVec3, f64)> = Vec::new();
+        for _ in 0..random.count(3, 8) {
+            let (at, radius) = (random.near_middle(0.7), random.length(0.3 * r, 5.0 * r).min(0.28));
+            let near = placed.iter().map(|&(other, size)| (other - at).length() - size - radius);
+            // Now and then it touches another one nearly.
+            let gap = near.fold(f64::INFINITY, f64::min);
+            if gap > 0.2 * r {
+                let grown = radius + if random.unit() < 0.5 { (gap - 0.01 * r).min(0.1) } else { 0.0 };
+                placed.push((at, if at.abs().max_element() + grown < 1.0 { grown } else { radius }));
+            }
+        }
+        placed.into_iter().map(|(centre, radius)| Piece::Sphere { centre, radius }).collect()
+    });
+}
+
+#[test]
+fn of_nested_tori_and_flat_minima_none_is_missing_without_a_word() {
+    family("tori and flat minima", 0.8, |random, r| {
+        let centre = random.near_middle(0.05);
+        let (major, mut minor) = (random.between(0.5, 0.6), random.between(0.1, 0.2));
+        let mut all = vec![Piece::Torus { centre, major, minor }];
+        if random.unit() < 0.7 {
+            minor += random.gap(r).min(0.1);
+            all.push(Piece::Torus { centre, major, minor });
+        }
+        if random.unit() < 0.5 {
+            // In the hole of the torus, whose radius is at least 0.2.
+            all.push(Piece::Quartic { centre, radius: random.length(0.3 * r, 0.12) });
+        }
+        all
+    });
+}

@@ -1,0 +1,404 @@
+//! Tests of the reference: what the paper says holds of it, going back is exact, and its digests are those of every platform.
+//!
+//! A change that is meant to move particles rewrites the golden file: `UPDATE_GOLDEN=1 cargo test --test it reference::`.
+
+use glam::DVec3;
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::gallery;
+use marching_particles::reference::{
+    ChapterKind, Event, LessonField, Matched, Order, Particle, Placing, Projection, Reference,
+    ReferenceError, Seeding, Settings, digest,
+};
+use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+fn start(surface: &str, settings: &Settings) -> Result<Reference, ReferenceError> {
+    let surface = gallery::find(surface).expect("a gallery surface");
+    Reference::new(Box::new(surface.field()), &surface.bounds, settings)
+}
+
+fn run(surface: &str, settings: &Settings) -> Reference {
+    let mut run = start(surface, settings).unwrap_or_else(|error| panic!("{surface}: {error}"));
+    while !run.step(1_000).is_done {}
+    run.seek(u32::MAX);
+    run
+}
+
+/// Some hundred particles.
+fn coarse() -> Settings {
+    Settings { radius: 0.08, relax_steps: 3, ..Settings::default() }
+}
+
+/// Adaptive sampling with some hundred particles.
+fn adaptive() -> Settings {
+    Settings {
+        sampling: Sampling::Adaptive,
+        law: LawKind::MaxCurvature,
+        law_scale: 0.12,
+        radius_min: 0.03,
+        radius_max: 0.12,
+        relax_steps: 3,
+        ..Settings::default()
+    }
+}
+
+fn all_settings() -> [Settings; 6] {
+    [
+        coarse(),
+        adaptive(),
+        Settings { radius: 0.08, relax_steps: 3, gaps: GapPolicy::Fill, ..Settings::of_fast_front() },
+        Settings { order: Order::Stack, matched: Matched::Stay, ..coarse() },
+        Settings { projection: Projection::Newton, ..coarse() },
+        Settings { seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together, ..coarse() },
+    ]
+}
+
+#[test]
+fn back_is_exact_to_the_last_bit() {
+    for settings in all_settings() {
+        let mut straight = run("sphere", &settings);
+        let total = straight.progress().events;
+        let events = straight.events(0, total);
+        assert_eq!(events.len(), total as usize, "{settings:?}");
+        let end = digest(straight.particles());
+        // What the events alone make of no particles, at every 97th event.
+        let mut particles: Vec<Particle> = Vec::new();
+        let mut digests = Vec::new();
+        for (k, event) in events.iter().enumerate() {
+            if k % 97 == 0 {
+                digests.push((k as u32, digest(&particles)));
+            }
+            event.apply(&mut particles);
+        }
+        assert_eq!(digest(&particles), end, "{settings:?}");
+        // Backwards, and then in an order that jumps about.
+        for &(event, expected) in digests.iter().rev().chain(digests.iter().skip(1).step_by(7)) {
+            assert_eq!(straight.seek(event), event);
+            assert_eq!(digest(straight.particles()), expected, "{settings:?} at event {event} of {total}");
+        }
+        straight.seek(u32::MAX);
+        assert_eq!(digest(straight.particles()), end, "{settings:?}");
+        // Events are the same wherever the reader begins.
+        for first in (0..total).step_by(613) {
+            let part = straight.events(first, 50);
+            assert_eq!(part, events[first as usize..(first as usize + 50).min(events.len())], "{settings:?}");
+        }
+        // Each chapter begins where the one before it ends.
+        for pair in straight.chapters().windows(2) {
+            assert_eq!(pair[0].first_event + pair[0].events, pair[1].first_event);
+            assert_eq!(pair[0].after, pair[1].before);
+        }
+    }
+}
+
+#[test]
+fn how_a_run_is_cut_into_steps_does_not_change_it() {
+    for settings in all_settings() {
+        let whole = run("ellipsoid", &settings);
+        for budget in [1, 7, 100_000] {
+            let mut cut = start("ellipsoid", &settings).expect("valid settings");
+            while !cut.step(budget).is_done {
+                // A look back in between leaves the run alone.
+                let middle = cut.progress().events / 2;
+                cut.seek(middle);
+            }
+            cut.seek(u32::MAX);
+            assert_eq!(cut.progress(), whole.progress(), "{settings:?} by {budget}");
+            assert_eq!(digest(cut.particles()), digest(whole.particles()), "{settings:?} by {budget}");
+        }
+    }
+}
+
+#[test]
+fn an_unfinished_chapter_can_be_looked_at() {
+    let mut run = start("sphere", &coarse()).expect("valid settings");
+    let progress = run.step(5);
+    assert!(!progress.is_done && !run.chapters().last().expect("a chapter").is_over);
+    let events = run.events(0, u32::MAX);
+    assert_eq!(events.len(), progress.events as usize);
+    assert_eq!(run.seek(u32::MAX), progress.events);
+    assert_eq!(run.particles().len(), progress.particles as usize);
+}
+
+#[test]
+fn the_seed_has_six_children_and_rings_grow_by_six() {
+    let run = run("sphere", &Settings { radius: 0.03, relax_steps: 0, ..Settings::default() });
+    let added: Vec<u64> = run.chapters().iter().map(|chapter| chapter.fates.added).take(4).collect();
+    assert_eq!(added, [6, 12, 18, 24]);
+    for (level, chapter) in run.chapters().iter().enumerate() {
+        assert_eq!(chapter.kind, ChapterKind::Level { front: 0, level: level as u32 });
+        let fates = chapter.fates;
+        let slots = fates.added + fates.matched + fates.not_converged + fates.outside + fates.undefined;
+        // Five slots of every particle but the seed.
+        let treated = if level == 0 { 6 } else { 5 * run.chapters()[level - 1].fates.added };
+        assert_eq!(slots, treated, "level {level}");
+    }
+    assert!(run.particles().iter().all(|particle| particle.is_done));
+}
+
+#[test]
+fn a_stack_gives_no_rings() {
+    let settings = Settings { radius: 0.05, relax_steps: 0, ..Settings::default() };
+    let levels = |order| {
+        let run = run("sphere", &Settings { order, ..settings.clone() });
+        run.particles().iter().map(|particle| particle.level).max().expect("particles")
+    };
+    assert!(levels(Order::Stack) > 5 * levels(Order::Queue));
+}
+
+#[test]
+fn the_circle_keeps_the_distance_and_newton_does_not() {
+    let settings = Settings { radius: 0.1, relax_steps: 0, ..Settings::default() };
+    let farthest = |projection| {
+        let run = run("ellipsoid", &Settings { projection, ..settings.clone() });
+        let particles = run.particles();
+        let off = particles.iter().filter_map(|particle| {
+            let parent = &particles[particle.parent? as usize];
+            Some((particle.p().distance(parent.p()) / (2.0 * settings.radius) - 1.0).abs())
+        });
+        off.fold(0.0, f64::max)
+    };
+    assert!(farthest(Projection::Circle) < 1e-9, "{}", farthest(Projection::Circle));
+    assert!(farthest(Projection::Newton) > 0.02, "{}", farthest(Projection::Newton));
+}
+
+#[test]
+fn matched_particles_that_stay_bound_all_distances() {
+    let settings = Settings { relax_steps: 0, matched: Matched::Stay, ..coarse() };
+    let run = run("torus", &settings);
+    let particles = run.particles();
+    let limit = 2.0 * settings.radius * settings.match_tolerance;
+    for (i, a) in particles.iter().enumerate() {
+        for b in &particles[..i] {
+            let apart = a.p().distance(b.p());
+            assert!(apart > limit || a.n().dot(b.n()) <= 0.0, "particle {i}: {apart} of {limit}");
+        }
+    }
+}
+
+#[test]
+fn every_iterate_of_a_child_leads_to_its_landing() {
+    let mut run = run("ellipsoid", &coarse());
+    let events = run.events(0, u32::MAX);
+    let mut last: Option<(u32, u32, [f64; 3])> = None;
+    let mut landings = 0;
+    for event in &events {
+        match *event {
+            Event::Slot { parent, slot, place, .. } => last = Some((parent, slot, place)),
+            Event::Iterate { parent, slot, step, position, .. } => {
+                let (p, s, place) = last.expect("a slot comes first");
+                assert_eq!((p, s), (parent, slot));
+                assert!(step > 0 || place == position, "the first iterate is at the start");
+                last = Some((parent, slot, position));
+            }
+            Event::Landed { parent, slot, position, distance, .. } => {
+                assert_eq!(last, Some((parent, slot, position)));
+                assert!((distance - 0.16).abs() < 1e-9, "{distance}");
+                landings += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(landings > 1_000, "{landings}");
+}
+
+#[test]
+fn energy_falls_in_small_steps_and_not_in_large_ones() {
+    let energies = |step_size| {
+        let run = run("sphere", &Settings { step_size: Some(step_size), relax_steps: 10, ..coarse() });
+        run.chapters().iter().filter_map(|chapter| chapter.energy).collect::<Vec<f64>>()
+    };
+    let small = energies(0.3);
+    assert_eq!(small.len(), 10);
+    assert!(small.windows(2).all(|pair| pair[1] < pair[0]), "{small:?}");
+    let large = energies(3.0);
+    assert!(large.windows(2).any(|pair| pair[1] > pair[0]), "{large:?}");
+}
+
+/// Figures 7 and 8, event by event.
+#[test]
+fn an_adaptive_child_is_pushed_until_it_touches_and_then_compared() {
+    let mut run = run("ellipsoid", &Settings { relax_steps: 0, ..adaptive() });
+    let events = run.events(0, u32::MAX);
+    let particles = run.particles();
+    let (mut at, mut radius, mut overlap_before) = (DVec3::ZERO, 0.0, f64::INFINITY);
+    let (mut has_room, mut landed) = (false, None);
+    let [mut pushes, mut turns, mut added, mut crowded] = [0; 4];
+    for event in &events {
+        match *event {
+            Event::Start { parent, position, radius: r, .. } => {
+                let own = &particles[parent as usize];
+                (at, radius, overlap_before, landed) = (position.into(), r, f64::INFINITY, None);
+                // The point s lies on the circle C of the parent.
+                assert!((at.distance(own.p()) / own.radius - 1.0).abs() < 1e-9);
+            }
+            Event::Push { parent, position, radius: r, .. } => {
+                let own = &particles[parent as usize];
+                assert!(at.distance(own.p()) < own.radius + radius, "a child that touches is not pushed");
+                assert!(own.p().distance(position.into()) > at.distance(own.p()));
+                (at, radius, pushes) = (position.into(), r, pushes + 1);
+            }
+            Event::PushOnCircle { parent, position, radius: r, overlap, .. } => {
+                let own = &particles[parent as usize];
+                assert!((own.p().distance(position.into()) / (own.radius + r) - 1.0).abs() < 1e-9);
+                assert!(overlap < overlap_before);
+                (at, radius, overlap_before, turns) = (position.into(), r, overlap, turns + 1);
+            }
+            Event::Room { parent, phi_rad, tau_rad, fits, .. } => {
+                let own = &particles[parent as usize];
+                assert!(at.distance(own.p()) >= (own.radius + radius) * (1.0 - 1e-9));
+                assert!((libm::sin(0.5 * phi_rad) - radius / (own.radius + radius)).abs() < 1e-9);
+                assert_eq!(fits, tau_rad >= 0.5 * phi_rad);
+                (has_room, crowded) = (fits, crowded + u32::from(!fits));
+            }
+            Event::Landed { position, distance, parent, .. } => {
+                // The circle C^i keeps the distance.
+                assert!((distance / at.distance(particles[parent as usize].p()) - 1.0).abs() < 1e-9);
+                landed = Some(position);
+            }
+            Event::Added { data, .. } => {
+                assert!(has_room && landed == Some(data.position));
+                added += 1;
+            }
+            _ => {}
+        }
+    }
+    let context = format!("{pushes} pushes, {turns} turns, {added} added, {crowded} without room");
+    assert!(pushes > 1_000 && turns > 100 && added > 200 && crowded > 100, "{context}");
+}
+
+#[test]
+fn adaptive_particles_follow_the_law_and_crowd_nothing() {
+    let settings = Settings { relax_steps: 0, ..adaptive() };
+    let run = run("ellipsoid", &settings);
+    let particles = run.particles();
+    let radii = particles.iter().map(|particle| particle.radius);
+    let (least, most) = (radii.clone().fold(f64::INFINITY, f64::min), radii.fold(0.0, f64::max));
+    assert!(most > 2.0 * least && least >= settings.radius_min && most <= settings.radius_max);
+    for (i, a) in particles.iter().enumerate() {
+        for b in &particles[..i] {
+            let share = a.p().distance(b.p()) / (a.radius + b.radius);
+            assert!(share > settings.match_tolerance || a.n().dot(b.n()) <= 0.0, "particle {i}: {share}");
+        }
+    }
+    // The discs cover about as much of the surface as those of a lattice, which is 0.907 of it.
+    let discs: f64 = particles.iter().map(|particle| particle.radius * particle.radius).sum::<f64>()
+        * std::f64::consts::PI;
+    // The area of the ellipsoid with the semi-axes 1, 0.7 and 0.5.
+    let share = discs / 6.7;
+    assert!((0.7..1.1).contains(&share), "{share} of the area");
+}
+
+#[test]
+fn two_seeds_together_meet() {
+    let settings =
+        Settings { seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together, ..coarse() };
+    let mut run = run("sphere", &settings);
+    let events = run.events(0, u32::MAX);
+    assert!(events.iter().any(|event| matches!(event, Event::FrontsMeet { is_other: true, .. })));
+    assert_eq!(run.particles().iter().filter(|particle| particle.parent.is_none()).count(), 2);
+}
+
+#[test]
+fn a_section_lies_on_the_surface() {
+    let mut run = start("sphere", &coarse()).expect("valid settings");
+    let segments = run.section([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.3, 60);
+    assert!(segments.len() > 60);
+    for [x0, y0, x1, y1] in segments {
+        for p in [DVec3::new(x0, 0.0, 1.0 + y0), DVec3::new(x1, 0.0, 1.0 + y1)] {
+            assert!((p.length() - 1.0).abs() < 1e-4, "{p}");
+        }
+    }
+    let steps = run.newton([0.2, 0.0, 1.0], 1.0);
+    let last = DVec3::from(steps.last().expect("a step").position);
+    assert!(steps.len() > 2 && (last.length() - 1.0).abs() < 1e-4);
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused_in_words() {
+    let refused = |settings: Settings| match start("sphere", &settings) {
+        Ok(_) => panic!("{settings:?} was accepted"),
+        Err(error) => error.to_string(),
+    };
+    let words = refused(Settings { radius: 0.005, ..Settings::default() });
+    assert!(words.starts_with("about 14") && words.contains("choose a radius of 1.3"), "{words}");
+    assert!(refused(Settings { radius: f64::NAN, ..Settings::default() }).starts_with("radius is NaN"));
+    assert!(refused(Settings { match_tolerance: 2.0, ..coarse() }).starts_with("match_tolerance is 2"));
+    assert!(refused(Settings { placing: Placing::LevelByLevel, ..coarse() }).contains("needs a queue"));
+    assert!(refused(Settings { seeding: Seeding::Together, ..coarse() }).contains("have to be given"));
+    assert!(
+        refused(Settings { gaps: GapPolicy::Fill, ..adaptive() }).starts_with("adaptive sampling places")
+    );
+    assert!(refused(Settings { radius_min: 0.5, ..adaptive() }).starts_with("radius_min is 0.5"));
+    let tiny = Settings { law_scale: 1e-3, radius_min: 1e-3, ..adaptive() };
+    assert!(refused(tiny).contains("choose radii"));
+    // The radius that the message names is accepted.
+    let named: f64 = words.split(' ').rev().nth(2).and_then(|word| word.parse().ok()).expect("a radius");
+    assert!(start("sphere", &Settings { radius: named, ..Settings::default() }).is_ok(), "{words}");
+}
+
+#[test]
+fn the_limit_on_particles_ends_the_front() {
+    let run = run("sphere", &Settings { max_particles: 100, ..coarse() });
+    assert_eq!(run.particles().len(), 100);
+    assert!(run.progress().is_capped);
+}
+
+/// Contents of the golden file.
+#[derive(Serialize, Deserialize)]
+struct Golden {
+    runs: Vec<Lesson>,
+}
+
+/// A run with its expected result.
+#[derive(Serialize, Deserialize)]
+struct Lesson {
+    name: String,
+    field: LessonField,
+    settings: Settings,
+    events: u32,
+    /// Of the particles at the end.
+    digest: String,
+    /// Of those after half of the events.
+    half: String,
+}
+
+#[test]
+fn lessons_have_the_digests_that_other_platforms_give() {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lessons.json");
+    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
+    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
+    assert!(golden.runs.len() >= 4, "{} holds {} runs", path.display(), golden.runs.len());
+    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let mut faults = Vec::new();
+    for lesson in &mut golden.runs {
+        let LessonField { formula, parameters, bounds } = &lesson.field;
+        let field = FormulaField::parse(formula, parameters).expect("the formula can be read");
+        let mut run = Reference::new(Box::new(field.without_powers()), bounds, &lesson.settings)
+            .unwrap_or_else(|error| panic!("{}: {error}", lesson.name));
+        while !run.step(1_000).is_done {}
+        let events = run.progress().events;
+        let mut at = |event| {
+            run.seek(event);
+            format!("{:016x}", digest(run.particles()))
+        };
+        let (half, end) = (at(events / 2), at(events));
+        assert!(events > 5_000, "{}: {events} events are too few to show anything", lesson.name);
+        if update {
+            (lesson.events, lesson.half, lesson.digest) = (events, half, end);
+        } else if (events, &half, &end) != (lesson.events, &lesson.half, &lesson.digest) {
+            faults.push(format!("{}: {events} events, {half}, {end}", lesson.name));
+        }
+    }
+    if update {
+        let text =
+            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
+        std::fs::write(&path, text).expect("the golden file can be written");
+    }
+    assert!(
+        faults.is_empty(),
+        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test it reference::\n",
+        faults.join("\n")
+    );
+}

@@ -1,0 +1,182 @@
+/**
+ * The page's side of the lesson: starts runs of the paper's algorithms in a worker of their own and asks for their events.
+ *
+ * ```js
+ * const lesson = new LessonClient({ spawn: spawnLesson });
+ * const progress = await lesson.start({ formula, parameters, bounds }, { radius: 0.05 });
+ * const [first] = await lesson.ask('chapters', { first: 0 });
+ * const events = await lesson.ask('events', { first: first.first_event, count: first.events });
+ * const particles = await lesson.ask('seek', { event: first.first_event + 12 });
+ * ```
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('./protocol.js').FromLesson} FromLesson
+ * @typedef {import('./protocol.js').ToLesson} ToLesson
+ * @typedef {import('./protocol.js').Surface} Surface
+ * @typedef {import('./protocol.js').Questions} Questions
+ * @typedef {import('./protocol.js').LessonProgress} LessonProgress
+ * @typedef {import('./protocol.js').LessonSettings} LessonSettings
+ * @typedef {import('./protocol.js').Fault} Fault
+ */
+/**
+ * The part of the worker interface that the client uses. Tests pass a scripted worker.
+ * @typedef {object} WorkerLike
+ * @property {(message: ToLesson) => void} postMessage
+ * @property {() => void} terminate
+ * @property {((event: {data: FromLesson}) => void) | null} onmessage
+ * @property {((event: {message?: string}) => void) | null} onerror
+ */
+/**
+ * Why a promise of the client is rejected. `refused`: the formula or a setting is not accepted, with the core's `fault`;
+ * `given_up`: another run has begun, or the client was closed; `crashed`: the bundle stopped on an error; `bundle`: it did not load.
+ * @typedef {'refused' | 'given_up' | 'crashed' | 'bundle'} LessonErrorKind
+ */
+
+export class LessonError extends Error {
+  /** @param {LessonErrorKind} kind @param {string} message @param {Fault | null} [fault] */
+  constructor(kind, message, fault = null) {
+    super(message);
+    this.name = 'LessonError';
+    this.kind = kind;
+    this.fault = fault;
+  }
+}
+
+/** Starts the worker of the lesson, which loads its bundle when it is first asked something. @returns {Worker} */
+export const spawnLesson = () =>
+  new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'lesson' });
+
+/** @typedef {{resolve: (value: any) => void, reject: (error: LessonError) => void}} Waiting */
+
+export class LessonClient {
+  /**
+   * @param {object} [options]
+   * @param {() => WorkerLike} [options.spawn]
+   * @param {(progress: LessonProgress) => void} [options.onProgress]  of the present run, some fifty times a second
+   */
+  constructor({ spawn = /** @type {() => WorkerLike} */ (spawnLesson), onProgress = () => {} } = {}) {
+    this.spawn = spawn;
+    this.onProgress = onProgress;
+    /** @type {WorkerLike | null} */
+    this.worker = null;
+    this.lastId = 0;
+    /** Number of the present run. */
+    this.run = 0;
+    /** Those who wait, by the number of their message. @type {Map<number, Waiting>} */
+    this.waiting = new Map();
+  }
+
+  /**
+   * Begins a run and goes to its end, or to where it is stopped. The run before is given up. While it goes on, questions are
+   * answered about the part that there is.
+   * @param {Surface} surface @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
+   * @returns {Promise<LessonProgress>}
+   */
+  start(surface, settings) {
+    this.giveUp('another run has begun');
+    return this.send((id) => {
+      this.run = id;
+      return { type: 'start', id, surface, settings };
+    });
+  }
+
+  /** Ends the present run where it is: its promise is then fulfilled. */
+  stop() {
+    this.worker?.postMessage({ type: 'stop' });
+  }
+
+  /**
+   * Asks about the present run.
+   * @template {keyof Questions} K
+   * @param {K} about @param {Questions[K]['ask']} ask
+   * @returns {Promise<Questions[K]['answer']>}
+   */
+  ask(about, ask) {
+    return this.send((id) => /** @type {ToLesson} */ ({ type: 'ask', id, about, ask }));
+  }
+
+  /** Ends the worker and frees its memory. The next run starts another one. */
+  close() {
+    this.giveUp('the lesson was closed');
+    this.end();
+  }
+
+  /** @param {(id: number) => ToLesson} message @returns {Promise<any>} */
+  send(message) {
+    this.lastId += 1;
+    const id = this.lastId;
+    return new Promise((resolve, reject) => {
+      this.waiting.set(id, { resolve, reject });
+      this.worker ??= this.listen(this.spawn());
+      this.worker.postMessage(message(id));
+    });
+  }
+
+  /** @param {WorkerLike} worker */
+  listen(worker) {
+    worker.onmessage = ({ data }) => this.receive(data);
+    worker.onerror = (event) => this.fail('bundle', event.message || 'the lesson did not load');
+    return worker;
+  }
+
+  /** @param {FromLesson} message */
+  receive(message) {
+    switch (message.type) {
+      case 'progress':
+        if (message.id === this.run) this.onProgress(message.progress);
+        break;
+      case 'ended':
+        this.settle(message.id)?.resolve(message.progress);
+        break;
+      case 'answer':
+        this.settle(message.id)?.resolve(message.answer);
+        break;
+      case 'refused':
+        this.settle(message.id)?.reject(new LessonError('refused', message.error.message, message.error));
+        break;
+      case 'crashed':
+        this.fail('crashed', `the lesson stopped on an error: ${message.message}`);
+        break;
+      case 'failed':
+        this.fail('bundle', message.message);
+        break;
+      default:
+    }
+  }
+
+  /** @param {number} id */
+  settle(id) {
+    const waiting = this.waiting.get(id);
+    this.waiting.delete(id);
+    return waiting;
+  }
+
+  /** Rejects all who wait. @param {string} why */
+  giveUp(why) {
+    this.reject(new LessonError('given_up', why));
+  }
+
+  /** A worker that failed is not asked again. @param {'crashed' | 'bundle'} kind @param {string} message */
+  fail(kind, message) {
+    this.end();
+    this.reject(new LessonError(kind, message));
+  }
+
+  /** @param {LessonError} error */
+  reject(error) {
+    const waiting = [...this.waiting.values()];
+    this.waiting.clear();
+    for (const { reject } of waiting) reject(error);
+  }
+
+  end() {
+    if (!this.worker) return;
+    this.worker.onmessage = null;
+    this.worker.onerror = null;
+    this.worker.terminate();
+    this.worker = null;
+  }
+}

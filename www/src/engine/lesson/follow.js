@@ -1,0 +1,107 @@
+/**
+ * Follows runs in the worker: goes on with the present one in slices, and answers questions in between. The bundle's class, the
+ * clock and the pause are parameters, so that tests can run it without a worker.
+ *
+ * @module
+ */
+import { nextBudget } from '../bundle/budget.js';
+
+/**
+ * @typedef {import('./protocol.js').ToLesson} ToLesson
+ * @typedef {import('./protocol.js').FromLesson} FromLesson
+ * @typedef {import('./protocol.js').Particles} Particles
+ * @typedef {import('./protocol.js').LessonProgress} LessonProgress
+ * @typedef {InstanceType<typeof import('../../wasm/lesson/lesson.js').Lesson>} Lesson
+ */
+
+/** Target duration of a slice, so that a question does not wait long. */
+const SLICE_MS = 20;
+const FIRST_BUDGET = 64;
+
+/**
+ * @param {Lesson} lesson
+ * @param {{nowMs: () => number, pause: () => Promise<void>, post: (message: FromLesson, transfer?: Transferable[]) => void}} env
+ */
+export function follow(lesson, env) {
+  /** Number of the present run; 0 for none. */
+  let present = 0;
+  /** Whether the present run is to end where it is. */
+  let stops = false;
+
+  /** @param {Extract<ToLesson, {type: 'start'}>} order */
+  async function start({ id, surface, settings }) {
+    present = id;
+    stops = false;
+    const answer =
+      'system' in surface
+        ? lesson.start_points(surface.system, surface.bounds, settings)
+        : lesson.start(surface, settings);
+    if (!answer.ok) return env.post({ type: 'refused', id, error: answer.error });
+    for (let budget = FIRST_BUDGET; ; ) {
+      const before = env.nowMs();
+      const progress = /** @type {LessonProgress} */ (lesson.step(budget));
+      if (progress.is_done) return env.post({ type: 'ended', id, progress });
+      budget = nextBudget(budget, env.nowMs() - before, SLICE_MS);
+      env.post({ type: 'progress', id, progress });
+      await env.pause();
+      // Another run has begun in the meantime, which answers for itself.
+      if (present !== id) return;
+      if (stops) return env.post({ type: 'ended', id, progress });
+    }
+  }
+
+  /** @returns {Particles} */
+  function particles(/** @type {number} */ at) {
+    return {
+      at,
+      positions: lesson.positions(),
+      normals: lesson.normals(),
+      radii: lesson.radii(),
+      levels: lesson.levels(),
+      parents: lesson.parents(),
+      fronts: lesson.fronts(),
+      slots: lesson.slots(),
+      done: lesson.done(),
+    };
+  }
+
+  /** @param {Extract<ToLesson, {type: 'ask'}>} question */
+  function answer(question) {
+    switch (question.about) {
+      case 'chapters':
+        return lesson.chapters(question.ask.first);
+      case 'events':
+        return lesson.events(question.ask.first, question.ask.count);
+      case 'seek':
+        return particles(lesson.seek(Math.min(question.ask.event, 0xffff_ffff)));
+      case 'life':
+        return lesson.life(question.ask.particle);
+      case 'section': {
+        const { centre, right, up, half, cells } = question.ask;
+        return lesson.section(Float64Array.from(centre), Float64Array.from(right), Float64Array.from(up), half, cells);
+      }
+      case 'newton':
+        return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
+      case 'digest':
+        return lesson.digest();
+    }
+  }
+
+  return {
+    /** @param {ToLesson} message */
+    async receive(message) {
+      switch (message.type) {
+        case 'start':
+          await start(message);
+          break;
+        case 'stop':
+          stops = true;
+          break;
+        case 'ask':
+          env.post({ type: 'answer', id: message.id, answer: answer(message) });
+          break;
+        default:
+      }
+    },
+  };
+}

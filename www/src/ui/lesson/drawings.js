@@ -1,0 +1,198 @@
+/** The two drawings of a particle: its tangent plane from above, and the plane of a slot from the side. */
+import { formatCount } from '../format.js';
+import { dot, inPlane, slotPlace } from './geometry.js';
+import { fateShape, label, line, ring, s, segments } from './svg.js';
+import { FATES, inRadii, theta } from './words.js';
+
+/**
+ * @typedef {import('./geometry.js').Point} Point
+ * @typedef {import('./moment.js').Moment} Moment
+ * @typedef {import('./moment.js').Child} Child
+ * @typedef {import('./follower.js').Opened} Opened
+ * @typedef {import('./follower.js').Profile} Profile
+ */
+
+/** Half sizes of the drawings, in radii. */
+const TANGENT_HALF = 5.05;
+const PROFILE = { left: -2.4, right: 2.9, half: 2.3 };
+/** Half size of a fate's shape, and distance of a slot's number from the particle: between its disc and the child. */
+const SHAPE = 0.27;
+const NUMBER_AT = 1.38;
+
+/**
+ * Draws the tangent plane: the six slots, the particles around, and what became of the children.
+ * @param {Opened} opened @param {Moment} moment
+ */
+export function tangentPlane(opened, moment) {
+  const { subject, positions, normals, place } = opened;
+  const { frame, gathered, children, slot, isNow } = moment;
+  const svg = s('svg', {
+    class: 'drawing',
+    viewBox: `${-TANGENT_HALF} ${-TANGENT_HALF} ${2 * TANGENT_HALF} ${2 * TANGENT_HALF}`,
+    role: 'img',
+    'aria-label': tangentWords(opened, moment),
+  });
+  if (frame) {
+    const plane = { centre: place, right: frame.u, up: frame.w, radius: subject.radius };
+    const at = (/** @type {number} */ particle) => inPlane(plane, positions.subarray(3 * particle, 3 * particle + 3));
+    for (const { particle } of gathered?.neighbours ?? []) {
+      const other = dot(frame.normal, normals.subarray(3 * particle, 3 * particle + 3)) <= 0;
+      svg.append(ring(other ? 'disc other' : 'disc', at(particle), 1));
+    }
+    svg.append(ring('circle', [0, 0], 2));
+    for (const child of children) svg.append(...slotMarks(child, child.slot === slot && isNow));
+    for (const { particle } of gathered?.neighbours ?? [])
+      svg.append(label('number', clear(at(particle)), formatCount(particle)));
+    for (const child of children) svg.append(...childMarks(child, plane, at));
+    const now = slot === null ? null : children[slot];
+    if (now?.compared && moment.event.type === 'compared')
+      svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
+  }
+  svg.append(ring('self', [0, 0], 1), label('number strong', [0, 0], formatCount(subject.particle)));
+  return svg;
+}
+
+/** Where the number of a particle stands: outwards, clear of the shape of a fate and of the slot's number. @param {Point} at @returns {Point} */
+const clear = ([x, y]) => [x, y > 0.5 ? y + 0.58 : y - 0.58];
+
+/** @param {Child} child @param {boolean} isNow */
+function slotMarks({ slot }, isNow) {
+  const end = slotPlace(slot);
+  const between = /** @type {Point} */ (end.map((v) => (v * NUMBER_AT) / 2));
+  return [
+    line(isNow ? 'ray now' : 'ray', [[0, 0], end]),
+    ring(isNow ? 'slot now' : 'slot', end, 1),
+    label(isNow ? 'slot-number now' : 'slot-number', between, String(slot)),
+  ];
+}
+
+/**
+ * Draws where a child is, with the shape of its fate, and a line to the particle that it met.
+ * @param {Child} child @param {import('./geometry.js').Plane} plane @param {(particle: number) => Point} at
+ */
+function childMarks({ fate, landed, start, particle, iterates }, plane, at) {
+  if (fate === 'parent') return particle === null ? [] : [fateShape(fate, at(particle), SHAPE)];
+  const where = landed?.position ?? iterates.at(-1)?.position ?? start?.place;
+  if (!where) return [];
+  const here = inPlane(plane, where);
+  return [
+    fate === 'matched' && particle !== null ? line('met', [here, at(particle)]) : null,
+    fateShape(fate, here, SHAPE),
+  ].filter((mark) => mark !== null);
+}
+
+/** @param {Opened} opened @param {Moment} moment */
+function tangentWords({ subject }, { frame, gathered, children }) {
+  if (!frame) return `Tangent plane of particle ${formatCount(subject.particle)}, not laid yet`;
+  const fates = children.filter(({ fate }) => fate !== 'open').map(({ slot, fate }) => `slot ${slot} ${FATES[fate]}`);
+  const around = gathered ? `, ${formatCount(gathered.neighbours.length)} particles around` : '';
+  return `Tangent plane of particle ${formatCount(subject.particle)}: six slots${around}${fates.length > 0 ? `; ${fates.join(', ')}` : ''}`;
+}
+
+/**
+ * Draws the plane of a slot from the side: the surface, the circle, the search on it, and Newton's way for comparison.
+ * @param {Opened} opened @param {Profile} profile  of the slot @param {Child} child
+ */
+export function profileOf(opened, profile, child) {
+  const { subject, place } = opened;
+  const { radius } = subject;
+  const { left, right, half } = PROFILE;
+  const svg = s('svg', {
+    class: 'drawing profile',
+    viewBox: `${left} ${-half} ${right - left} ${2 * half}`,
+    role: 'img',
+    'aria-label': profileWords(opened, profile, child),
+  });
+  const plane = { centre: place, right: profile.direction, up: profile.normal, radius };
+  svg.append(
+    line('plane', [
+      [left, 0],
+      [right, 0],
+    ]),
+    line('normal', [
+      [0, 0],
+      [0, 1],
+    ]),
+    label('name', [0.28, 0.9], 'N'),
+    label('name', [2.72, -0.34], 'V'),
+    ring('circle', [0, 0], 2),
+    segments('curve', profile.section, 1 / radius),
+  );
+  svg.append(...searchMarks(child, profile, (where) => inPlane(plane, where), { size: 0.14, distance: true }));
+  svg.append(ring('point', [0, 0], 0.1), label('name', [-0.3, -0.42], 'p'));
+  return svg;
+}
+
+/** Whether the search for a child is over, so that Newton's landing may be compared with it. @param {Child} child */
+export const isSearched = ({ landed, fate }) => landed !== null || fate !== 'open';
+
+/**
+ * Draws the places that were tried, where the child landed, and the way of Newton's method from the same start.
+ * @param {Child} child @param {Profile} profile
+ * @param {(place: ArrayLike<number>) => Point} at
+ * @param {{ size: number, distance: boolean }} how  `distance`: with the line from the particle, and one name instead of all
+ */
+function searchMarks(child, profile, at, { size, distance }) {
+  const { start, iterates, landed } = child;
+  if (!start) return [];
+  /** @type {Element[]} */
+  const marks = [];
+  const tried = [start.place, ...iterates.slice(1).map(({ position }) => position)].map(at);
+  if (distance && landed) marks.push(line('distance', [[0, 0], at(landed.position)]));
+  marks.push(...tried.map((place) => ring('theta', place, 0.7 * size)));
+  if (landed) marks.push(ring('landed', at(landed.position), size));
+  if (isSearched(child) && profile.newton.length > 0) {
+    const way = [start.place, ...profile.newton.map(({ position }) => position)].map(at);
+    const [x, y] = way[way.length - 1];
+    const end = [-1, 1].map((side) =>
+      line('newton-end', [
+        [x - size, y - side * size],
+        [x + size, y + side * size],
+      ]),
+    );
+    marks.push(line('newton-way', way), ...end);
+  }
+  const named = distance ? tried.slice(0, 1) : tried;
+  marks.push(...named.map(([x, y], k) => label('name', [x + 2.4 * size, y + 1.6 * size], theta(k))));
+  return marks;
+}
+
+/** Half the arc of the circle in a lens, in its half sizes, and the number of its parts. */
+const ARC = 1.6;
+const ARC_PARTS = 24;
+
+/**
+ * Draws what lies around the landing enlarged, since on a smooth surface the steps are short; null if there is nothing to see.
+ * @param {Opened} opened @param {Profile} profile @param {Child} child
+ */
+export function lens({ subject, place }, profile, child) {
+  const about = profile.lens;
+  if (!about || !child.start) return null;
+  const { centre, half, section } = about;
+  const plane = { centre: place, right: profile.direction, up: profile.normal, radius: subject.radius };
+  /** @param {Point} point in radii @returns {Point} */
+  const enlarged = ([x, y]) => [(x - centre[0]) / half, (y - centre[1]) / half];
+  const middle = Math.atan2(centre[1], centre[0]);
+  const arc = Array.from({ length: ARC_PARTS + 1 }, (_, k) => {
+    const angle = middle + (k / ARC_PARTS - 0.5) * ARC * half;
+    return enlarged([2 * Math.cos(angle), 2 * Math.sin(angle)]);
+  });
+  return s(
+    'svg',
+    { class: 'drawing lens', viewBox: '-1 -1 2 2', 'aria-hidden': 'true' },
+    line('circle', arc),
+    line('plane', [enlarged([centre[0] - half, 0]), enlarged([centre[0] + half, 0])]),
+    segments('curve', section, 1 / (subject.radius * half)),
+    ...searchMarks(child, profile, (where) => enlarged(inPlane(plane, where)), { size: 0.09, distance: false }),
+  );
+}
+
+/** @param {Opened} opened @param {Profile} profile @param {Child} child */
+function profileWords({ subject }, profile, child) {
+  const words = [`The plane of slot ${child.slot} from the side: the surface and the circle of radius 2r`];
+  if (child.iterates.length > 0) words.push(`${formatCount(child.iterates.length)} places tried on the circle`);
+  if (child.landed) words.push(`the child lands ${inRadii(child.landed.distance, subject.radius)} from the particle`);
+  if (isSearched(child) && profile.newtonDistance !== null)
+    words.push(`Newton’s method would land ${inRadii(profile.newtonDistance, subject.radius)} away`);
+  return words.join('; ');
+}

@@ -1,0 +1,43 @@
+/** Places in a plane through a particle, in radii. */
+
+/** @typedef {[number, number]} Point */
+/** Two perpendicular unit vectors at a particle, and its radius. @typedef {{ centre: ArrayLike<number>, right: ArrayLike<number>, up: ArrayLike<number>, radius: number }} Plane */
+
+/** @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+/** Distance of two places. @param {ArrayLike<number>} a @param {ArrayLike<number>} b */
+export const between = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+/**
+ * Returns where a place is in the plane, projected along its normal, in radii.
+ * @param {Plane} plane @param {ArrayLike<number>} place  @returns {Point}
+ */
+export function inPlane({ centre, right, up, radius }, place) {
+  const way = [0, 1, 2].map((k) => place[k] - centre[k]);
+  return [dot(way, right) / radius, dot(way, up) / radius];
+}
+
+/** Place of a slot's child before its projection, in radii: 2 away at 60° times its number. @param {number} slot @returns {Point} */
+export const slotPlace = (slot) => [2 * Math.cos((slot * Math.PI) / 3), 2 * Math.sin((slot * Math.PI) / 3)];
+
+/** Least span of a lens, in radii: below it there is nothing to be seen. */
+const LEAST_SPAN = 1e-6;
+/** Room around what a lens shows, as a share of its span. */
+const MARGIN = 0.3;
+
+/**
+ * Returns the square that shows all points enlarged; null if they coincide.
+ * @param {readonly Point[]} points  @returns {{ centre: Point, half: number } | null}
+ */
+export function lensOf(points) {
+  const [x0, x1, y0, y1] = [
+    Math.min(...points.map(([x]) => x)),
+    Math.max(...points.map(([x]) => x)),
+    Math.min(...points.map(([, y]) => y)),
+    Math.max(...points.map(([, y]) => y)),
+  ];
+  const span = Math.max(x1 - x0, y1 - y0);
+  if (!(span > LEAST_SPAN) || !Number.isFinite(span)) return null;
+  return { centre: [(x0 + x1) / 2, (y0 + y1) / 2], half: (0.5 + MARGIN) * span };
+}

@@ -1,0 +1,101 @@
+/**
+ * What is known of a particle at one of its events. It is put together from the events up to that one, so a step back gives
+ * exactly what was there before.
+ */
+
+/**
+ * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
+ * @typedef {import('../../engine/types.js').Vec3} Vec3
+ */
+/**
+ * @template {LessonEvent['type']} T
+ * @typedef {Extract<LessonEvent, {type: T}>} Of
+ */
+/**
+ * A child as far as it is known. `fate` is `open` until it is decided; `particle` is the one that it became or met.
+ * @typedef {object} Child
+ * @property {number} slot
+ * @property {Of<'slot'> | null} start
+ * @property {Of<'iterate'>[]} iterates
+ * @property {Of<'landed'> | null} landed
+ * @property {Of<'compared'> | null} compared
+ * @property {Of<'fate'>['fate']} fate
+ * @property {number | null} particle
+ */
+/**
+ * @typedef {object} Moment
+ * @property {LessonEvent} event  the one that is shown
+ * @property {Of<'frame'> | null} frame
+ * @property {Of<'gathered'> | null} gathered
+ * @property {Child[]} children  by slot, six
+ * @property {number | null} slot  the slot that was spoken of last; null before the first
+ * @property {boolean} isNow  whether the event itself speaks of that slot
+ * @property {number} evaluations  of f for this particle so far
+ */
+
+const SLOTS = 6;
+
+/** @param {readonly LessonEvent[]} events  of one particle, from `taken` to `done` @param {number} at  @returns {Moment} */
+export function momentAt(events, at) {
+  /** @type {Moment} */
+  const moment = {
+    event: events[at],
+    frame: null,
+    gathered: null,
+    children: Array.from({ length: SLOTS }, (_, slot) => ({
+      slot,
+      start: null,
+      iterates: [],
+      landed: null,
+      compared: null,
+      fate: 'open',
+      particle: null,
+    })),
+    slot: null,
+    isNow: slotOf(events[at]) !== null || events[at].type === 'added',
+    evaluations: 0,
+  };
+  for (const event of events.slice(0, at + 1)) include(moment, event);
+  return moment;
+}
+
+/** @param {Moment} moment @param {LessonEvent} event */
+function include(moment, event) {
+  const slot = slotOf(event);
+  if (slot !== null) moment.slot = slot;
+  switch (event.type) {
+    case 'frame':
+      moment.frame = event;
+      break;
+    case 'gathered':
+      moment.gathered = event;
+      break;
+    case 'slot':
+      moment.children[event.slot].start = event;
+      break;
+    case 'iterate':
+      moment.children[event.slot].iterates.push(event);
+      moment.evaluations += 1;
+      break;
+    case 'landed':
+      moment.children[event.slot].landed = event;
+      break;
+    case 'compared':
+      moment.children[event.slot].compared = event;
+      break;
+    case 'added':
+      // The child that was compared last.
+      if (moment.slot !== null) moment.children[moment.slot].particle = event.particle;
+      break;
+    case 'fate': {
+      const child = moment.children[event.slot];
+      child.fate = event.fate;
+      child.particle = event.particle;
+      break;
+    }
+    default:
+  }
+}
+
+/** The slot of which an event speaks, or null. @param {LessonEvent} event */
+export const slotOf = (event) => ('slot' in event ? event.slot : null);

@@ -1,0 +1,196 @@
+/** The events of a particle in words, and the paper's Algorithm 2 with the line that an event belongs to. */
+import { formatCount, formatFixed, formatSignificant, plural } from '../format.js';
+
+/**
+ * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
+ * @typedef {import('./moment.js').Moment} Moment
+ */
+/** Whose events are told. `parent` is null for a seed. @typedef {{ particle: number, level: number, parent: number | null, radius: number }} Subject */
+
+/** A length in radii. @param {number} length @param {number} radius @param {number} [digits] */
+export const inRadii = (length, radius, digits = 3) => `${formatFixed(length / radius, digits)}\u00a0r`;
+
+/** @param {number} rad @param {number} [digits] */
+export const inDegrees = (rad, digits = 2) => `${formatFixed((rad * 180) / Math.PI, digits)}°`;
+
+/** Subscript digits. @param {number} k */
+const subscript = (k) => String(k).replace(/\d/g, (digit) => String.fromCharCode(0x2080 + Number(digit)));
+
+/** Name of the angle of an iterate, such as θ₂. @param {number} k */
+export const theta = (k) => `θ${subscript(k)}`;
+
+/** What each fate is called. @type {Record<string, string>} */
+export const FATES = {
+  open: 'not decided yet',
+  parent: 'parent',
+  added: 'added',
+  matched: 'matched',
+  not_converged: 'did not converge',
+  outside: 'outside the box',
+  undefined: 'undefined',
+  capped: 'over the limit',
+};
+
+/**
+ * Algorithm 2 in words. `of` are the events that a line stands for; of the fates it is `fate:` with the name.
+ * @type {readonly { depth: number, text: string, of: readonly string[] }[]}
+ */
+export const ALGORITHM = [
+  { depth: 0, text: 'While particles wait: take the next one, p', of: ['taken'] },
+  { depth: 1, text: 'Lay the tangent frame of p, slot 0 towards its parent', of: ['frame'] },
+  { depth: 1, text: 'For each free slot: start a child at 2r from p', of: ['slot'] },
+  { depth: 2, text: 'turn it along its circle until f = 0', of: ['iterate', 'landed'] },
+  { depth: 1, text: 'Gather the particles around p', of: ['gathered'] },
+  { depth: 1, text: 'Slot 0 holds the parent', of: ['fate:parent'] },
+  { depth: 1, text: 'For each child: find the nearest of those particles', of: ['compared', 'fronts_meet'] },
+  { depth: 2, text: 'if the two correspond, that particle is the child', of: ['fate:matched'] },
+  {
+    depth: 2,
+    text: 'if it is not on the surface in the box, leave it out',
+    of: ['fate:not_converged', 'fate:outside', 'fate:undefined', 'fate:capped'],
+  },
+  { depth: 2, text: 'otherwise add it, and let it wait its turn', of: ['added', 'fate:added'] },
+  { depth: 1, text: 'Mark p as done', of: ['done'] },
+];
+
+/** Index of the line of Algorithm 2 that an event belongs to; −1 for none. @param {LessonEvent} event */
+export function lineOf(event) {
+  const name = event.type === 'fate' ? `fate:${event.fate}` : event.type;
+  return ALGORITHM.findIndex(({ of }) => of.includes(name));
+}
+
+/** @param {number} particle */
+const particleOf = (particle) => `particle ${formatCount(particle)}`;
+
+/**
+ * Tells an event in one or two sentences.
+ * @param {Moment} moment @param {Subject} subject
+ */
+export function tell({ event, slot, children, evaluations }, subject) {
+  const { radius } = subject;
+  switch (event.type) {
+    case 'taken':
+      return `Particle ${formatCount(event.particle)} is taken from the queue. Its children are to be placed.`;
+    case 'frame':
+      return subject.parent === null
+        ? 'Its tangent plane is laid. A seed has no parent, so slot 0 points anywhere; the others follow every 60°.'
+        : `Its tangent plane is laid. Slot 0 points to its parent, ${particleOf(subject.parent)}; the others follow every 60°.`;
+    case 'slot':
+      return `Child ${event.slot} starts on the circle of radius 2r around the particle, at ${theta(0)} = ${inDegrees(event.theta_rad)}.`;
+    case 'iterate':
+      return tellIterate(event);
+    case 'landed':
+      return `Child ${event.slot} lands on the surface, ${inRadii(event.distance, radius)} from its parent.`;
+    case 'gathered':
+      return `${plural(event.neighbours.length, 'particle')} within ${inRadii(event.reach, radius, 0)}: the children are compared with ${event.neighbours.length === 1 ? 'it' : 'them'}.`;
+    case 'compared':
+      return tellComparison(event, radius);
+    case 'fronts_meet':
+      return event.is_other
+        ? `The front of another seed is met at ${particleOf(event.particle)}.`
+        : `The front meets itself at ${particleOf(event.particle)}, out of step.`;
+    case 'added':
+      return `A new particle, number ${formatCount(event.particle)}, is added where child ${slot} landed. It waits its turn.`;
+    case 'fate':
+      return tellFate(event);
+    case 'done': {
+      const placed = children.filter(({ fate }) => fate === 'added').length;
+      const met = children.filter(({ fate }) => fate === 'matched').length;
+      return `The particle is done: ${placed} of its children added, ${met} matched, after ${plural(evaluations, 'evaluation')} of f.`;
+    }
+    default:
+      return '';
+  }
+}
+
+/** @param {Extract<LessonEvent, {type: 'iterate'}>} event */
+function tellIterate({ slot, step, theta_rad: angle, value, bracket_rad: bracket }) {
+  const where = angle === null ? `step ${step}` : `${theta(step)} = ${inDegrees(angle)}`;
+  const between = bracket
+    ? ` f changes its sign between ${inDegrees(bracket[0])} and ${inDegrees(bracket[1])}, and the search stays there.`
+    : '';
+  return `Child ${slot} at ${where}: f = ${formatSignificant(value, 3)}.${between}`;
+}
+
+/** @param {Extract<LessonEvent, {type: 'compared'}>} event @param {number} radius */
+function tellComparison({ slot, against, distance, limit, corresponds }, radius) {
+  if (against === null || distance === null) return `Child ${slot} has no particle of its sheet near it.`;
+  const far = `Child ${slot} is ${inRadii(distance, radius)} from ${particleOf(against)}, its nearest.`;
+  const bound = inRadii(limit, radius, 2);
+  return corresponds
+    ? `${far} That is within ${bound}: the two correspond.`
+    : `${far} That is more than ${bound}: the place is free.`;
+}
+
+/** @param {Extract<LessonEvent, {type: 'fate'}>} event */
+function tellFate({ slot, fate, particle }) {
+  const other = particle === null ? '' : particleOf(particle);
+  switch (fate) {
+    case 'parent':
+      return `Slot 0 holds the parent, ${other}.`;
+    case 'added':
+      return `Child ${slot} became ${other}.`;
+    case 'matched':
+      return `Child ${slot} matched ${other}, so nothing is added.`;
+    case 'outside':
+      return `Child ${slot} lies outside the box and is left out.`;
+    case 'not_converged':
+      return `Child ${slot} found no point of the surface on its circle and is left out.`;
+    case 'undefined':
+      return `f is undefined where child ${slot} was looked for. It is left out.`;
+    case 'capped':
+      return `Child ${slot} is left out: the run has reached its limit on particles.`;
+    default:
+      return '';
+  }
+}
+
+/** The event in a few words. @param {LessonEvent} event */
+function brief(event) {
+  switch (event.type) {
+    case 'taken':
+      return 'taken from the queue';
+    case 'frame':
+      return 'tangent plane laid';
+    case 'slot':
+      return 'starts on its circle';
+    case 'iterate':
+      return event.theta_rad === null ? `step ${event.step}` : `${theta(event.step)} = ${inDegrees(event.theta_rad)}`;
+    case 'landed':
+      return 'landed on the surface';
+    case 'gathered':
+      return 'neighbours gathered';
+    case 'compared':
+      return event.corresponds && event.against !== null
+        ? `corresponds to ${particleOf(event.against)}`
+        : 'corresponds to none';
+    case 'fronts_meet':
+      return 'fronts meet';
+    case 'added':
+      return `added as ${particleOf(event.particle)}`;
+    case 'fate':
+      return event.particle === null ? FATES[event.fate] : `${FATES[event.fate]} ${particleOf(event.particle)}`;
+    case 'done':
+      return 'done';
+    default:
+      return '';
+  }
+}
+
+/**
+ * The place on the range, such as "Level 3, particle 47, child 2: matched particle 31".
+ * @param {Moment} moment @param {Subject} subject
+ */
+export function valueText({ event, slot, isNow }, { level, particle }) {
+  const child = isNow && slot !== null && !(event.type === 'fate' && event.fate === 'parent') ? `, child ${slot}` : '';
+  return `Level ${formatCount(level)}, particle ${formatCount(particle)}${child}: ${brief(event)}`;
+}
+
+/**
+ * All events of a particle as a text file.
+ * @param {readonly Moment[]} moments @param {Subject} subject @param {readonly string[]} head  lines above
+ */
+export function transcript(moments, subject, head) {
+  const told = moments.map((moment, k) => `${String(k + 1).padStart(3)}  ${tell(moment, subject)}`);
+  return `${[...head, '', ...told].join('\n')}\n`.replace(/[\u00a0\u202f]/g, ' ');
+}

@@ -1,0 +1,211 @@
+/** The dialog that takes the picture away: as a file, on paper, as a film or as a sequence of pictures. */
+import { createDialog } from '../dialog.js';
+import { fill, h, uniqueId } from '../dom.js';
+import { download, stem } from '../share.js';
+import { captionOf } from './compose.js';
+import { drawOn, durationOf, kindOfFilm, recordFilm, recordSequence } from './film.js';
+import { printPage } from './print.js';
+import { createRecorderBar } from './recorder-bar.js';
+import { FILM_SIZES, sizesOf, wordsOf } from './sizes.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @typedef {import('./film.js').Subject} Subject */
+/** @typedef {{ id: string, label: string, size: import('./sizes.js').Size }} SizeEntry */
+
+/** Seconds of a sequence. */
+const SEQUENCE_S = [2, 4, 8, 12];
+/** Value of the choice by which the film shows what the user does, and of the turntable. */
+const FREE = 'free';
+const TURN = 'turn';
+
+/**
+ * @param {Engine} engine
+ * @param {{ motion: import('../motion.js').Motion, toast: import('../toasts.js').Toast }} page
+ */
+export function createPictureDialog(engine, page) {
+  const transparent = check('No ground', false);
+  const legend = check('Legend', false);
+  const caption = check('Caption', false);
+  const parts = () => ({
+    legend: legend.input.checked ? engine.legend.peek() : null,
+    caption: caption.input.checked ? captionOf(engine) : [],
+    colours: coloursOf(engine),
+  });
+  const shared = { engine, page, parts, transparent: transparent.input };
+  const dialog = createDialog(
+    'Take the picture away',
+    h('div', { class: 'picture-line' }, transparent.label, legend.label, caption.label),
+    ...pictureSection({ ...shared, close: () => dialog.close() }),
+    ...filmSection({ ...shared, close: () => dialog.close() }),
+  );
+  dialog.element.classList.add('picture-dialog');
+  return dialog;
+}
+
+/**
+ * What both sections need.
+ * @typedef {object} Shared
+ * @property {Engine} engine
+ * @property {{ motion: import('../motion.js').Motion, toast: import('../toasts.js').Toast }} page
+ * @property {() => import('./compose.js').Parts} parts
+ * @property {HTMLInputElement} transparent
+ * @property {() => void} close
+ */
+
+/** @param {string} text @param {boolean} checked */
+function check(text, checked) {
+  const input = h('input', { type: 'checkbox', prop: { checked } });
+  return { input, label: h('label', { class: 'check' }, input, text) };
+}
+
+/** @param {string} label @param {HTMLSelectElement} select */
+function choice(label, select) {
+  select.id = uniqueId('choice');
+  return h('div', { class: 'picture-choice' }, h('label', { for: select.id }, label), select);
+}
+
+/** @param {() => [value: string, text: string][]} read */
+function selectOf(read) {
+  const select = h('select', { class: 'select' });
+  const update = () => {
+    const { value } = select;
+    fill(
+      select,
+      read().map(([id, text]) => h('option', { value: id }, text)),
+    );
+    if ([...select.options].some((option) => option.value === value)) select.value = value;
+  };
+  update();
+  return { select, update };
+}
+
+/** @param {string} text @param {() => void} act @param {string} [style] */
+const action = (text, act, style = '') =>
+  h('button', { type: 'button', class: `button ${style}`, on: { click: act } }, text);
+
+/** @param {Shared} shared */
+function pictureSection({ engine, page, parts, transparent, close }) {
+  const sizes = () => sizesOf({ width: innerWidth, height: innerHeight, ratio: devicePixelRatio });
+  const { select, update } = selectOf(() => sizes().map((entry) => [entry.id, wordsOf(entry)]));
+  addEventListener('resize', update);
+  const save = async () => {
+    const { size } = /** @type {SizeEntry} */ (sizes().find(({ id }) => id === select.value));
+    try {
+      const canvas = new OffscreenCanvas(size.width, size.height);
+      const context = /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext('2d'));
+      const image = await engine.picture({ ...size, transparent: transparent.checked });
+      // A device may draw less than it is asked for.
+      Object.assign(canvas, { width: image.width, height: image.height });
+      await drawOn(
+        { ...wishOf(engine, { width: image.width, height: image.height }), parts },
+        context,
+        transparent.checked,
+      );
+      download(await canvas.convertToBlob({ type: 'image/png' }), `${stem(engine)}.png`);
+      close();
+    } catch {
+      page.toast({ id: 'save', kind: 'error', text: 'The picture could not be drawn. Choose a smaller size.' });
+    }
+  };
+  return [
+    h('h3', null, 'Picture'),
+    choice('Size', select),
+    h('div', { class: 'picture-actions' }, [
+      action('Save PNG', save, 'primary'),
+      action('Print', () => {
+        close();
+        void printPage(engine);
+      }),
+    ]),
+  ];
+}
+
+/** @param {Engine} engine @param {import('./sizes.js').Size} size */
+const wishOf = (engine, size) => ({
+  engine,
+  size,
+  subject: /** @type {Subject} */ ({ kind: FREE }),
+  signal: new AbortController().signal,
+  tell: () => {},
+});
+
+/** @param {Shared} shared */
+function filmSection({ engine, page, parts, transparent, close }) {
+  const subjects = selectOf(() => [
+    [TURN, 'Turntable'],
+    ...(engine.field.peek()?.parameters ?? []).map(
+      ({ name }) => /** @type {[string, string]} */ ([name, `Parameter ${name}`]),
+    ),
+    [FREE, 'What I do'],
+  ]);
+  const sizes = selectOf(() => FILM_SIZES.map((entry) => [entry.id, wordsOf(entry)]));
+  const seconds = selectOf(() => SEQUENCE_S.map((value) => [String(value), `${value}\u202fs`]));
+  seconds.select.setAttribute('aria-label', 'Length of the sequence');
+  // The parameters are those of the present formula.
+  const update = () => subjects.update();
+  subjects.select.addEventListener('pointerdown', update);
+  subjects.select.addEventListener('focus', update);
+  const subject = () => {
+    const { value } = subjects.select;
+    const range = engine.field.peek()?.parameters.find(({ name }) => name === value);
+    if (range) return /** @type {Subject} */ ({ kind: 'parameter', range, course: page.motion.course.peek() });
+    return /** @type {Subject} */ ({ kind: value === FREE ? FREE : TURN });
+  };
+  /** @param {(wish: import('./film.js').Wish) => Promise<Blob | null>} make */
+  const record = async (make) => {
+    const { filming } = page.motion;
+    if (filming.peek()) return;
+    filming.value = true;
+    close();
+    page.motion.stop();
+    const { size } = /** @type {SizeEntry} */ (FILM_SIZES.find(({ id }) => id === sizes.select.value));
+    const abort = new AbortController();
+    const bar = createRecorderBar(() => abort.abort());
+    try {
+      const film = await make({ engine, size, parts, subject: subject(), signal: abort.signal, tell: bar.tell });
+      if (film) download(film, `${stem(engine)}.${film.type === 'application/zip' ? 'zip' : film.type.slice(6)}`);
+    } catch {
+      page.toast({ id: 'film', kind: 'error', text: 'The film could not be made. Choose a smaller size.' });
+    } finally {
+      filming.value = false;
+      bar.remove();
+    }
+  };
+  const sequence = () =>
+    record((wish) =>
+      recordSequence({ ...wish, transparent: transparent.checked, seconds: Number(seconds.select.value) }),
+    );
+  const canFilm = kindOfFilm() !== null;
+  return [
+    h('h3', null, 'Film'),
+    choice('What moves', subjects.select),
+    choice('Size', sizes.select),
+    h('div', { class: 'picture-actions' }, [
+      canFilm ? action('Record film', () => record(recordFilm)) : null,
+      h('span', { class: 'picture-sequence' }, [
+        action('Picture sequence', () => {
+          // What the user does has no end, and no single pictures of full quality.
+          if (durationOf(subject()) < Infinity) void sequence();
+          else
+            page.toast({
+              id: 'film',
+              kind: 'info',
+              text: 'A picture sequence is made of the turntable or of a parameter.',
+            });
+        }),
+        seconds.select,
+      ]),
+    ]),
+    h(
+      'p',
+      { class: 'quiet' },
+      canFilm
+        ? 'A film is recorded in the time in which it plays, without the panels. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.'
+        : 'This browser records no films. A sequence has 30 pictures a second, each of a finished run, in a ZIP file.',
+    ),
+  ];
+}
+
+/** Returns the colours of writing on the picture. @param {Engine} engine */
+const coloursOf = (engine) =>
+  engine.theme.peek() === 'dark' ? { ink: '#eceef2', quiet: '#aeb4be' } : { ink: '#14171d', quiet: '#4a505b' };

@@ -1,0 +1,61 @@
+/** Finds the places in the picture that a figure of the report is about: crowded pairs and wide holes. */
+import { formatFixed } from '../format.js';
+import { distance } from '../space.js';
+import { valueAt } from './rows.js';
+
+/** @typedef {import('../../engine/types.js').Report} Report */
+/** @typedef {import('../../engine/types.js').Place} Place */
+/** @typedef {import('../../engine/columns.js').Columns} Columns */
+/** @typedef {Report['places']['pairs'][number]} Pair */
+/** @typedef {Report['places']['holes'][number]} Hole */
+
+/**
+ * Returns the list of places at a path of the report, the worst first.
+ * @param {Report | null} report
+ * @param {string | null} path
+ * @returns {(Pair | Hole)[]}
+ */
+export function listOf(report, path) {
+  const list = report && path ? valueAt(report, path) : null;
+  return Array.isArray(list) ? list : [];
+}
+
+/**
+ * Returns how the picture shows one of a list of places.
+ * @param {(Pair | Hole)[]} list
+ * @param {number} index
+ * @param {Columns} columns
+ * @returns {Place}
+ */
+export function placeOf(list, index, columns) {
+  const place = list[index];
+  const { positions, normals, radii } = columns;
+  const triple = (/** @type {Float32Array} */ column, /** @type {number} */ i) =>
+    /** @type {[number, number, number]} */ ([...column.subarray(3 * i, 3 * i + 3)]);
+  const count = list.length > 1 ? ` · ${index + 1} of ${list.length}` : '';
+  if ('particles' in place) {
+    const [i, j] = place.particles;
+    return {
+      places: [triple(positions, i), triple(positions, j)],
+      radius: Math.max(radii[i], radii[j]),
+      normal: triple(normals, i),
+      text: formatFixed(place.ratio, 3) + count,
+    };
+  }
+  return {
+    places: [place.position],
+    radius: place.radius,
+    normal: triple(normals, nearestTo(place.position, columns)),
+    text: formatFixed(place.ratio, 2) + count,
+  };
+}
+
+/** Returns the index of the particle that is nearest to a place. @param {readonly number[]} place @param {Columns} columns */
+function nearestTo(place, { positions, count }) {
+  let [best, least] = [0, Infinity];
+  for (let i = 0; i < count; i += 1) {
+    const away = distance(place, positions.subarray(3 * i, 3 * i + 3));
+    if (away < least) [best, least] = [i, away];
+  }
+  return best;
+}

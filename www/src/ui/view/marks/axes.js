@@ -1,0 +1,92 @@
+/** Axes with ticks around the particles, and a scale bar. */
+import { computed, effect } from '@preact/signals-core';
+import { h } from '../../dom.js';
+import { formatStep } from '../../format.js';
+import { AXES, niceStep, ticksIn } from '../../space.js';
+import { boxOf } from './box.js';
+import { outerEdge, outward } from './edges.js';
+
+/** @typedef {import('../../../engine/types.js').Engine} Engine */
+/** @typedef {import('../../../engine/types.js').Bounds} Bounds */
+/** @typedef {import('./draw.js').Pen} Pen */
+
+/** Smallest distance of ticks, length of a tick, and distances of its figure and of the axis's name from the axis. */
+const APART_PX = 48;
+const TICK_PX = 5;
+const FIGURE_PX = 15;
+const NAME_PX = 38;
+/** Largest length of the scale bar. */
+const BAR_PX = 110;
+
+/** @param {Engine} engine @returns {import('./layer.js').Mark} */
+export function axesMark(engine) {
+  const clip = boxOf(engine);
+  /** The box around the particles. During a run it stays, so that the axes do not grow with the surface. @type {Bounds | null} */
+  let last = null;
+  const box = computed(() => {
+    void engine.revision.value;
+    if (!engine.busy.value) last = engine.columns.stale ? null : engine.columns.bounds();
+    return last ?? clip.value;
+  });
+  return {
+    shown: () => engine.state.value.view.axes && box.value !== null,
+    draw(pen) {
+      const bounds = box.value;
+      if (!bounds) return;
+      for (const axis of AXES.keys()) {
+        const edge = outerEdge(engine, bounds, axis);
+        if (edge) drawAxis(pen, engine, edge, axis);
+      }
+    },
+  };
+}
+
+/** @param {Pen} pen @param {Engine} engine @param {import('./edges.js').Edge} edge @param {number} axis */
+function drawAxis(pen, engine, edge, axis) {
+  const { from, to, ends, centre } = edge;
+  pen.line(from, to, 'axis');
+  const way = outward(edge, centre);
+  const [low, high] = [ends[0][axis], ends[1][axis]];
+  const lengthPx = Math.hypot(to.x - from.x, to.y - from.y);
+  const away = (/** @type {{x: number, y: number}} */ at, /** @type {number} */ px) => ({
+    x: at.x + way.x * px,
+    y: at.y + way.y * px,
+  });
+  const step = niceStep(((high - low) * APART_PX) / lengthPx);
+  for (const value of ticksIn(low, high, step)) {
+    const place = [...ends[0]];
+    place[axis] = value;
+    const spot = engine.project(place);
+    if (!spot) continue;
+    pen.line(spot, away(spot, TICK_PX), 'axis');
+    pen.text(away(spot, FIGURE_PX), formatStep(value, step), 'figure', way.anchor);
+  }
+  const middle = { x: (from.x + to.x) / 2, y: (from.y + to.y) / 2 };
+  pen.text(away(middle, NAME_PX), AXES[axis], 'figure name', way.anchor);
+}
+
+/**
+ * Creates the scale bar. Its length holds at the distance of the camera's target: in a perspective picture what is
+ * nearer looks longer.
+ * @param {Engine} engine
+ */
+export function createScaleBar(engine) {
+  const text = h('span');
+  const bar = h('div', { class: 'scale-bar', role: 'img' }, text, h('span', { class: 'line' }));
+  effect(() => {
+    const { bar: shown, camera } = engine.state.value.view;
+    bar.hidden = !shown;
+    if (!shown) return;
+    void engine.frame.value;
+    const spot = engine.project(camera.target);
+    if (!spot) return;
+    const length = niceStep((BAR_PX * spot.perPx) / 2.5);
+    text.textContent = formatStep(length, length);
+    bar.style.setProperty('--length', `${(length / spot.perPx).toFixed(1)}px`);
+    bar.setAttribute(
+      'aria-label',
+      `Scale bar: ${formatStep(length, length)} units of length in the middle of the picture`,
+    );
+  });
+  return bar;
+}

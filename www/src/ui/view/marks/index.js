@@ -1,0 +1,23 @@
+/** Puts all kinds of marks on the picture. This folder is loaded once the page is ready. */
+import { axesMark, createScaleBar } from './axes.js';
+import { boxMark } from './box.js';
+import { mountMarks } from './layer.js';
+import { createMeasureCard, measureMark } from './measure.js';
+import { planeMark } from './plane.js';
+import { spotMark } from './spot.js';
+
+/**
+ * @param {import('../../../engine/types.js').Engine} engine
+ * @param {{ stage: HTMLElement, host: HTMLElement, view: HTMLElement }} parts  `host` holds the picture and lies in
+ *   `stage`; `view` is the part that no panel covers
+ */
+export function mountAllMarks(engine, { stage, host, view }) {
+  mountMarks(stage, engine, [
+    axesMark(engine),
+    boxMark(engine, stage),
+    planeMark(engine, stage),
+    measureMark(engine, host),
+    spotMark(engine),
+  ]);
+  view.append(createScaleBar(engine), createMeasureCard(engine));
+}

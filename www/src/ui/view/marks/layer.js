@@ -1,0 +1,42 @@
+/**
+ * The layer of marks on the picture: lines and figures that belong to places of the surface, and handles to drag. They
+ * are drawn anew after every picture, since places may have moved in it.
+ */
+import { computed, effect } from '@preact/signals-core';
+import { h } from '../../dom.js';
+import { drawn } from './draw.js';
+
+/** @typedef {import('../../../engine/types.js').Engine} Engine */
+/**
+ * A kind of mark.
+ * @typedef {object} Mark
+ * @property {() => boolean} shown  whether there is something to draw; read in an effect
+ * @property {(pen: import('./draw.js').Pen) => void} draw  called after every picture while it is shown
+ * @property {HTMLElement[]} [handles]  elements that the mark places itself
+ */
+
+/**
+ * @param {HTMLElement} stage
+ * @param {Engine} engine
+ * @param {Mark[]} marks
+ */
+export function mountMarks(stage, engine, marks) {
+  const layer = h('div', { class: 'marks' });
+  stage.append(layer);
+  for (const mark of marks) {
+    const pen = drawn(layer, engine);
+    const handles = mark.handles ?? [];
+    layer.append(...handles);
+    const shown = computed(() => engine.backend.value !== 'starting' && mark.shown());
+    effect(() => {
+      for (const handle of handles) handle.hidden = !shown.value;
+      pen.begin();
+      if (shown.value) {
+        void engine.frame.value;
+        mark.draw(pen);
+      }
+      pen.end();
+    });
+  }
+  return layer;
+}

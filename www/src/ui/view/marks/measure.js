@@ -1,0 +1,77 @@
+/** Measures the distance of two particles: rings on them, a line between them, and a card with the figures. */
+import { computed, effect, signal } from '@preact/signals-core';
+import { bindText, h } from '../../dom.js';
+import { formatCount, formatSignificant } from '../../format.js';
+import { separation } from '../../space.js';
+
+/** @typedef {import('../../../engine/types.js').Engine} Engine */
+
+/** Smallest radius of a ring around a particle, and the half size of the cross. */
+const RING_PX = 6;
+const CROSS_PX = 9;
+
+/** @param {Engine} engine */
+const present = (engine) => {
+  // The particles change with the revision.
+  void engine.revision.value;
+  const { count, stale } = engine.columns;
+  return (engine.state.value.view.measured ?? []).filter((index) => !stale && index < count);
+};
+
+/** @param {Engine} engine @param {HTMLElement} host  of the picture @returns {import('./layer.js').Mark} */
+export function measureMark(engine, host) {
+  const chosen = computed(() => present(engine));
+  const focused = signal(false);
+  for (const type of ['focus', 'blur', 'keydown', 'pointerdown'])
+    host.addEventListener(type, () => {
+      focused.value = host.matches(':focus-visible');
+    });
+  return {
+    shown: () => engine.state.value.view.measured !== null,
+    draw(pen) {
+      const { positions, radii } = engine.columns;
+      const spots = chosen.value.flatMap((index) => {
+        const spot = engine.project(positions.subarray(3 * index, 3 * index + 3));
+        if (!spot) return [];
+        pen.ring(spot, Math.max(RING_PX, radii[index] / spot.perPx), 'marked');
+        return [spot];
+      });
+      if (spots.length === 2) {
+        const [a, b] = spots;
+        pen.line(a, b, 'marked');
+        const { units } = separation(engine.columns, chosen.value);
+        pen.text({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 - 10 }, formatSignificant(units, 4), 'figure strong');
+      }
+      const aim = focused.value ? engine.project(engine.state.value.view.camera.target) : null;
+      if (aim) {
+        pen.line({ x: aim.x - CROSS_PX, y: aim.y }, { x: aim.x + CROSS_PX, y: aim.y }, 'cross');
+        pen.line({ x: aim.x, y: aim.y - CROSS_PX }, { x: aim.x, y: aim.y + CROSS_PX }, 'cross');
+      }
+    },
+  };
+}
+
+/** Creates the card that says what to do and what was measured. @param {Engine} engine */
+export function createMeasureCard(engine) {
+  const chosen = computed(() => present(engine));
+  const text = h('span', { role: 'status' });
+  bindText(text, () => {
+    if (engine.state.value.view.measured === null) return '';
+    const pair = chosen.value;
+    if (pair.length === 0) return 'Press a particle, or turn it under the cross and press Enter';
+    if (pair.length === 1) return `Particle ${formatCount(pair[0])}: now another one`;
+    const { units, diameters, unit } = separation(engine.columns, pair);
+    const [i, j] = pair.map(formatCount);
+    return `${formatSignificant(units, 4)} apart, ${formatSignificant(diameters, 3)} × ${unit} · particles ${i} and ${j}`;
+  });
+  const done = h(
+    'button',
+    { type: 'button', class: 'button small', on: { click: () => engine.setView({ measured: null }) } },
+    'Done',
+  );
+  const card = h('div', { class: 'measure-card' }, text, done);
+  effect(() => {
+    card.hidden = engine.state.value.view.measured === null;
+  });
+  return card;
+}

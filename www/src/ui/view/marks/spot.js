@@ -1,0 +1,21 @@
+/** Marks the place that a figure of the report was pressed for: two particles, or a hole. */
+
+/** @typedef {import('../../../engine/types.js').Engine} Engine */
+
+const LEAST_RING_PX = 7;
+const LABEL_PX = 14;
+
+/** @param {Engine} engine @returns {import('./layer.js').Mark} */
+export function spotMark(engine) {
+  return {
+    shown: () => engine.spot.value !== null,
+    draw(pen) {
+      const { places, radius, text } = engine.spot.value ?? { places: [], radius: 0, text: '' };
+      const spots = places.flatMap((place) => engine.project(place) ?? []);
+      for (const spot of spots) pen.ring(spot, Math.max(LEAST_RING_PX, radius / spot.perPx), 'marked');
+      if (spots.length === 2) pen.line(spots[0], spots[1], 'marked');
+      const top = spots.reduce((best, spot) => (spot.y < best.y ? spot : best), spots[0]);
+      if (top) pen.text({ x: top.x, y: top.y - radius / top.perPx - LABEL_PX }, text, 'figure strong');
+    },
+  };
+}

@@ -1,0 +1,134 @@
+/**
+ * A core of the browser tests in the browser that `ENGINE` names: `firefox`, from `FIREFOX_PATH`, or `webkit`, from
+ * `WEBKIT_DRIVER` and `WEBKIT_BROWSER`. They drive the page by its console, as the browsers differ in nothing that it hides.
+ */
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { createSite } from '../server.js';
+import { firefox, webkit } from './drivers.js';
+
+/** @typedef {import('./drivers.js').Tab} Tab */
+
+const PORT = 4519;
+const SITE = `http://localhost:${PORT}/sub/path/`;
+/** A link to a state. @param {object} state */
+const link = (state) => `#v1.j.${Buffer.from(JSON.stringify(state)).toString('base64url')}`;
+/** About 1,100 particles, which software draws quickly. */
+const COARSE = link({ settings: { radius_share: 0.01 } });
+
+/** @type {Tab} */
+let tab;
+const server = createSite();
+
+before(async () => {
+  const { ENGINE, FIREFOX_PATH = '', WEBKIT_DRIVER = '', WEBKIT_BROWSER = '' } = process.env;
+  await new Promise((done) => server.listen(PORT, 'localhost', () => done(undefined)));
+  tab = ENGINE === 'webkit' ? await webkit(WEBKIT_DRIVER, WEBKIT_BROWSER) : await firefox(FIREFOX_PATH);
+  console.log(`# ${tab.version}`);
+});
+after(async () => {
+  shutDown();
+  await tab?.close();
+});
+
+function shutDown() {
+  server.closeAllConnections();
+  server.close();
+}
+
+/** Opens the page anew and returns the report of its first run. @param {string} hash */
+async function open(hash) {
+  await tab.go('about:blank');
+  await tab.go(SITE + hash);
+  return tab.run(async () => {
+    while (!(/** @type {any} */ (window).marchingParticles)) await new Promise((resolve) => setTimeout(resolve, 50));
+    const p = /** @type {any} */ (window).marchingParticles;
+    const late = () => Promise.reject(new Error(`not ready after 90 s: ${JSON.stringify(p.status())}`));
+    return Promise.race([p.ready, new Promise((resolve) => setTimeout(resolve, 90_000)).then(late)]);
+  });
+}
+
+/** Returns how many pixels of a small picture differ from its first one. */
+const inked = () =>
+  tab.run(async () => {
+    const { pixels } = await /** @type {any} */ (window).marchingParticles.pixels(160, 120);
+    let count = 0;
+    for (let k = 0; k < pixels.length; k += 4) if (pixels[k] !== pixels[0] || pixels[k + 1] !== pixels[1]) count += 1;
+    return count;
+  });
+
+test('the page samples and draws', async () => {
+  const report = await open(COARSE);
+  assert.ok(report.count > 500, `${report.count} particles`);
+  const { backend, notice } = await tab.run(() => /** @type {any} */ (window).marchingParticles.status());
+  assert.ok(['webgpu', 'webgl2', 'canvas2d'].includes(backend), backend);
+  assert.equal(notice, null);
+  assert.ok((await inked()) > 1000);
+});
+
+test('the particles have the same bits as natively', async () => {
+  const golden = new URL('../../../tests/golden/digests.json', import.meta.url);
+  const { runs, models } = JSON.parse(await readFile(golden, 'utf8'));
+  for (const { name, field, model, settings, count, digest } of [...runs, ...models]) {
+    const report = await open(link({ surface: model, ...field, settings }));
+    assert.deepEqual({ count: report.count, digest: report.digest }, { count, digest }, name);
+  }
+});
+
+test('levels are shown one by one', async () => {
+  await open(COARSE);
+  const all = await inked();
+  await tab.run(() => /** @type {any} */ (window).marchingParticles.engine.setView({ level: 1 }));
+  const few = await inked();
+  assert.ok(few > 10 && few < all / 2, `${few} of ${all} pixels`);
+});
+
+test('a link brings the same particles back', async () => {
+  const given = { formula: 'x^4+y^4+z^4-1', settings: { radius_share: 0.012, seed: 5 } };
+  const { digest, hash } = await tab.run(async (state) => {
+    const report = await /** @type {any} */ (window).marchingParticles.set(state);
+    return {
+      digest: report.digest,
+      hash: new URL(await /** @type {any} */ (window).marchingParticles.engine.shareUrl()).hash,
+    };
+  }, given);
+  assert.equal((await open(hash)).digest, digest);
+});
+
+test('a sampler that traps is replaced, with the surface intact', async () => {
+  const { digest } = await open(COARSE);
+  const again = await tab.run(async () => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    p.debug.panic();
+    const report = await p.run();
+    return { digest: report.digest, restarts: p.debug.counts().restarts };
+  });
+  assert.deepEqual(again, { digest, restarts: 1 });
+});
+
+test('a lost device is opened again', async () => {
+  await open(COARSE);
+  const opened = await tab.run(async () => {
+    const p = /** @type {any} */ (window).marchingParticles;
+    const before = p.debug.counts().opened;
+    p.debug.loseDevice();
+    for (let k = 0; k < 200 && p.debug.counts().opened === before; k += 1)
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    await p.run();
+    return p.debug.counts().opened - before;
+  });
+  assert.equal(opened, 1);
+  assert.ok((await inked()) > 1000);
+});
+
+test('without its server the page opens, with all that it needs', async () => {
+  await open(COARSE);
+  await tab.run(async () => {
+    while (navigator.serviceWorker.controller?.state !== 'activated')
+      await new Promise((resolve) => setTimeout(resolve, 50));
+  });
+  shutDown();
+  const report = await open(link({ surface: 'bunny', settings: { radius_share: 0.01 } }));
+  assert.ok(report.count > 500, `${report.count} particles`);
+});

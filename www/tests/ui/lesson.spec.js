@@ -1,0 +1,156 @@
+/** The panel that follows a particle, event by event. */
+import { readFile } from 'node:fs/promises';
+import { expect, test } from '@playwright/test';
+import { open, scan, settled } from './helpers.js';
+
+/** @typedef {import('@playwright/test').Page} Page */
+
+/** @param {Page} page */
+const panel = (page) => page.getByRole('region', { name: /^Particle/ });
+/** @param {Page} page */
+const range = (page) => page.getByRole('slider', { name: 'Event of the particle' });
+/** @param {Page} page */
+const followSeed = (page) => page.getByRole('button', { name: 'Follow', exact: true }).click();
+/** What the panel shows of the present event: the sentence, the drawings and the numbers. @param {Page} page */
+const shown = (page) =>
+  page.evaluate(() =>
+    ['.follow-told', '.follow-count', '.follow-views'].map((part) => document.querySelector(part)?.innerHTML),
+  );
+
+test('a particle is followed by the keyboard alone, and every step back is exact', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await page.locator('#canvas-host').focus();
+  await page.keyboard.press('Enter');
+  await expect(page.getByRole('button', { name: 'Follow this particle' })).toBeVisible();
+  await page.keyboard.press('Enter');
+  await expect(range(page)).toBeFocused();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level \d+, particle [\d,]+: taken from the queue$/);
+  await expect(page.getByRole('button', { name: 'Follow this particle' })).toBeHidden();
+
+  const forwards = [];
+  const events = Number(await range(page).getAttribute('max')) + 1;
+  expect(events).toBeGreaterThan(20);
+  for (let at = 0; at < events; at += 1) {
+    await expect(range(page)).toHaveValue(String(at));
+    forwards.push(await shown(page));
+    await page.keyboard.press('ArrowRight');
+  }
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /: done$/);
+  for (let at = events - 1; at >= 0; at -= 1) {
+    expect(await shown(page), `event ${at}`).toEqual(forwards[at]);
+    await page.keyboard.press('ArrowLeft');
+  }
+  await page.keyboard.press('End');
+  await expect(range(page)).toHaveValue(String(events - 1));
+  await page.keyboard.press('Home');
+  await expect(range(page)).toHaveValue('0');
+
+  const name = await panel(page).getByRole('heading', { level: 2 }).textContent();
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(panel(page).getByRole('heading', { level: 2 })).not.toHaveText(name ?? '');
+  await page.keyboard.press('Shift+ArrowLeft');
+  await expect(panel(page).getByRole('heading', { level: 2 })).toHaveText(name ?? '');
+  await page.keyboard.press('Escape');
+  await expect(panel(page)).toBeHidden();
+  await expect(page.locator('#canvas-host')).toBeFocused();
+  await clean();
+});
+
+test('the seed places six children; words, drawings, algorithm and transcript agree', async ({ page }) => {
+  const { clean } = await open(page, { width: 1440, height: 900 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', 'Level 0, particle 0: taken from the queue');
+  expect((await scan(page)).violations).toEqual([]);
+  await page.keyboard.press('End');
+  await expect(
+    panel(page)
+      .getByRole('list', { name: 'Slots' })
+      .getByText(/^added \d$/),
+  ).toHaveCount(6);
+  await expect(panel(page).getByRole('img', { name: /^Tangent plane of particle 0: six slots/ })).toBeVisible();
+  await page.keyboard.press('ArrowLeft');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', 'Level 0, particle 0, child 5: added particle 6');
+  await expect(panel(page).locator('.algorithm [aria-current=step]')).toHaveText(
+    'otherwise add it, and let it wait its turn',
+  );
+  // The child keeps the distance; Newton's method in space does not.
+  const distances = await panel(page).locator('.follow-key dd').allTextContents();
+  expect(distances[0]).toBe('2.0000\u00a0r');
+  expect(Number.parseFloat(distances[1])).toBeLessThan(2);
+  await expect(panel(page).getByRole('img', { name: /Newton’s method would land 1\.\d+/ })).toBeVisible();
+  expect((await scan(page)).violations).toEqual([]);
+
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    panel(page).getByRole('button', { name: 'Save transcript' }).click(),
+  ]);
+  const text = await readFile(await file.path(), 'utf8');
+  expect(text).toContain('Surface: x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, a = 1, b = 0.7, c = 0.5');
+  expect(text).toContain('A new particle, number 6, is added where child 5 landed.');
+  expect(text.match(/lands on the surface, 2\.000 r from its parent/g)).toHaveLength(6);
+  await clean();
+});
+
+test('a surface that changes is told, and its particle at the same place is offered', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0, particle 0/);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setParameter('a', 1.3));
+  await settled(page);
+  await expect(panel(page).getByText('The surface has changed.')).toBeVisible();
+  // What is open stays as it was.
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0, particle 0/);
+  await panel(page).getByRole('button', { name: 'Follow the particle at the same place' }).click();
+  await expect(range(page)).toBeFocused();
+  await expect(panel(page).getByText('The surface has changed.')).toBeHidden();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level \d+, particle [\d,]+: taken from the queue$/);
+  await clean();
+});
+
+test('too many particles are followed at a coarser radius', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setSetting('radius_share', 0.0025));
+  await settled(page);
+  await followSeed(page);
+  await expect(panel(page).getByText(/The picture has 2\d,\d+ particles\. The events of at most 20,000/)).toBeVisible();
+  await panel(page)
+    .getByRole('button', { name: /^Follow at a coarser radius/ })
+    .click();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /: taken from the queue$/, { timeout: 40_000 });
+  await clean();
+});
+
+test('a bundle that is missing is named, and tried again', async ({ page }) => {
+  await open(page);
+  await page.route(/lesson_bg/, (route) => route.abort());
+  await followSeed(page);
+  await expect(panel(page).getByText(/The part of the page that follows particles did not load/)).toBeVisible();
+  await page.unroute(/lesson_bg/);
+  await panel(page).getByRole('button', { name: 'Try again' }).click();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /: taken from the queue$/);
+});
+
+for (const [width, height] of [
+  [390, 844],
+  [320, 640],
+])
+  test(`at ${width} px the panel is a sheet under the picture`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: width === 390 ? 'dark' : 'light' });
+    const { clean } = await open(page, { width, height });
+    const free = await page.locator('#view').boundingBox();
+    if (!free) throw new Error('the view has no box');
+    await page.mouse.click(free.x + free.width / 2, free.y + free.height / 2);
+    await page.getByRole('button', { name: 'Follow this particle' }).click();
+    await expect(range(page)).toBeFocused();
+    await page.keyboard.press('End');
+    await expect(range(page)).toHaveAttribute('aria-valuetext', /: done$/);
+    const box = await panel(page).boundingBox();
+    expect(box?.width).toBe(width);
+    expect(box?.y).toBeGreaterThan(0.3 * height);
+    const body = panel(page).locator('.panel-body');
+    expect(await body.evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth)).toBe(0);
+    expect((await scan(page)).violations).toEqual([]);
+    await panel(page).getByRole('button', { name: 'Close' }).click();
+    await expect(page.locator('#tabs')).toBeVisible();
+    await clean();
+  });

@@ -1,0 +1,197 @@
+import { beforeAll, describe, expect, test } from 'vitest';
+import { setLocale } from '../../src/ui/format.js';
+import { nearest, standIn } from '../../src/ui/lesson/find.js';
+import { inPlane, lensOf, slotPlace } from '../../src/ui/lesson/geometry.js';
+import { momentAt } from '../../src/ui/lesson/moment.js';
+import { ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/ui/lesson/words.js';
+
+/** @typedef {import('../../src/engine/types.js').LessonEvent} LessonEvent */
+
+beforeAll(() => setLocale('en'));
+
+/** The events of a particle with two children: one is added, one matches. @type {LessonEvent[]} */
+const events = [
+  { type: 'taken', particle: 47 },
+  { type: 'frame', particle: 47, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0], form: null },
+  { type: 'slot', parent: 47, slot: 1, direction: [0.5, 0.866, 0], theta_rad: 0, place: [0.1, 0.1732, 0] },
+  {
+    type: 'iterate',
+    parent: 47,
+    slot: 1,
+    step: 0,
+    theta_rad: 0,
+    position: [0.1, 0.1732, 0],
+    value: 0.002,
+    slope: 4,
+    bracket_rad: null,
+  },
+  {
+    type: 'iterate',
+    parent: 47,
+    slot: 1,
+    step: 1,
+    theta_rad: -0.0125,
+    position: [0.1, 0.1732, -0.0025],
+    value: 1e-7,
+    slope: 4,
+    bracket_rad: [-0.1, 0.1],
+  },
+  { type: 'landed', parent: 47, slot: 1, position: [0.1, 0.1732, -0.0025], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'slot', parent: 47, slot: 2, direction: [-0.5, 0.866, 0], theta_rad: 0, place: [-0.1, 0.1732, 0] },
+  { type: 'landed', parent: 47, slot: 2, position: [-0.1, 0.1732, 0], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'gathered', particle: 47, reach: 0.4, neighbours: [{ particle: 31, distance: 0.21 }] },
+  { type: 'fate', parent: 47, slot: 0, fate: 'parent', particle: 20 },
+  {
+    type: 'compared',
+    parent: 47,
+    slot: 1,
+    position: [0.1, 0.1732, -0.0025],
+    against: 31,
+    distance: 0.2,
+    limit: 0.14,
+    corresponds: false,
+  },
+  {
+    type: 'added',
+    particle: 74,
+    data: { position: [0.1, 0.1732, -0.0025], normal: [0, 0, 1], radius: 0.1, parent: 47, level: 4, front: 0 },
+  },
+  { type: 'fate', parent: 47, slot: 1, fate: 'added', particle: 74 },
+  {
+    type: 'compared',
+    parent: 47,
+    slot: 2,
+    position: [-0.1, 0.1732, 0],
+    against: 31,
+    distance: 0.012,
+    limit: 0.14,
+    corresponds: true,
+  },
+  { type: 'fate', parent: 47, slot: 2, fate: 'matched', particle: 31 },
+  { type: 'done', particle: 47, evaluations: 1234 },
+];
+const subject = { particle: 47, level: 3, parent: 20, radius: 0.1 };
+const last = events.length - 1;
+/** @param {number} at */
+const told = (at) => tell(momentAt(events, at), subject);
+
+describe('the moment of an event', () => {
+  test('holds what has happened up to it, and nothing later', () => {
+    const before = momentAt(events, 3);
+    expect(before.frame?.u).toEqual([1, 0, 0]);
+    expect(before.gathered).toBe(null);
+    expect(before.children[1].iterates).toHaveLength(1);
+    expect(before.children[1].landed).toBe(null);
+    expect(before.evaluations).toBe(1);
+    const end = momentAt(events, last);
+    expect(end.children.map(({ fate }) => fate)).toEqual(['parent', 'added', 'matched', 'open', 'open', 'open']);
+    expect(end.children.map(({ particle }) => particle)).toEqual([20, 74, 31, null, null, null]);
+    expect(end.evaluations).toBe(2);
+  });
+
+  test('is the same on the way back', () => {
+    const forwards = events.map((_, at) => JSON.stringify(momentAt(events, at)));
+    const backwards = events.map((_, at) => JSON.stringify(momentAt(events, last - at))).reverse();
+    expect(backwards).toEqual(forwards);
+  });
+
+  test('speaks of the child that an added particle is', () => {
+    const added = momentAt(events, 11);
+    expect(added.event.type).toBe('added');
+    expect(added.slot).toBe(1);
+    expect(added.isNow).toBe(true);
+    expect(added.children[1].particle).toBe(74);
+    expect(momentAt(events, 8).isNow).toBe(false);
+  });
+});
+
+describe('the words', () => {
+  test('name level, particle, child and what happens', () => {
+    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3, particle 47, child 2: matched particle 31');
+    expect(valueText(momentAt(events, 0), subject)).toBe('Level 3, particle 47: taken from the queue');
+    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3, particle 47, child 1: θ₁ = −0.72°');
+    expect(valueText(momentAt(events, 9), subject)).toBe('Level 3, particle 47: parent particle 20');
+    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3, particle 47, child 1: added as particle 74');
+  });
+
+  test('tell each event with its lengths in radii', () => {
+    expect(told(1)).toContain('Slot 0 points to its parent, particle 20');
+    expect(told(5)).toBe('Child 1 lands on the surface, 2.000\u00a0r from its parent.');
+    expect(told(4)).toContain('f changes its sign between −5.73° and 5.73°');
+    expect(told(8)).toBe('1 particle within 4\u00a0r: the children are compared with it.');
+    expect(told(10)).toContain('2.000\u00a0r from particle 31, its nearest. That is more than 1.40\u00a0r');
+    expect(told(13)).toContain('0.120\u00a0r from particle 31, its nearest. That is within 1.40\u00a0r');
+    expect(told(last)).toBe('The particle is done: 1 of its children added, 1 matched, after 2 evaluations of f.');
+  });
+
+  test('leave no event without a sentence and a line of the algorithm', () => {
+    for (const [at, event] of events.entries()) {
+      expect(told(at), event.type).toMatch(/^[A-Z\d].*\.$/);
+      expect(lineOf(event), event.type).toBeGreaterThanOrEqual(0);
+    }
+    for (const fate of /** @type {const} */ (['not_converged', 'outside', 'undefined', 'capped'])) {
+      const left = /** @type {LessonEvent} */ ({ type: 'fate', parent: 47, slot: 3, fate, particle: null });
+      expect(tell(momentAt([...events, left], events.length), subject)).toMatch(/left out/);
+      expect(ALGORITHM[lineOf(left)].text).toContain('leave it out');
+    }
+  });
+
+  test('become a text file with one line per event', () => {
+    const moments = events.map((_, at) => momentAt(events, at));
+    const lines = transcript(moments, subject, ['Particle 47']).trimEnd().split('\n');
+    expect(lines[0]).toBe('Particle 47');
+    expect(lines.slice(2)).toHaveLength(events.length);
+    expect(lines[2]).toBe('  1  Particle 47 is taken from the queue. Its children are to be placed.');
+    expect(lines.join('')).not.toMatch(/[\u00a0\u202f]/);
+  });
+});
+
+describe('the geometry', () => {
+  test('projects a place into the plane, in radii', () => {
+    const plane = { centre: [1, 1, 1], right: [1, 0, 0], up: [0, 1, 0], radius: 0.5 };
+    expect(inPlane(plane, [2, 0.5, 9])).toEqual([2, -1]);
+  });
+
+  test('puts the slots 60° apart at 2r', () => {
+    for (let slot = 0; slot < 6; slot += 1) {
+      const [[x, y], [u, v]] = [slotPlace(slot), slotPlace(slot + 1)];
+      expect(Math.hypot(x, y)).toBeCloseTo(2);
+      expect(Math.hypot(x - u, y - v)).toBeCloseTo(2);
+    }
+  });
+
+  test('frames what is close together, and nothing that coincides', () => {
+    const found = lensOf([
+      [2, 0],
+      [2, -0.01],
+    ]);
+    expect(found?.centre[1]).toBeCloseTo(-0.005);
+    expect(found?.half).toBeGreaterThan(0.005);
+    expect(lensOf([[2, 0]])).toBe(null);
+    expect(
+      lensOf([
+        [2, 0],
+        [Number.NaN, 0],
+      ]),
+    ).toBe(null);
+  });
+});
+
+describe('the particle that stands for another', () => {
+  const positions = Float32Array.of(0, 0, 0, 1, 0, 0, 2, 0, 0);
+
+  test('is the one with its number, if it is at the place', () => {
+    expect(standIn(positions, { index: 1, place: [1.1, 0, 0] }, 0.5)?.particle).toBe(1);
+  });
+
+  test('is the nearest otherwise', () => {
+    expect(standIn(positions, { index: 0, place: [1.9, 0, 0] }, 0.5)?.particle).toBe(2);
+    expect(standIn(positions, { index: 99, place: [0.1, 0, 0] }, 0.5)).toMatchObject({ particle: 0 });
+    expect(standIn(new Float32Array(0), { index: 0, place: [0, 0, 0] }, 0.5)).toBe(null);
+  });
+
+  test('lies at the distance that is told', () => {
+    expect(nearest(positions, 3, [2, 3, 4])).toEqual({ particle: 2, distance: 5 });
+    expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
+  });
+});

@@ -1,0 +1,43 @@
+//! Packages of Debian, and of the systems that are made from it.
+
+use std::fs;
+use std::process::Command;
+use std::sync::OnceLock;
+
+use anyhow::{Result, bail};
+
+use crate::project::on_path;
+use crate::step;
+
+/// Installs packages, which bring what is called `what`.
+///
+/// # Errors
+///
+/// If this is no such system, this process may not install packages, or the packages cannot be had.
+pub(crate) fn install(what: &str, packages: &[&str]) -> Result<()> {
+    /// Whether the index of packages has been fetched. It is fetched once.
+    static INDEX: OnceLock<()> = OnceLock::new();
+
+    if on_path("apt-get").is_none() || !is_root() {
+        bail!("packages can be installed only by root and with apt-get");
+    }
+    if INDEX.set(()).is_ok() {
+        step::run("Debian's package index (apt-get update)", Command::new("apt-get").arg("update"), "")?;
+    }
+    let mut install = Command::new("apt-get");
+    install
+        .args(["install", "--yes", "--no-install-recommends"])
+        .args(packages)
+        .env("DEBIAN_FRONTEND", "noninteractive");
+    step::run(&format!("{what} (Debian's package)"), &mut install, "").map(drop)
+}
+
+/// Whether this process may install packages of the system.
+fn is_root() -> bool {
+    fs::read_to_string("/proc/self/status").is_ok_and(|status| {
+        status
+            .lines()
+            .find_map(|line| line.strip_prefix("Uid:"))
+            .is_some_and(|ids| ids.split_whitespace().nth(1) == Some("0"))
+    })
+}
