@@ -41,11 +41,13 @@ const MAY_USE = {
   'engine/commands': ['engine/types', 'engine/store', 'engine/share', 'engine/points', 'engine/index'],
   // The files beside these rooms put them together.
   engine: ['engine'],
+  // Drawings of the lesson, for every page that shows them.
+  figures: ['ui/*', ...ENGINE_FACE],
   // Shared parts of the interface; the panels' folders do not know each other.
   ui: ENGINE_FACE,
   'ui/app': ['ui', ...ENGINE_FACE],
   'ui/field': ['ui/*', ...ENGINE_FACE],
-  'ui/lesson': ['ui/*', ...ENGINE_FACE],
+  'ui/lesson': ['ui/*', 'figures', ...ENGINE_FACE],
   'ui/levels': ['ui/*', ...ENGINE_FACE],
   'ui/picture': ['ui/*', ...ENGINE_FACE],
   'ui/report': ['ui/*', ...ENGINE_FACE],

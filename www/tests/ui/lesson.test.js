@@ -1,9 +1,9 @@
 import { beforeAll, describe, expect, test } from 'vitest';
+import { inPlane, lensOf, slotPlace } from '../../src/figures/geometry.js';
+import { momentAt } from '../../src/figures/moment.js';
+import { ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
 import { setLocale } from '../../src/ui/format.js';
 import { nearest, standIn } from '../../src/ui/lesson/find.js';
-import { inPlane, lensOf, slotPlace } from '../../src/ui/lesson/geometry.js';
-import { momentAt } from '../../src/ui/lesson/moment.js';
-import { ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/ui/lesson/words.js';
 
 /** @typedef {import('../../src/engine/types.js').LessonEvent} LessonEvent */
 

@@ -4,44 +4,22 @@
  */
 import { batch, computed, signal } from '@preact/signals-core';
 import { NO_PARENT } from '../../engine/columns.js';
+import { momentAt } from '../../figures/moment.js';
+import { openParticle, RESIDUAL, triple } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { nearest, standIn } from './find.js';
-import { between, inPlane, lensOf } from './geometry.js';
-import { momentAt } from './moment.js';
 
 /**
  * @typedef {import('../../engine/types.js').Engine} Engine
  * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('../../engine/types.js').LessonIterate} LessonIterate
  * @typedef {import('../../engine/types.js').LessonClient} LessonClient
  * @typedef {import('../../engine/types.js').Vec3} Vec3
- * @typedef {import('./geometry.js').Point} Point
- * @typedef {import('./words.js').Subject} Subject
- */
-/**
- * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's method from the
- * place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens is given in radii.
- * @typedef {object} Profile
- * @property {Vec3} normal
- * @property {Vec3} direction
- * @property {Float32Array} section
- * @property {LessonIterate[]} newton
- * @property {number | null} newtonDistance
- * @property {{ centre: Point, half: number, section: Float32Array } | null} lens
  */
 /**
  * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a step to
  * another one.
- * @typedef {object} Opened
- * @property {Subject} subject
- * @property {Vec3} place
- * @property {Vec3} normal
- * @property {Float32Array} positions  of all particles of the run
- * @property {Float32Array} normals
- * @property {LessonEvent[]} events  from `taken` to `done`; none if it still waited at the end of the run
- * @property {(Profile | null)[]} profiles  by slot
- * @property {{ index: number, distance: number } | null} picture
+ * @typedef {import('../../figures/particle.js').Opened & { picture: { index: number, distance: number } | null }} Opened
  */
 /**
  * @typedef {{ kind: 'running', particles: number }
@@ -66,14 +44,8 @@ const MOST_PARTICLES = 20_000;
 /** The particles that a coarser run aims at, and the least factor by which its radius grows. */
 const COARSER_PARTICLES = 16_000;
 const LEAST_COARSER = 1.25;
-/** Half size of a section in radii, and its cells. */
-const SECTION_HALF = 3.2;
-const SECTION_CELLS = 64;
-const LENS_CELLS = 24;
 /** Time for which an event is shown during playback: long enough to read its sentence. */
 const PLAY_MS = 1200;
-/** Limit on |f|/|∇f| in radii, as the run has it. */
-const RESIDUAL = 1e-4;
 
 /** Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own front. */
 const SETTINGS = /** @type {const} */ ({
@@ -207,7 +179,7 @@ export class Follower {
     this.pause();
     const mine = this.next();
     try {
-      const opened = await load(client, run, particle);
+      const opened = await openParticle(client, run, particle);
       if (mine !== this.asked) return;
       batch(() => {
         this.opened.value = { ...opened, picture };
@@ -325,64 +297,4 @@ function seedsOf({ columns }) {
   for (let i = 0; i < columns.count; i += 1)
     if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.positions, i));
   return seeds;
-}
-
-/** @param {Float32Array} column @param {number} i */
-const triple = (column, i) => /** @type {Vec3} */ ([...column.subarray(3 * i, 3 * i + 3)]);
-
-/**
- * Fetches the events of a particle and all that is drawn of it, so that each step is at once.
- * @param {LessonClient} client @param {Run} run @param {number} particle
- */
-async function load(client, { end, radius }, particle) {
-  const life = await client.ask('life', { particle });
-  const taken = life?.taken ?? null;
-  const done = life?.done ?? null;
-  const events =
-    taken === null || done === null ? [] : await client.ask('events', { first: taken, count: done - taken + 1 });
-  const place = triple(end.positions, particle);
-  const frame = events.find(({ type }) => type === 'frame');
-  const normal = frame?.type === 'frame' ? frame.normal : triple(end.normals, particle);
-  const whole = events.length > 0 ? momentAt(events, events.length - 1) : null;
-  const profiles = await Promise.all(
-    (whole?.children ?? []).map((child) => (child.start ? profile(client, { place, normal, radius }, child) : null)),
-  );
-  const parent = end.parents[particle];
-  const subject = { particle, level: end.levels[particle], parent: parent === NO_PARENT ? null : parent, radius };
-  return { subject, place, normal, positions: end.positions, normals: end.normals, events, profiles };
-}
-
-/**
- * @param {LessonClient} client @param {{ place: Vec3, normal: Vec3, radius: number }} about
- * @param {import('./moment.js').Child} child  at the end  @returns {Promise<Profile | null>}
- */
-async function profile(client, { place, normal, radius }, { start, iterates, landed }) {
-  if (!start) return null;
-  const { direction } = start;
-  const plane = { right: direction, up: normal };
-  const [section, newton] = await Promise.all([
-    client.ask('section', { ...plane, centre: place, half: SECTION_HALF * radius, cells: SECTION_CELLS }),
-    client.ask('newton', { start: start.place, reach: 2 * radius }),
-  ]);
-  const last = newton.at(-1);
-  const lands = last !== undefined && Math.abs(last.value) <= RESIDUAL * radius * last.slope;
-  const at = { centre: place, ...plane, radius };
-  const tried = [...iterates, ...(landed ? [landed] : []), ...(lands ? newton : [])];
-  const around = lensOf([start.place, ...tried.map(({ position }) => position)].map((q) => inPlane(at, q)));
-  let lens = null;
-  if (around) {
-    const centre = /** @type {Vec3} */ (
-      place.map((v, k) => v + radius * (around.centre[0] * direction[k] + around.centre[1] * normal[k]))
-    );
-    const cells = LENS_CELLS;
-    lens = { ...around, section: await client.ask('section', { ...plane, centre, half: around.half * radius, cells }) };
-  }
-  return {
-    normal,
-    direction,
-    section,
-    newton,
-    newtonDistance: last && lands ? between(last.position, place) : null,
-    lens,
-  };
 }

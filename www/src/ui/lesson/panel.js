@@ -3,6 +3,8 @@
  * phone that of the sheet; it is loaded when it is first asked for.
  */
 import { effect } from '@preact/signals-core';
+import { momentAt } from '../../figures/moment.js';
+import { inRadii, transcript } from '../../figures/words.js';
 import { bindText, fill, h, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
@@ -10,10 +12,8 @@ import { icon } from '../icons.js';
 import { download } from '../share.js';
 import { Follower } from './follower.js';
 import sheet from './lesson.css?url';
-import { momentAt } from './moment.js';
 import { createStepper } from './stepper.js';
 import { createViews } from './views.js';
-import { inRadii, transcript } from './words.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 

@@ -1,10 +1,10 @@
 /** Goes through the events of a particle: buttons, a range, and the event in words. */
 import { effect } from '@preact/signals-core';
+import { tell, valueText } from '../../figures/words.js';
 import { bindText, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { icon } from '../icons.js';
-import { tell, valueText } from './words.js';
 
 /** @typedef {import('./follower.js').Follower} Follower */
 

@@ -1,16 +1,16 @@
 /** The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm. */
 import { effect } from '@preact/signals-core';
+import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
+import { fateShape, s } from '../../figures/svg.js';
+import { ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
 import { fill, h, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
-import { isSearched, lens, profileOf, tangentPlane } from './drawings.js';
-import { fateShape, s } from './svg.js';
-import { ALGORITHM, FATES, inDegrees, inRadii, lineOf } from './words.js';
 
 /**
  * @typedef {import('./follower.js').Follower} Follower
  * @typedef {import('./follower.js').Opened} Opened
- * @typedef {import('./moment.js').Moment} Moment
- * @typedef {import('./moment.js').Child} Child
+ * @typedef {import('../../figures/moment.js').Moment} Moment
+ * @typedef {import('../../figures/moment.js').Child} Child
  */
 
 /** @param {Follower} follower */

@@ -1,8 +1,8 @@
 /** The events of a particle in words, and the paper's Algorithm 2 with the line that an event belongs to. */
-import { formatCount, formatFixed, formatSignificant, plural } from '../format.js';
+import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
 
 /**
- * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
+ * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
  * @typedef {import('./moment.js').Moment} Moment
  */
 /** Whose events are told. `parent` is null for a seed. @typedef {{ particle: number, level: number, parent: number | null, radius: number }} Subject */

@@ -1,5 +1,5 @@
 /** Creates elements of drawings. In a drawing y points up and lengths are in radii. */
-import { setAttribute } from '../dom.js';
+import { setAttribute } from '../ui/dom.js';
 
 /**
  * @param {string} tag

@@ -1,5 +1,5 @@
 /** The two drawings of a particle: its tangent plane from above, and the plane of a slot from the side. */
-import { formatCount } from '../format.js';
+import { formatCount } from '../ui/format.js';
 import { dot, inPlane, slotPlace } from './geometry.js';
 import { fateShape, label, line, ring, s, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
@@ -8,8 +8,8 @@ import { FATES, inRadii, theta } from './words.js';
  * @typedef {import('./geometry.js').Point} Point
  * @typedef {import('./moment.js').Moment} Moment
  * @typedef {import('./moment.js').Child} Child
- * @typedef {import('./follower.js').Opened} Opened
- * @typedef {import('./follower.js').Profile} Profile
+ * @typedef {import('./particle.js').Opened} Opened
+ * @typedef {import('./particle.js').Profile} Profile
  */
 
 /** Half sizes of the drawings, in radii. */

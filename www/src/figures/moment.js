@@ -4,8 +4,8 @@
  */
 
 /**
- * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
- * @typedef {import('../../engine/types.js').Vec3} Vec3
+ * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
+ * @typedef {import('../engine/types.js').Vec3} Vec3
  */
 /**
  * @template {LessonEvent['type']} T

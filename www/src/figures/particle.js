@@ -1,0 +1,104 @@
+/** Fetches from the worker of the lesson what is drawn of a particle: its events, and the plane of each of its slots. */
+import { NO_PARENT } from '../engine/columns.js';
+import { between, inPlane, lensOf } from './geometry.js';
+import { momentAt } from './moment.js';
+
+/**
+ * @typedef {import('../engine/types.js').LessonClient} LessonClient
+ * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
+ * @typedef {import('../engine/types.js').LessonIterate} LessonIterate
+ * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
+ * @typedef {import('../engine/types.js').Vec3} Vec3
+ * @typedef {import('./geometry.js').Point} Point
+ * @typedef {import('./moment.js').Child} Child
+ * @typedef {import('./words.js').Subject} Subject
+ */
+/**
+ * What is drawn of a slot's plane. `section` is the curve f = 0 around the particle, `newton` the way of Newton's method from the
+ * place at θ₀, `newtonDistance` that of its end from the particle if it is on the surface. The lens is given in radii.
+ * @typedef {object} Profile
+ * @property {Vec3} normal
+ * @property {Vec3} direction
+ * @property {Float32Array} section
+ * @property {LessonIterate[]} newton
+ * @property {number | null} newtonDistance
+ * @property {{ centre: Point, half: number, section: Float32Array } | null} lens
+ */
+/**
+ * A particle with its events, and what its drawings show.
+ * @typedef {object} Opened
+ * @property {Subject} subject
+ * @property {Vec3} place
+ * @property {Vec3} normal
+ * @property {Float32Array} positions  of all particles of the run
+ * @property {Float32Array} normals
+ * @property {LessonEvent[]} events  from `taken` to `done`; none if it still waited at the end of the run
+ * @property {(Profile | null)[]} profiles  by slot
+ */
+
+/** Limit on |f|/|∇f| in radii, as the runs of the lesson have it. */
+export const RESIDUAL = 1e-4;
+/** Half size of a section in radii, and its cells. */
+const SECTION_HALF = 3.2;
+const SECTION_CELLS = 64;
+const LENS_CELLS = 24;
+
+/** @param {Float32Array} column @param {number} i */
+export const triple = (column, i) => /** @type {Vec3} */ ([...column.subarray(3 * i, 3 * i + 3)]);
+
+/**
+ * Fetches the events of a particle and all that is drawn of it, so that each step is at once.
+ * @param {LessonClient} client @param {{ end: LessonParticles, radius: number }} run @param {number} particle
+ */
+export async function openParticle(client, { end, radius }, particle) {
+  const life = await client.ask('life', { particle });
+  const taken = life?.taken ?? null;
+  const done = life?.done ?? null;
+  const events =
+    taken === null || done === null ? [] : await client.ask('events', { first: taken, count: done - taken + 1 });
+  const place = triple(end.positions, particle);
+  const frame = events.find(({ type }) => type === 'frame');
+  const normal = frame?.type === 'frame' ? frame.normal : triple(end.normals, particle);
+  const whole = events.length > 0 ? momentAt(events, events.length - 1) : null;
+  const profiles = await Promise.all(
+    (whole?.children ?? []).map((child) => (child.start ? profile(client, { place, normal, radius }, child) : null)),
+  );
+  const parent = end.parents[particle];
+  const subject = { particle, level: end.levels[particle], parent: parent === NO_PARENT ? null : parent, radius };
+  return { subject, place, normal, positions: end.positions, normals: end.normals, events, profiles };
+}
+
+/**
+ * @param {LessonClient} client @param {{ place: Vec3, normal: Vec3, radius: number }} about
+ * @param {Child} child  at the end  @returns {Promise<Profile | null>}
+ */
+async function profile(client, { place, normal, radius }, { start, iterates, landed }) {
+  if (!start) return null;
+  const { direction } = start;
+  const plane = { right: direction, up: normal };
+  const [section, newton] = await Promise.all([
+    client.ask('section', { ...plane, centre: place, half: SECTION_HALF * radius, cells: SECTION_CELLS }),
+    client.ask('newton', { start: start.place, reach: 2 * radius }),
+  ]);
+  const last = newton.at(-1);
+  const lands = last !== undefined && Math.abs(last.value) <= RESIDUAL * radius * last.slope;
+  const at = { centre: place, ...plane, radius };
+  const tried = [...iterates, ...(landed ? [landed] : []), ...(lands ? newton : [])];
+  const around = lensOf([start.place, ...tried.map(({ position }) => position)].map((q) => inPlane(at, q)));
+  let lens = null;
+  if (around) {
+    const centre = /** @type {Vec3} */ (
+      place.map((v, k) => v + radius * (around.centre[0] * direction[k] + around.centre[1] * normal[k]))
+    );
+    const cells = LENS_CELLS;
+    lens = { ...around, section: await client.ask('section', { ...plane, centre, half: around.half * radius, cells }) };
+  }
+  return {
+    normal,
+    direction,
+    section,
+    newton,
+    newtonDistance: last && lands ? between(last.position, place) : null,
+    lens,
+  };
+}
