@@ -80,7 +80,7 @@ pub struct Chapter {
     pub before: u32,
     /// Particles when it ends.
     pub after: u32,
-    /// What became of the children.
+    /// Number of proposed children by fate.
     pub fates: FateCounts,
     /// Energy per particle when it ends; of relaxation steps only.
     pub energy: Option<f64>,
@@ -120,7 +120,7 @@ pub struct Life {
     pub done: Option<u32>,
 }
 
-/// What is kept at the beginning of a chapter.
+/// State of the run at the beginning of a chapter. The way back restores it and replays the events that follow.
 enum Snapshot {
     /// The first so many particles, as they were placed: until the relaxation nothing moves.
     Placed(Place, usize),

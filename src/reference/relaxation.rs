@@ -14,10 +14,10 @@ const RANGE: f64 = 3.0;
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps.
 const OVERLAP_REACH: f64 = 1.15;
 
-/// Size of a step of particles of one size: large enough to mend local faults in ten steps, and stable.
+/// Size of a relaxation step in uniform sampling: large enough to mend local faults in ten steps, and stable.
 const STEP: f64 = 0.6;
 
-/// The same of discs of many sizes.
+/// Size of a relaxation step in non-uniform sampling.
 const OVERLAP_STEP: f64 = 0.33;
 
 /// A particle moves by no more than this in a step, in radii.
@@ -36,7 +36,8 @@ fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
     (energy, energy - libm::exp(-0.5 * RANGE * RANGE))
 }
 
-/// The same of two discs, whose radii add up to `both`: they push each other apart by their overlap. The paper gives no formula.
+/// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other apart by their overlap. The paper
+/// gives no formula.
 fn overlap(distance: f64, both: f64) -> (f64, f64) {
     let overlap = (OVERLAP_REACH * both - distance).max(0.0);
     let share = 2.0 * overlap / both;

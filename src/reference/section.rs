@@ -1,4 +1,5 @@
-//! What a figure asks of the field beside the events: the surface cut by a plane, and where Newton's method would have led.
+//! Answers about the field that no event holds and that a drawing needs: the curve in which a plane cuts the surface, and the
+//! iterates of Newton's method in space from a given point.
 
 use super::Reference;
 use super::event::Vector;

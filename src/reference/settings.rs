@@ -264,7 +264,7 @@ pub enum ReferenceError {
         /// Radius with which there would be no more.
         radius: f64,
     },
-    /// The same in adaptive sampling.
+    /// More particles than the reference follows, in adaptive sampling.
     #[error(
         "about {expected} particles are to be expected, and the event log follows at most {limit}: \
          choose radii {factor:.2} times as large"

@@ -1,4 +1,4 @@
-//! What became of the children that the particles of a front propose.
+//! Counts of the children that the particles of a front propose, by fate.
 
 use crate::particles::SlotFate;
 

@@ -146,7 +146,7 @@ pub struct Report {
     pub evaluations: u64,
     /// Field evaluations of the front per particle.
     pub evaluations_per_particle: f64,
-    /// What became of the children.
+    /// Number of proposed children by fate.
     pub fates: FateCounts,
     /// Particles with a child that fell outside of the box.
     pub border: usize,

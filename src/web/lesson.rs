@@ -92,7 +92,8 @@ impl Lesson {
         self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
     }
 
-    /// The same on a model from points: the solved system as `Points.field` gives it, and its `Bounds`.
+    /// Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `bounds` its `Bounds`; to an
+    /// `Answer` with `LessonProgress`.
     pub fn start_points(&mut self, system: &[u8], bounds: JsValue, settings: JsValue) -> JsValue {
         let bounds = read::<Bounds>(bounds, FaultKind::Request);
         self.begin(bounds.and_then(|bounds| Ok((points(system)?, bounds))), settings)

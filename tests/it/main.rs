@@ -16,6 +16,7 @@ mod formula_properties;
 mod front;
 mod fuzz;
 mod gallery;
+mod golden;
 mod graded;
 mod half_edge;
 mod holes;

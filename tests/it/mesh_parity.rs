@@ -4,12 +4,12 @@
 //!
 //! A change that is meant to alter meshes or particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it mesh_parity::`.
 
+use crate::golden;
 use marching_particles::export::{MeshFormat, write_mesh};
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, MeshAnswer, Session};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 /// Contents of the golden file.
 #[derive(Serialize, Deserialize)]
@@ -59,20 +59,15 @@ fn digest(bytes: &[u8]) -> String {
     format!("{hash:016x}")
 }
 
-fn path() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/meshes.json")
-}
-
 fn golden() -> Golden {
-    let text = std::fs::read_to_string(path()).expect("the golden file can be read");
-    serde_json::from_str(&text).expect("the golden file is well formed")
+    golden::read("meshes.json")
 }
 
 #[test]
 fn mesh_files_have_the_digests_that_other_platforms_give() {
     let mut golden = golden();
     assert!(golden.runs.len() >= 2);
-    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let mut faults = Vec::new();
     for case in &mut golden.runs {
         let (mut session, _) = joined(case, u32::MAX);
         let files: BTreeMap<String, String> = MeshFormat::ALL
@@ -83,17 +78,9 @@ fn mesh_files_have_the_digests_that_other_platforms_give() {
                 (extension.to_owned(), digest(&bytes))
             })
             .collect();
-        if update {
-            case.files = files;
-        } else {
-            assert_eq!(files, case.files, "{}", case.name);
-        }
+        golden::compare(&case.name, &mut case.files, files, &mut faults);
     }
-    if update {
-        let text =
-            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
-        std::fs::write(path(), text).expect("the golden file can be written");
-    }
+    golden::finish("meshes.json", &golden, &faults, "mesh_parity");
 }
 
 #[test]

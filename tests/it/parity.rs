@@ -4,12 +4,12 @@
 //!
 //! A change that is meant to move particles rewrites the file: `UPDATE_GOLDEN=1 cargo test --test it parity::`.
 
+use crate::golden;
 use marching_particles::field::model;
 use marching_particles::pointcloud::models;
 use marching_particles::sampler::Settings;
 use marching_particles::session::{FieldRequest, Session};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// Contents of the golden file.
 #[derive(Serialize, Deserialize)]
@@ -58,32 +58,14 @@ fn run(case: &Run) -> (usize, String) {
 
 #[test]
 fn runs_have_the_digests_that_other_platforms_give() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/digests.json");
-    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
-    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
-    assert!(golden.runs.len() >= 3, "{} holds {} runs", path.display(), golden.runs.len());
-    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let mut golden: Golden = golden::read("digests.json");
+    assert!(golden.runs.len() >= 3, "there are {} runs", golden.runs.len());
     let mut faults = Vec::new();
     for case in golden.runs.iter_mut().chain(&mut golden.models) {
         let (count, digest) = run(case);
         assert!(count > 500, "{}: {count} particles are too few to show anything", case.name);
-        if update {
-            (case.count, case.digest) = (count, digest);
-        } else if (count, &digest) != (case.count, &case.digest) {
-            faults.push(format!(
-                "{}: {count} particles {digest}, not {} {}",
-                case.name, case.count, case.digest
-            ));
-        }
+        golden::compare(&case.name, &mut case.count, count, &mut faults);
+        golden::compare(&case.name, &mut case.digest, digest, &mut faults);
     }
-    if update {
-        let text =
-            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
-        std::fs::write(&path, text).expect("the golden file can be written");
-    }
-    assert!(
-        faults.is_empty(),
-        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test it parity::\n",
-        faults.join("\n")
-    );
+    golden::finish("digests.json", &golden, &faults, "parity");
 }

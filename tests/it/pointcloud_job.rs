@@ -5,6 +5,7 @@
 //! module with the same file. A change that is meant to move surfaces rewrites it: `UPDATE_GOLDEN=1 cargo test --test
 //! it pointcloud_job::`.
 
+use crate::golden;
 use marching_particles::field::Field;
 use marching_particles::field::model::{MODELS, NormalSource};
 use marching_particles::field::rbf::{RbfData, RbfField};
@@ -14,7 +15,6 @@ use marching_particles::pointcloud::thin::KEPT;
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 /// Runs a job in steps of `budget` units of work.
 fn run(mut job: Job, budget: u32) -> Result<Fit, JobError> {
@@ -92,10 +92,8 @@ struct Run {
 
 #[test]
 fn systems_have_the_digests_that_other_platforms_give() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/points.json");
-    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
-    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
-    assert!(golden.runs.len() >= 3, "{} holds {} runs", path.display(), golden.runs.len());
+    let mut golden: Golden = golden::read("points.json");
+    assert!(golden.runs.len() >= 3, "there are {} runs", golden.runs.len());
     let mut faults = Vec::new();
     for case in &mut golden.runs {
         let job = match &case.model {
@@ -104,19 +102,9 @@ fn systems_have_the_digests_that_other_platforms_give() {
         };
         let fit = job.and_then(|job| run(job, 100)).unwrap_or_else(|error| panic!("{}: {error}", case.name));
         let found = digest(&fit.data.to_bytes());
-        if found != case.digest {
-            faults.push(format!("{}: {found}, not {}", case.name, case.digest));
-        }
-        case.digest = found;
+        golden::compare(&case.name, &mut case.digest, found, &mut faults);
     }
-    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
-        let text =
-            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
-        std::fs::write(&path, text).expect("the golden file can be written");
-        return;
-    }
-    let advice = "If surfaces were meant to move: UPDATE_GOLDEN=1 cargo test --test it pointcloud_job::";
-    assert!(faults.is_empty(), "\n{}\n{advice}\n", faults.join("\n"));
+    golden::finish("points.json", &golden, &faults, "pointcloud_job");
 }
 
 #[test]

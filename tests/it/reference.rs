@@ -2,6 +2,7 @@
 //!
 //! A change that is meant to move particles rewrites the golden file: `UPDATE_GOLDEN=1 cargo test --test it reference::`.
 
+use crate::golden;
 use glam::DVec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
@@ -11,7 +12,6 @@ use marching_particles::reference::{
 };
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 fn start(surface: &str, settings: &Settings) -> Result<Reference, ReferenceError> {
     let surface = gallery::find(surface).expect("a gallery surface");
@@ -366,11 +366,8 @@ struct Lesson {
 
 #[test]
 fn lessons_have_the_digests_that_other_platforms_give() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lessons.json");
-    let text = std::fs::read_to_string(&path).expect("the golden file can be read");
-    let mut golden: Golden = serde_json::from_str(&text).expect("the golden file is well formed");
-    assert!(golden.runs.len() >= 4, "{} holds {} runs", path.display(), golden.runs.len());
-    let update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let mut golden: Golden = golden::read("lessons.json");
+    assert!(golden.runs.len() >= 4, "there are {} runs", golden.runs.len());
     let mut faults = Vec::new();
     for lesson in &mut golden.runs {
         let LessonField { formula, parameters, bounds } = &lesson.field;
@@ -385,20 +382,9 @@ fn lessons_have_the_digests_that_other_platforms_give() {
         };
         let (half, end) = (at(events / 2), at(events));
         assert!(events > 5_000, "{}: {events} events are too few to show anything", lesson.name);
-        if update {
-            (lesson.events, lesson.half, lesson.digest) = (events, half, end);
-        } else if (events, &half, &end) != (lesson.events, &lesson.half, &lesson.digest) {
-            faults.push(format!("{}: {events} events, {half}, {end}", lesson.name));
-        }
+        golden::compare(&lesson.name, &mut lesson.events, events, &mut faults);
+        golden::compare(&lesson.name, &mut lesson.half, half, &mut faults);
+        golden::compare(&lesson.name, &mut lesson.digest, end, &mut faults);
     }
-    if update {
-        let text =
-            serde_json::to_string_pretty(&golden).expect("the golden file can be written as JSON") + "\n";
-        std::fs::write(&path, text).expect("the golden file can be written");
-    }
-    assert!(
-        faults.is_empty(),
-        "\n{}\nIf particles were meant to move: UPDATE_GOLDEN=1 cargo test --test it reference::\n",
-        faults.join("\n")
-    );
+    golden::finish("lessons.json", &golden, &faults, "reference");
 }

@@ -48,7 +48,7 @@ pub(crate) struct Audit {
     pub(crate) without: Vec<Unsampled>,
 }
 
-/// What an audit looks at.
+/// Input of an audit.
 pub(crate) struct Audited<'a> {
     pub(crate) field: &'a mut dyn Field,
     pub(crate) projector: &'a mut Projector,

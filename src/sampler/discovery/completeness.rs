@@ -43,8 +43,8 @@ pub struct Sampled {
 pub struct Unsampled {
     /// The witness, a point of the surface.
     pub position: [f64; 3],
-    /// How far the component reaches from there, as far as it was followed.
+    /// Largest distance from the witness at which a point of the component was found.
     pub reach: f64,
-    /// Whether it goes on beyond that.
+    /// Whether the component was followed no further than that, so that it may be larger.
     pub goes_on: bool,
 }

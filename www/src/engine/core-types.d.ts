@@ -314,7 +314,7 @@ export type LessonChapter = {
   before: number,
   /** Particles when it ends. */
   after: number,
-  /** What became of the children. */
+  /** Number of proposed children by fate. */
   fates: FateCounts,
   /** Energy per particle when it ends; of relaxation steps only. */
   energy: number | null,
@@ -883,7 +883,7 @@ export type Report = {
   evaluations: number,
   /** Field evaluations of the front per particle. */
   evaluations_per_particle: number,
-  /** What became of the children. */
+  /** Number of proposed children by fate. */
   fates: FateCounts,
   /** Particles with a child that fell outside of the box. */
   border: number,
@@ -1040,9 +1040,9 @@ export type SurfaceEntry = {
 export type Unsampled = {
   /** The witness, a point of the surface. */
   position: [number, number, number],
-  /** How far the component reaches from there, as far as it was followed. */
+  /** Largest distance from the witness at which a point of the component was found. */
   reach: number,
-  /** Whether it goes on beyond that. */
+  /** Whether the component was followed no further than that, so that it may be larger. */
   goes_on: boolean,
 };
 

@@ -1,0 +1,50 @@
+//! Golden files: results that the same code gives on every platform, kept as JSON in `tests/golden`.
+//!
+//! `UPDATE_GOLDEN=1` writes them anew, after a change that is meant to alter them.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
+use std::path::PathBuf;
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
+}
+
+/// The content of the golden file `name`.
+pub(crate) fn read<T: DeserializeOwned>(name: &str) -> T {
+    let text = std::fs::read_to_string(path(name)).expect("the golden file can be read");
+    serde_json::from_str(&text).expect("the golden file is well formed")
+}
+
+/// Replaces `expected` by `found`, and notes a fault where the two differ.
+pub(crate) fn compare<V: PartialEq + Debug>(
+    case: &str,
+    expected: &mut V,
+    found: V,
+    faults: &mut Vec<String>,
+) {
+    if *expected != found {
+        faults.push(format!("{case}: {found:?}, not {expected:?}"));
+    }
+    *expected = found;
+}
+
+/// Writes `content`, which holds what was found, where `UPDATE_GOLDEN=1` asks for it.
+///
+/// # Panics
+///
+/// Where it does not, if there are faults. The message names `module`, whose tests write the file.
+pub(crate) fn finish<T: Serialize>(name: &str, content: &T, faults: &[String], module: &str) {
+    if std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1") {
+        let text =
+            serde_json::to_string_pretty(content).expect("the golden file can be written as JSON") + "\n";
+        std::fs::write(path(name), text).expect("the golden file can be written");
+        return;
+    }
+    assert!(
+        faults.is_empty(),
+        "\n{}\nIf this was meant to change: UPDATE_GOLDEN=1 cargo test --test it {module}::\n",
+        faults.join("\n")
+    );
+}
