@@ -42,6 +42,8 @@ export default defineConfig({
   // Much of a test is waiting for timers and frames, so two pages share the two processors of a small machine well.
   workers: 2,
   fullyParallel: true,
+  // A shared machine can stall for seconds. A test that passes only when it is repeated is listed as flaky at the end.
+  retries: 1,
   reporter: [['list']],
   use: {
     viewport: { width: 480, height: 360 },

@@ -33,8 +33,9 @@ export class Framing {
       effect(() => {
         if (!this.rests() || Number.isNaN(this.writtenMs) || this.waits()) return;
         this.hold();
-        // The camera waits for a pause in typing, so that the picture does not move with every key.
-        this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
+        // The camera waits for a pause in typing, so that the picture does not move with every key. A link is whole at once.
+        if (this.isTyped) this.timer = setTimeout(() => this.come(), this.writtenMs + TYPING_MS - performance.now());
+        else queueMicrotask(() => this.come());
       }),
       effect(() => {
         // Without a surface the camera shows the box. It returns to the surface when there is one again.

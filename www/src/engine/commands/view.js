@@ -35,7 +35,12 @@ export function viewCommands({ store, picture, look }) {
       viewer.camera.orbit(dxRad, dyRad);
       viewer.moved();
     },
-    setInsets: (insets) => viewer.set({ insets }),
+    setInsets(insets) {
+      const { left, right, top, bottom } = viewer.look.insets;
+      // The layout measures after every change of a part's size, which mostly leaves the free area as it was.
+      const isSame = insets.left === left && insets.right === right && insets.top === top && insets.bottom === bottom;
+      if (!isSame) viewer.set({ insets });
+    },
     dismissHover: () => picture.hover(null, 0, 0),
     pick: (x, y) => viewer.pick(x, y),
     project: (place) => viewer.project(place),
