@@ -6,6 +6,8 @@
 //! energies, moves the particles, and lets them divide or die. A run ends when nothing happens any more, or after a
 //! given number of iterations.
 //!
+//! The same methods written for reading are in `src/reference`, to which `tests/it/systems.rs` holds these.
+//!
 //! The implementations are meant to be strong opponents. Neighbours come from the grid of the front, so an iteration is
 //! linear in the number of particles, and from lists that serve for several iterations once no particle divides or
 //! dies. A particle takes one evaluation of the field in an iteration, in batches. The survey, the radius law, the
@@ -247,6 +249,16 @@ impl Baseline {
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Returns the radius at which a particle of Witkin and Heckbert's system divides whatever it feels: half of the surface's
+    /// diameter. There is none in the scheme of forces.
+    #[must_use]
+    pub fn largest_radius(&self) -> Option<f64> {
+        match &self.scheme {
+            Scheme::WitkinHeckbert(scheme) => Some(f64::from(scheme.largest)),
+            Scheme::Forces(_) => None,
+        }
     }
 
     /// Returns the box that is sampled.

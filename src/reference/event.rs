@@ -20,8 +20,8 @@ pub struct Nearby {
     pub distance: f64,
 }
 
-/// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`] and [`Event::Moved`] change the particles; the
-/// others tell why.
+/// An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
+/// [`Event::Died`] change the particles; the others tell why.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonEvent"))]
 #[serde(tag = "type", rename_all = "snake_case")]
@@ -248,7 +248,7 @@ pub enum Event {
         particle: u32,
         /// Sum of the repulsion, in the tangent plane; the step size times it is the move.
         force: Vector,
-        /// Where the move leads, in the tangent plane.
+        /// Where the move leads, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface.
         target: Vector,
         /// The place on the surface.
         position: Vector,
@@ -267,6 +267,44 @@ pub enum Event {
         energy: f64,
         /// Longest move, in radii.
         largest_move: f64,
+    },
+    /// An iteration of a particle system begins: forces and energies are summed (paper §3).
+    IterationBegins {
+        /// Number of the iteration, from 1.
+        iteration: u32,
+        /// Particles.
+        particles: u32,
+        /// Mean of what their neighbours make them feel: an energy, or a sum of squared overlaps.
+        energy: f64,
+    },
+    /// A particle divides in two.
+    Divided {
+        /// The particle, whose place one child takes.
+        particle: u32,
+        /// Index of the other child.
+        child: u32,
+        /// Columns of both.
+        data: Box<[Particle; 2]>,
+        /// What the particle felt.
+        energy: f64,
+    },
+    /// A particle dies. Those behind it move up by one.
+    Died {
+        /// The particle.
+        particle: u32,
+        /// What it felt.
+        energy: f64,
+    },
+    /// An iteration is over.
+    IterationEnds {
+        /// Number of the iteration, from 1.
+        iteration: u32,
+        /// Particles.
+        particles: u32,
+        /// Longest move, in radii.
+        largest_move: f64,
+        /// Mean move, in radii: the system has settled once this is small and nothing divides or dies for a while.
+        mean_move: f64,
     },
 }
 
@@ -289,6 +327,14 @@ impl Event {
             Self::Moved { particle, position, normal, radius, .. } => {
                 let moved = &mut particles[particle as usize];
                 (moved.position, moved.normal, moved.radius) = (position, normal, radius);
+            }
+            Self::Divided { particle, child, ref data, .. } => {
+                assert_eq!(child as usize, particles.len(), "particles are added in their order");
+                particles[particle as usize] = data[0];
+                particles.push(data[1]);
+            }
+            Self::Died { particle, .. } => {
+                particles.remove(particle as usize);
             }
             _ => {}
         }

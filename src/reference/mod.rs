@@ -2,11 +2,12 @@
 //! every event.
 //!
 //! Each block stands under the paper's own number. §4.2 to §4.4 with Algorithm 2 are in `uniform`, §4.3 in `surface`, §4.5 in
-//! `relaxation`, §5 in `adaptive`. What the paper discusses or leaves open is an option ([`Settings`]). Nothing here is made for speed, and a run
+//! `relaxation`, §5 in `adaptive`. The two particle systems that the paper compares them with are beside them: the general scheme of
+//! §3 in `system`, what each makes of it in `witkin_heckbert` and `forces` (§6, Table 1). What the paper discusses or leaves open is an option ([`Settings`]). Nothing here is made for speed, and a run
 //! has at most [`MAX_PARTICLES`] particles. The tests hold the fast fronts to it, particle by particle.
 //!
-//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps. Before each chapter a
-//! snapshot is taken. The events of a chapter are not kept: they are made again from its snapshot, which gives the same events
+//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle system.
+//! Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they are made again from its snapshot, which gives the same events
 //! to the last bit. So [`Reference::seek`] goes to any event, forwards or backwards.
 //!
 //! ```
@@ -38,21 +39,27 @@
 mod adaptive;
 mod buckets;
 mod event;
+mod felt;
+mod forces;
 mod gaps;
 mod outlook;
 mod relaxation;
 mod run;
 mod section;
 mod settings;
+mod snapshots;
 mod state;
 mod surface;
+mod system;
 mod uniform;
 mod walk;
+mod witkin_heckbert;
 
 pub use event::{Event, Nearby, Vector};
 pub use section::Iterate;
 pub use settings::{
-    LessonField, MAX_PARTICLES, Matched, Order, Placing, Projection, ReferenceError, Seeding, Settings, Start,
+    LessonField, MAX_PARTICLES, Matched, Method, Order, Placing, Projection, ReferenceError, Seeding,
+    Settings, Start,
 };
 pub use state::{Particle, digest};
 pub use walk::ChapterKind;
@@ -60,9 +67,12 @@ pub use walk::ChapterKind;
 use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::{FateCounts, Sampling};
+use glam::DVec3;
 use outlook::{look_around, shuffled};
 use serde::Serialize;
+use snapshots::Snapshots;
 use surface::Surface;
+use system::QUIET;
 use walk::{Place, Setup, Walk};
 
 /// A part of a run, before which a snapshot is taken.
@@ -82,10 +92,14 @@ pub struct Chapter {
     pub after: u32,
     /// Number of proposed children by fate.
     pub fates: FateCounts,
-    /// Energy per particle when it ends; of relaxation steps only.
+    /// Energy per particle when a relaxation step ends, or when an iteration of a particle system begins.
     pub energy: Option<f64>,
-    /// Longest move, in radii; of relaxation steps only.
+    /// Longest move, in radii, of relaxation steps and iterations.
     pub largest_move: Option<f64>,
+    /// Particles that have divided.
+    pub fissions: u32,
+    /// Particles that have died.
+    pub deaths: u32,
     /// Whether it is over.
     pub is_over: bool,
 }
@@ -102,6 +116,10 @@ pub struct Progress {
     pub particles: u32,
     /// Evaluations of the field so far.
     pub evaluations: u64,
+    /// Relaxation steps, or iterations of a particle system, that are over.
+    pub steps: u32,
+    /// Whether a particle system has come to rest.
+    pub is_settled: bool,
     /// Whether the limit on particles was reached.
     pub is_capped: bool,
     /// Whether the run has ended.
@@ -118,14 +136,6 @@ pub struct Life {
     pub taken: Option<u32>,
     /// It was marked as done.
     pub done: Option<u32>,
-}
-
-/// State of the run at the beginning of a chapter. The way back restores it and replays the events that follow.
-enum Snapshot {
-    /// The first so many particles, as they were placed: until the relaxation nothing moves.
-    Placed(Place, usize),
-    /// All particles.
-    Whole(Place, Vec<Particle>),
 }
 
 /// What is looked at.
@@ -148,7 +158,7 @@ pub struct Reference {
     /// Events of the chapter under way.
     log: Vec<Event>,
     chapters: Vec<Chapter>,
-    snapshots: Vec<Snapshot>,
+    snapshots: Snapshots,
     lives: Vec<Life>,
     is_done: bool,
     view: View,
@@ -166,8 +176,9 @@ impl Reference {
             return Err(ReferenceError::Box);
         }
         let mut surface = Surface { field, bounds: *bounds, evaluations: 0 };
-        let mut setup = Setup { settings: settings.clone(), candidates: Vec::new() };
         let outlook = look_around(&mut surface);
+        let diameter = extent(outlook.iter().map(|part| part.point));
+        let mut setup = Setup { settings: settings.clone(), candidates: Vec::new(), diameter };
         let cell = |radius: f64| 2.0 * SQRT_3 * radius * radius;
         let expected: f64 = outlook
             .iter()
@@ -193,12 +204,12 @@ impl Reference {
             settings.seeds.iter().map(|&seed| seed.into()).collect()
         };
         Ok(Self {
-            walk: Walk::at(&setup, Place::default(), Vec::new()),
+            walk: Walk::at(&setup, Place::new(settings.seed), Vec::new()),
             setup,
             surface,
             log: Vec::new(),
             chapters: Vec::new(),
-            snapshots: Vec::new(),
+            snapshots: Snapshots::new(),
             lives: Vec::new(),
             is_done: false,
             view: View::default(),
@@ -235,6 +246,8 @@ impl Reference {
             events: self.events_so_far(),
             particles: self.walk.particles.len() as u32,
             evaluations: self.walk.place.evaluations,
+            steps: self.walk.place.steps,
+            is_settled: self.walk.place.quiet >= QUIET,
             is_capped: self.walk.place.is_capped,
             is_done: self.is_done,
         }
@@ -281,13 +294,18 @@ impl Reference {
         if self.chapters.is_empty() {
             return 0;
         }
+        if event == self.events_so_far() {
+            // The end is at hand.
+            self.view = View { at: event, particles: self.walk.particles.clone(), ..View::default() };
+            return event;
+        }
         // The end of a chapter is looked at as its end, not as the beginning of the next one.
         let chapter = self.chapter_of(event.saturating_sub(1));
         let is_ahead = self.view.chapter == Some(chapter) && event >= self.view.at;
         self.open(chapter);
         let first = self.chapters[chapter].first_event;
         if !is_ahead || self.view.at < first {
-            self.view.particles = self.particles_before(chapter);
+            self.view.particles = self.walk_to(chapter).particles;
             self.view.at = first;
         }
         for k in self.view.at..event {
@@ -322,10 +340,13 @@ impl Reference {
             self.is_done = true;
             return;
         };
-        self.snapshots.push(match kind {
-            ChapterKind::Relaxation { .. } => Snapshot::Whole(place, self.walk.particles.clone()),
-            _ => Snapshot::Placed(place, before),
-        });
+        match kind {
+            ChapterKind::Relaxation { .. } | ChapterKind::Iteration { .. } => {
+                // The first iteration begins with the seed, which its events add.
+                self.snapshots.add_moving(place, &self.walk.particles[..before]);
+            }
+            _ => self.snapshots.add_placed(place, before),
+        }
         self.chapters.push(Chapter {
             kind,
             first_event: self.events_so_far(),
@@ -335,6 +356,8 @@ impl Reference {
             fates: FateCounts::default(),
             energy: None,
             largest_move: None,
+            fissions: 0,
+            deaths: 0,
             is_over: false,
         });
     }
@@ -342,14 +365,23 @@ impl Reference {
     /// Brings what is said of the last chapter up to date with its events.
     fn close_chapter(&mut self, is_over: bool) {
         let after = self.walk.particles.len();
-        self.lives.resize(after, Life::default());
         let Some(chapter) = self.chapters.last_mut() else { return };
         for (event, number) in
             self.log[chapter.events as usize..].iter().zip(chapter.first_event + chapter.events..)
         {
             match *event {
-                Event::Seed { particle, .. } | Event::Added { particle, .. } => {
-                    self.lives[particle as usize].born = Some(number);
+                Event::Seed { .. } | Event::Added { .. } => {
+                    self.lives.push(Life { born: Some(number), ..Life::default() });
+                }
+                Event::Divided { particle, .. } => {
+                    let life = Life { born: Some(number), ..Life::default() };
+                    self.lives[particle as usize] = life;
+                    self.lives.push(life);
+                    chapter.fissions += 1;
+                }
+                Event::Died { particle, .. } => {
+                    self.lives.remove(particle as usize);
+                    chapter.deaths += 1;
                 }
                 Event::Taken { particle } => self.lives[particle as usize].taken = Some(number),
                 Event::Done { particle, .. } => self.lives[particle as usize].done = Some(number),
@@ -357,6 +389,8 @@ impl Reference {
                 Event::StepEnds { energy, largest_move, .. } => {
                     (chapter.energy, chapter.largest_move) = (Some(energy), Some(largest_move));
                 }
+                Event::IterationBegins { energy, .. } => chapter.energy = Some(energy),
+                Event::IterationEnds { largest_move, .. } => chapter.largest_move = Some(largest_move),
                 _ => {}
             }
         }
@@ -386,34 +420,67 @@ impl Reference {
 
     /// Makes the events of a chapter that is over again.
     fn replay(&mut self, chapter: usize) -> Vec<Event> {
-        let place = match &self.snapshots[chapter] {
-            Snapshot::Placed(place, _) | Snapshot::Whole(place, _) => place.clone(),
-        };
-        let mut walk = Walk::at(&self.setup, place, self.particles_before(chapter));
+        let mut walk = self.walk_to(chapter);
         let mut log = Vec::with_capacity(self.chapters[chapter].events as usize);
-        if walk.begin_chapter(&mut self.surface, &self.setup, &mut log).is_some() {
-            while !walk.work(&mut self.surface, &self.setup, &mut log) {}
-        }
+        walk.do_chapter(&mut self.surface, &self.setup, &mut log);
         debug_assert_eq!(log.len(), self.chapters[chapter].events as usize, "a replay gives the same events");
         log
     }
 
-    /// The particles at the beginning of a chapter.
-    fn particles_before(&self, chapter: usize) -> Vec<Particle> {
-        match &self.snapshots[chapter] {
-            Snapshot::Whole(_, particles) => particles.clone(),
-            Snapshot::Placed(place, count) => {
-                let whole = self.snapshots[chapter..].iter().find_map(|snapshot| match snapshot {
-                    Snapshot::Whole(_, particles) => Some(particles),
-                    Snapshot::Placed(..) => None,
-                });
-                let mut particles = whole.unwrap_or(&self.walk.particles)[..*count].to_vec();
-                for &waiting in &place.waiting {
-                    let particle = &mut particles[waiting as usize];
-                    *particle = particle.untreated();
-                }
-                particles
-            }
+    /// The run at the beginning of a chapter.
+    fn walk_to(&mut self, chapter: usize) -> Walk {
+        let (from, place, particles) = self.snapshots.before(chapter, &self.walk.particles);
+        let mut walk = Walk::at(&self.setup, place, particles);
+        let mut log = Vec::new();
+        for _ in from..chapter {
+            walk.do_chapter(&mut self.surface, &self.setup, &mut log);
+            log.clear();
         }
+        walk
+    }
+}
+
+/// Length of the diagonal of the box around some points; 0 if there is none.
+fn extent(points: impl Iterator<Item = DVec3>) -> f64 {
+    let infinite = DVec3::splat(f64::INFINITY);
+    let (lo, hi) = points.fold((infinite, -infinite), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    (hi - lo).max(DVec3::ZERO).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::snapshots::Snapshots;
+    use super::{Event, Method, Reference, Settings, digest};
+    use crate::field::gallery;
+
+    #[test]
+    fn back_is_exact_where_most_snapshots_have_been_dropped() {
+        let sphere = gallery::find("sphere").expect("a surface of the gallery");
+        let settings = Settings {
+            method: Method::WitkinHeckbert,
+            radius: 0.15,
+            max_iterations: 100,
+            ..Settings::default()
+        };
+        let start =
+            || Reference::new(Box::new(sphere.field()), &sphere.bounds, &settings).expect("valid settings");
+        let (mut all, mut few) = (start(), start());
+        few.snapshots = Snapshots::with_most(1_000);
+        while !all.step(1_000).is_done {}
+        while !few.step(1_000).is_done {}
+        assert_eq!(all.progress(), few.progress());
+        let kept = few.snapshots.kept();
+        assert!(kept * 5 < all.snapshots.kept(), "{kept} of {} are kept", all.snapshots.kept());
+        let events = all.events(0, u32::MAX);
+        assert!(events == few.events(0, u32::MAX));
+        let mut particles = Vec::new();
+        for (k, event) in events.iter().enumerate() {
+            if k % 997 == 0 {
+                few.seek(k as u32);
+                assert_eq!(digest(few.particles()), digest(&particles), "event {k}");
+            }
+            event.apply(&mut particles);
+        }
+        assert!(events.iter().any(|event| matches!(event, Event::Divided { .. })));
     }
 }

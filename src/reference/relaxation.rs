@@ -12,13 +12,13 @@ use glam::DVec3;
 const RANGE: f64 = 3.0;
 
 /// Discs of many sizes push each other up to this distance, in r_i + r_j: discs that barely touch would not push into gaps.
-const OVERLAP_REACH: f64 = 1.15;
+pub(super) const OVERLAP_REACH: f64 = 1.15;
 
 /// Size of a relaxation step in uniform sampling: large enough to mend local faults in ten steps, and stable.
 const STEP: f64 = 0.6;
 
 /// Size of a relaxation step in non-uniform sampling.
-const OVERLAP_STEP: f64 = 0.33;
+pub(super) const OVERLAP_STEP: f64 = 0.33;
 
 /// A particle moves by no more than this in a step, in radii.
 const MAX_MOVE: f64 = 0.35;
@@ -38,7 +38,7 @@ fn gaussian(distance: f64, sigma: f64) -> (f64, f64) {
 
 /// Force over offset, and energy, of two discs whose radii add up to `both`: they push each other apart by their overlap. The paper
 /// gives no formula.
-fn overlap(distance: f64, both: f64) -> (f64, f64) {
+pub(super) fn overlap(distance: f64, both: f64) -> (f64, f64) {
     let overlap = (OVERLAP_REACH * both - distance).max(0.0);
     let share = 2.0 * overlap / both;
     // Two particles at one position have no direction to move apart in.

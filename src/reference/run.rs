@@ -1,11 +1,10 @@
 //! The course of a run: which chapter comes next, and the units of work in it.
 
 use super::event::Event;
-use super::settings::{Order, Placing, Seeding};
+use super::settings::{Method, Order, Placing, Seeding};
 use super::state::Particle;
 use super::surface::{Landing, Surface};
 use super::walk::{ChapterKind, Setup, Walk};
-use crate::particles::Slots;
 use crate::sampler::{GapPolicy, Sampling};
 
 /// With a stack there are no rings: a chapter is this many particles.
@@ -23,6 +22,13 @@ impl Walk {
         self.kind.is_some()
     }
 
+    /// Does a whole chapter.
+    pub(super) fn do_chapter(&mut self, surface: &mut Surface, setup: &Setup, log: &mut Vec<Event>) {
+        if self.begin_chapter(surface, setup, log).is_some() {
+            while !self.work(surface, setup, log) {}
+        }
+    }
+
     /// Begins the next chapter; `None` at the end of the run.
     pub(super) fn begin_chapter(
         &mut self,
@@ -31,10 +37,24 @@ impl Walk {
         log: &mut Vec<Event>,
     ) -> Option<ChapterKind> {
         surface.evaluations = self.place.evaluations;
+        self.kind = match setup.settings.method {
+            Method::Front => self.begin_part_of_front(surface, setup, log),
+            Method::WitkinHeckbert | Method::Forces => self.begin_iteration(surface, setup, log),
+        };
+        self.place.evaluations = surface.evaluations;
+        self.kind
+    }
+
+    fn begin_part_of_front(
+        &mut self,
+        surface: &mut Surface,
+        setup: &Setup,
+        log: &mut Vec<Event>,
+    ) -> Option<ChapterKind> {
         if self.place.waiting.is_empty() && !self.place.is_capped {
             self.add_seeds(surface, setup, log);
         }
-        self.kind = if !self.place.waiting.is_empty() {
+        if !self.place.waiting.is_empty() {
             Some(self.begin_level(setup, log))
         } else if setup.settings.gaps == GapPolicy::Fill
             && !self.place.is_filled
@@ -49,9 +69,7 @@ impl Walk {
             Some(ChapterKind::Relaxation { step: self.place.steps + 1 })
         } else {
             None
-        };
-        self.place.evaluations = surface.evaluations;
-        self.kind
+        }
     }
 
     fn begin_level(&mut self, setup: &Setup, log: &mut Vec<Event>) -> ChapterKind {
@@ -112,6 +130,7 @@ impl Walk {
                     self.end_step(setup, log);
                 }
             }
+            Some(ChapterKind::Iteration { .. }) => self.iterate(surface, setup, log),
         }
         self.place.evaluations = surface.evaluations;
         let is_over = self.left == 0 && self.children.is_empty();
@@ -122,7 +141,7 @@ impl Walk {
     }
 
     /// Puts the next seed that no particle covers into the queue, or all of them.
-    fn add_seeds(&mut self, surface: &mut Surface, setup: &Setup, log: &mut Vec<Event>) {
+    pub(super) fn add_seeds(&mut self, surface: &mut Surface, setup: &Setup, log: &mut Vec<Event>) {
         let first = self.place.fronts;
         while let Some(&candidate) = setup.candidates.get(self.place.candidate) {
             self.place.candidate += 1;
@@ -148,16 +167,7 @@ impl Walk {
                 continue;
             }
             let particle = self.particles.len() as u32;
-            let data = Particle {
-                position: position.to_array(),
-                normal: normal.to_array(),
-                radius: r,
-                parent: None,
-                level: 0,
-                front: self.place.fronts,
-                slots: Slots::default(),
-                is_done: false,
-            };
+            let data = Particle::seed(position, normal, r, self.place.fronts);
             self.particles.push(data);
             self.buckets.insert(position, particle);
             self.place.waiting.push_back(particle);

@@ -20,6 +20,19 @@ pub struct LessonField {
     pub bounds: Bounds,
 }
 
+/// Which method covers the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMethod"))]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The paper's own: a front of particles, each of which places its neighbours, and a few relaxation steps.
+    Front,
+    /// The particle system that the paper compares its uniform sampling with (Table 1): that of Witkin and Heckbert 1994.
+    WitkinHeckbert,
+    /// The particle system that the paper compares its non-uniform sampling with (Table 1): forces between discs.
+    Forces,
+}
+
 /// How a child is moved onto the surface (§4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonProjection"))]
@@ -92,6 +105,9 @@ pub enum Seeding {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
 pub struct Settings {
+    /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds, `residual`,
+    /// `max_iterations` and `max_particles`.
+    pub method: Method,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
     #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]
     pub sampling: Sampling,
@@ -105,7 +121,8 @@ pub struct Settings {
     pub law_scale: f64,
     /// Smallest radius of an adaptive particle, a length.
     pub radius_min: f64,
-    /// Largest radius of an adaptive particle, a length.
+    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius at
+    /// which a particle divides whatever it feels; 0 has it measured.
     pub radius_max: f64,
     /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
     /// them as they are, which is 1: on a lattice, where the two are equal, rounding then decides.
@@ -137,6 +154,8 @@ pub struct Settings {
     pub relax_steps: u32,
     /// Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive.
     pub step_size: Option<f64>,
+    /// A particle system that has not come to rest after so many iterations ends all the same.
+    pub max_iterations: u32,
     /// The run stops at this many particles, at most [`MAX_PARTICLES`].
     pub max_particles: u32,
 }
@@ -144,6 +163,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            method: Method::Front,
             sampling: Sampling::Uniform,
             radius: 0.0,
             law: LawKind::SumOfCurvatures,
@@ -165,6 +185,7 @@ impl Default for Settings {
             residual: 1e-4,
             relax_steps: 10,
             step_size: None,
+            max_iterations: 3_000,
             max_particles: MAX_PARTICLES,
         }
     }
@@ -189,6 +210,7 @@ impl Settings {
             ("residual", self.residual, 1e-10, 0.01),
             ("relax_steps", f64::from(self.relax_steps), 0.0, 100.0),
             ("step_size", self.step_size.unwrap_or_default(), 0.0, 3.0),
+            ("max_iterations", f64::from(self.max_iterations), 1.0, 1e4),
             ("max_particles", f64::from(self.max_particles), 1.0, limit),
         ];
         let sizes = match self.sampling {
@@ -205,13 +227,21 @@ impl Settings {
                 return Err(ReferenceError::OutOfRange { name, value, min, max });
             }
         }
+        match (self.method, self.sampling) {
+            (Method::WitkinHeckbert, Sampling::Adaptive) => return Err(ReferenceError::OneSize),
+            (Method::WitkinHeckbert, _) if !(0.0..=f64::MAX).contains(&self.radius_max) => {
+                let (name, value) = ("radius_max", self.radius_max);
+                return Err(ReferenceError::OutOfRange { name, value, min: 0.0, max: f64::MAX });
+            }
+            _ => {}
+        }
         if self.placing == Placing::LevelByLevel
             && (self.order, self.projection, self.matched)
                 != (Order::Queue, Projection::Circle, Matched::Stay)
         {
             return Err(ReferenceError::Levels);
         }
-        if self.sampling == Sampling::Adaptive
+        if (self.method, self.sampling) == (Method::Front, Sampling::Adaptive)
             && (self.placing, self.projection, self.gaps)
                 != (Placing::OneByOne, Projection::Circle, GapPolicy::Leave)
         {
@@ -245,6 +275,9 @@ pub enum ReferenceError {
     /// Placing level by level goes with one choice of the others.
     #[error("placing level by level needs a queue, the circle, and matched particles that stay")]
     Levels,
+    /// The system of Witkin and Heckbert wants one size.
+    #[error("Witkin and Heckbert's system wants one radius everywhere: choose uniform sampling, or forces")]
+    OneSize,
     /// Adaptive sampling goes with one choice of some others.
     #[error("adaptive sampling places one particle after the other, on circles, and leaves gaps")]
     Adaptive,

@@ -14,9 +14,9 @@ pub struct Particle {
     pub normal: [f64; 3],
     /// Repulsion radius.
     pub radius: f64,
-    /// The particle that placed it; none for a seed.
+    /// The particle that placed it; none for a seed and in particle systems, where no index lasts.
     pub parent: Option<u32>,
-    /// Generation level.
+    /// Generation level; in a particle system the number of fissions since the first particle.
     pub level: u32,
     /// Number of the front: that of its seed, from 0.
     pub front: u32,
@@ -26,9 +26,27 @@ pub struct Particle {
     /// Whether its children have been placed.
     #[serde(skip)]
     pub is_done: bool,
+    /// Signed distance f/|∇f| from the surface, to first order. Only Witkin and Heckbert's particles are beside it for long.
+    #[serde(skip)]
+    pub(super) height: f64,
 }
 
 impl Particle {
+    /// A particle on the surface that no other has placed.
+    pub(super) fn seed(position: DVec3, normal: DVec3, radius: f64, front: u32) -> Self {
+        Self {
+            position: position.to_array(),
+            normal: normal.to_array(),
+            radius,
+            parent: None,
+            level: 0,
+            front,
+            slots: Slots::default(),
+            is_done: false,
+            height: 0.0,
+        }
+    }
+
     /// Position as a vector.
     #[must_use]
     pub fn p(&self) -> DVec3 {

@@ -4,12 +4,15 @@
 
 use super::buckets::Buckets;
 use super::event::Event;
+use super::felt::Felt;
 use super::settings::Settings;
 use super::state::Particle;
 use super::surface::{Circle, Surface};
 use crate::particles::{SlotFate, Slots};
 use crate::sampler::{LawKind, Sampling};
 use glam::DVec3;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
 use serde::Serialize;
 use std::collections::VecDeque;
 
@@ -39,6 +42,11 @@ pub enum ChapterKind {
         /// Number of the step, from 1.
         step: u32,
     },
+    /// An iteration of a particle system.
+    Iteration {
+        /// Number of the iteration, from 1.
+        iteration: u32,
+    },
 }
 
 /// What a run is given and never changes.
@@ -46,6 +54,8 @@ pub(super) struct Setup {
     pub(super) settings: Settings,
     /// Points of the surface at which fronts may begin, in the order in which they are tried.
     pub(super) candidates: Vec<DVec3>,
+    /// Diagonal of the box around the surface.
+    pub(super) diameter: f64,
 }
 
 impl Setup {
@@ -108,7 +118,7 @@ impl Setup {
 }
 
 /// All of a run that is small: what a snapshot holds beside the particles.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Place {
     /// The particles that are not done, the next one first.
     pub(super) waiting: VecDeque<u32>,
@@ -124,10 +134,42 @@ pub(super) struct Place {
     pub(super) is_filled: bool,
     /// Whether the limit on particles was reached.
     pub(super) is_capped: bool,
-    /// Relaxation steps done.
+    /// Relaxation steps or iterations done.
     pub(super) steps: u32,
+    /// Consecutive iterations of rest.
+    pub(super) quiet: u32,
+    /// Particles that have divided.
+    pub(super) fissions: u32,
+    /// Particles that have died.
+    pub(super) deaths: u32,
+    /// What decides deaths and the directions of fissions.
+    pub(super) random: Pcg32,
     /// Evaluations of the field.
     pub(super) evaluations: u64,
+}
+
+impl Place {
+    /// The beginning of a run.
+    pub(super) fn new(seed: u32) -> Self {
+        let mut random = Pcg32::seed_from_u64(u64::from(seed));
+        // The first number has chosen the seed.
+        random.next_u64();
+        Self {
+            waiting: VecDeque::new(),
+            candidate: 0,
+            fronts: 0,
+            part: 0,
+            seams: Vec::new(),
+            is_filled: false,
+            is_capped: false,
+            steps: 0,
+            quiet: 0,
+            fissions: 0,
+            deaths: 0,
+            random,
+            evaluations: 0,
+        }
+    }
 }
 
 /// A child that is predicted and not projected yet.
@@ -154,6 +196,10 @@ pub(super) struct Walk {
     pub(super) children: VecDeque<Child>,
     /// Forces of the relaxation step.
     pub(super) forces: Vec<DVec3>,
+    /// What the particles feel in an iteration of a particle system.
+    pub(super) felt: Vec<Felt>,
+    /// Particles that die at the end of the iteration, by index.
+    pub(super) dying: Vec<u32>,
     pub(super) largest_move: f64,
 }
 
@@ -168,6 +214,8 @@ impl Walk {
             left: 0,
             children: VecDeque::new(),
             forces: Vec::new(),
+            felt: Vec::new(),
+            dying: Vec::new(),
             largest_move: 0.0,
         }
     }
@@ -192,6 +240,7 @@ impl Walk {
             front,
             slots: Slots::default(),
             is_done: false,
+            height: 0.0,
         };
         self.particles.push(data);
         self.buckets.insert(position, particle);

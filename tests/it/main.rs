@@ -45,3 +45,4 @@ mod session;
 mod shaders;
 mod sizing;
 mod smooth;
+mod systems;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::reference::{
-    ChapterKind, Event, LessonField, Matched, Order, Particle, Placing, Projection, Reference,
+    ChapterKind, Event, LessonField, Matched, Method, Order, Particle, Placing, Projection, Reference,
     ReferenceError, Seeding, Settings, digest,
 };
 use marching_particles::sampler::{GapPolicy, LawKind, Sampling};
@@ -43,7 +43,7 @@ fn adaptive() -> Settings {
     }
 }
 
-fn all_settings() -> [Settings; 6] {
+fn all_settings() -> [Settings; 8] {
     [
         coarse(),
         adaptive(),
@@ -51,6 +51,8 @@ fn all_settings() -> [Settings; 6] {
         Settings { order: Order::Stack, matched: Matched::Stay, ..coarse() },
         Settings { projection: Projection::Newton, ..coarse() },
         Settings { seeds: vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], seeding: Seeding::Together, ..coarse() },
+        Settings { method: Method::WitkinHeckbert, radius: 0.12, max_iterations: 60, ..Settings::default() },
+        Settings { method: Method::Forces, max_iterations: 60, ..adaptive() },
     ]
 }
 
@@ -330,6 +332,11 @@ fn what_cannot_be_followed_is_refused_in_words() {
     assert!(
         refused(Settings { gaps: GapPolicy::Fill, ..adaptive() }).starts_with("adaptive sampling places")
     );
+    let two_sizes = Settings { method: Method::WitkinHeckbert, ..adaptive() };
+    assert!(refused(two_sizes).contains("one radius everywhere"));
+    let negative = Settings { method: Method::WitkinHeckbert, radius_max: -1.0, ..coarse() };
+    assert!(refused(negative).starts_with("radius_max is -1"));
+    assert!(refused(Settings { max_iterations: 0, ..coarse() }).starts_with("max_iterations is 0"));
     assert!(refused(Settings { radius_min: 0.5, ..adaptive() }).starts_with("radius_min is 0.5"));
     let tiny = Settings { law_scale: 1e-3, radius_min: 1e-3, ..adaptive() };
     assert!(refused(tiny).contains("choose radii"));

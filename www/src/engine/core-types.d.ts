@@ -316,10 +316,14 @@ export type LessonChapter = {
   after: number,
   /** Number of proposed children by fate. */
   fates: FateCounts,
-  /** Energy per particle when it ends; of relaxation steps only. */
+  /** Energy per particle when a relaxation step ends, or when an iteration of a particle system begins. */
   energy: number | null,
-  /** Longest move, in radii; of relaxation steps only. */
+  /** Longest move, in radii, of relaxation steps and iterations. */
   largest_move: number | null,
+  /** Particles that have divided. */
+  fissions: number,
+  /** Particles that have died. */
+  deaths: number,
   /** Whether it is over. */
   is_over: boolean, } & ({ "kind": "level",
   /** Number of the front. */
@@ -331,10 +335,12 @@ export type LessonChapter = {
   /** Number of the part, from 0. */
   part: number, } | { "kind": "filling" } | { "kind": "relaxation",
   /** Number of the step, from 1. */
-  step: number, });
+  step: number, } | { "kind": "iteration",
+  /** Number of the iteration, from 1. */
+  iteration: number, });
 
-/** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`] and [`Event::Moved`] change the particles; the
-* others tell why. */
+/** An event. [`Event::Seed`], [`Event::Added`], [`Event::Fate`], [`Event::Done`], [`Event::Moved`], [`Event::Divided`] and
+* [`Event::Died`] change the particles; the others tell why. */
 export type LessonEvent = { "type": "seed",
 /** Index of the seed. */
 particle: number,
@@ -496,7 +502,7 @@ energy: number, } | { "type": "moved",
 particle: number,
 /** Sum of the repulsion, in the tangent plane; the step size times it is the move. */
 force: [number, number, number],
-/** Where the move leads, in the tangent plane. */
+/** Where the move leads, in the tangent plane; in Witkin and Heckbert's system with the way back to the surface. */
 target: [number, number, number],
 /** The place on the surface. */
 position: [number, number, number],
@@ -511,7 +517,33 @@ step: number,
 /** Energy per particle after it. */
 energy: number,
 /** Longest move, in radii. */
-largest_move: number, };
+largest_move: number, } | { "type": "iteration_begins",
+/** Number of the iteration, from 1. */
+iteration: number,
+/** Particles. */
+particles: number,
+/** Mean of what their neighbours make them feel: an energy, or a sum of squared overlaps. */
+energy: number, } | { "type": "divided",
+/** The particle, whose place one child takes. */
+particle: number,
+/** Index of the other child. */
+child: number,
+/** Columns of both. */
+data: [LessonParticle, LessonParticle],
+/** What the particle felt. */
+energy: number, } | { "type": "died",
+/** The particle. */
+particle: number,
+/** What it felt. */
+energy: number, } | { "type": "iteration_ends",
+/** Number of the iteration, from 1. */
+iteration: number,
+/** Particles. */
+particles: number,
+/** Longest move, in radii. */
+largest_move: number,
+/** Mean move, in radii: the system has settled once this is small and nothing divides or dies for a while. */
+mean_move: number, };
 
 /** A surface given by a formula, as the page knows it. */
 export type LessonField = {
@@ -546,6 +578,9 @@ export type LessonLife = {
 /** What becomes of a particle with which a child was identified (§4.4). */
 export type LessonMatched = "leave" | "stay";
 
+/** Which method covers the surface. */
+export type LessonMethod = "front" | "witkin_heckbert" | "forces";
+
 /** A particle near another one. */
 export type LessonNearby = {
   /** Its index. */
@@ -565,9 +600,9 @@ export type LessonParticle = {
   normal: [number, number, number],
   /** Repulsion radius. */
   radius: number,
-  /** The particle that placed it; none for a seed. */
+  /** The particle that placed it; none for a seed and in particle systems, where no index lasts. */
   parent: number | null,
-  /** Generation level. */
+  /** Generation level; in a particle system the number of fissions since the first particle. */
   level: number,
   /** Number of the front: that of its seed, from 0. */
   front: number,
@@ -586,6 +621,10 @@ export type LessonProgress = {
   particles: number,
   /** Evaluations of the field so far. */
   evaluations: number,
+  /** Relaxation steps, or iterations of a particle system, that are over. */
+  steps: number,
+  /** Whether a particle system has come to rest. */
+  is_settled: boolean,
   /** Whether the limit on particles was reached. */
   is_capped: boolean,
   /** Whether the run has ended. */
@@ -600,6 +639,9 @@ export type LessonSeeding = "one_by_one" | "together";
 
 /** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
 export type LessonSettings = {
+  /** Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds, `residual`,
+  * `max_iterations` and `max_particles`. */
+  method: LessonMethod,
   /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
   sampling: 'uniform' | 'adaptive',
   /** Repulsion radius r of every particle of uniform sampling, a length in the field's coordinates. */
@@ -611,7 +653,8 @@ export type LessonSettings = {
   law_scale: number,
   /** Smallest radius of an adaptive particle, a length. */
   radius_min: number,
-  /** Largest radius of an adaptive particle, a length. */
+  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius at
+  * which a particle divides whatever it feels; 0 has it measured. */
   radius_max: number,
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
   * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
@@ -642,6 +685,8 @@ export type LessonSettings = {
   relax_steps: number,
   /** Size of a relaxation step. If it is not given: 0.6 σ² with σ = r in uniform sampling, 0.33 of the overlap in adaptive. */
   step_size: number | null,
+  /** A particle system that has not come to rest after so many iterations ends all the same. */
+  max_iterations: number,
   /** The run stops at this many particles, at most [`MAX_PARTICLES`]. */
   max_particles: number,
 };

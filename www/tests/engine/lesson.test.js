@@ -18,6 +18,8 @@ const progressOf = (events, done = false) => ({
   particles: 1,
   evaluations: events,
   is_capped: false,
+  is_settled: false,
+  steps: 0,
   is_done: done,
 });
 

@@ -1,0 +1,31 @@
+//! What an iteration of a particle system knows of a particle beside its place.
+
+use super::state::Particle;
+use glam::DVec3;
+
+/// A particle moves by no more than this in an iteration, in radii.
+pub(super) const MAX_MOVE: f64 = 0.35;
+
+/// What the neighbours of a particle make it feel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Felt {
+    /// Sum of the repulsion.
+    pub(super) force: DVec3,
+    /// How compressed it is: D_i of Witkin and Heckbert, or Σ (overlap / mean radius)².
+    pub(super) energy: f64,
+    /// Σ |r_ij|² E_ij, which tells how D_i changes with σ_i.
+    pub(super) moment: f64,
+    /// Whether it is near equilibrium.
+    pub(super) is_at_rest: bool,
+    /// Distance that it has moved, in radii.
+    pub(super) moved: f64,
+}
+
+/// A place to which a particle moves.
+pub(super) struct Step {
+    /// What has driven it.
+    pub(super) force: DVec3,
+    pub(super) target: DVec3,
+    /// The particle there; none if it cannot go: at the border of the box, where the field ends, at a fold.
+    pub(super) arrived: Option<Particle>,
+}

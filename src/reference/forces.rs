@@ -1,0 +1,74 @@
+//! Particles of many sizes: the "scheme based on forces" that the paper compares its non-uniform sampling with (§6, Table 1).
+//!
+//! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is applied
+//! on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception of the
+//! split criterion)": forces, step and landing are those of `relaxation`.
+//!
+//! # Differs from the paper
+//!
+//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in a
+//!   lattice with 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's system, so that one squeezed
+//!   into the last gap is removed again.
+//! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
+//! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
+
+use super::felt::{Felt, MAX_MOVE, Step};
+use super::relaxation::{OVERLAP_REACH, OVERLAP_STEP, overlap};
+use super::state::Particle;
+use super::surface::{Landing, Surface};
+use super::walk::Setup;
+
+/// A disc meets those that are not larger within this many radii.
+pub(super) const RANGE: f64 = 2.0 * OVERLAP_REACH;
+
+/// A particle that has moved by less than this, in radii, is at rest: γΔt of Witkin and Heckbert.
+pub(super) const AT_REST: f64 = 0.12;
+
+/// Σ (overlap / mean radius)² below which a particle counts as free and divides: one overlap of a twentieth of the spacing.
+const FREE: f64 = 0.01;
+
+/// The same sum above which it may die: six neighbours at 0.7 of the spacing 2r.
+const CROWDED: f64 = {
+    let overlap = 2.0 * (OVERLAP_REACH - 0.7);
+    6.0 * overlap * overlap
+};
+
+/// "Compute the energy", "compute the velocity": the overlap of two discs pushes both. A pair is met from the larger one.
+pub(super) fn feel(felt: &mut [Felt], (i, own): (usize, &Particle), (j, other): (usize, &Particle)) {
+    let is_met_here = other.radius < own.radius || other.radius == own.radius && j < i;
+    if !is_met_here {
+        return;
+    }
+    let offset = own.p() - other.p();
+    let (push, energy) = overlap(offset.length(), own.radius + other.radius);
+    felt[i].force += offset * push;
+    felt[j].force -= offset * push;
+    felt[i].energy += energy;
+    felt[j].energy += energy;
+}
+
+/// "Update the position": a step of the relaxation, and back onto the surface, with the radius there.
+pub(super) fn step(surface: &mut Surface, setup: &Setup, own: &Particle, felt: &Felt) -> Step {
+    let normal = own.n();
+    let force = felt.force - normal * normal.dot(felt.force);
+    let reach = MAX_MOVE * own.radius;
+    let target = own.p() + (force * OVERLAP_STEP).clamp_length_max(reach);
+    let arrived = match surface.land_by_newton(target, reach, setup.residual(own.radius), &mut |_| {}) {
+        Landing::On { position, normal: there } if surface.contains(position) && there.dot(normal) > 0.0 => {
+            let radius = setup.radius_at(surface, position).unwrap_or(own.radius);
+            Some(Particle { position: position.to_array(), normal: there.to_array(), radius, ..*own })
+        }
+        _ => None,
+    };
+    Step { force, target, arrived }
+}
+
+/// Whether a particle dies, given a random number in [0, 1).
+pub(super) fn dies(felt: &Felt, chance: f64) -> bool {
+    felt.is_at_rest && felt.energy > CROWDED && chance > CROWDED / felt.energy
+}
+
+/// Whether a particle divides.
+pub(super) fn divides(felt: &Felt) -> bool {
+    felt.is_at_rest && felt.energy < FREE
+}

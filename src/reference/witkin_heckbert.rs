@@ -1,0 +1,118 @@
+//! Particles of one size: A. P. Witkin and P. S. Heckbert, *Using Particles to Sample and Control Implicit Surfaces* (SIGGRAPH
+//! 1994), §4. The paper compares its uniform sampling with it (Table 1).
+//!
+//! The symbols are those of the source: σ is the radius of a particle, σ̂ the wanted one, r_ij = p_i − p_j.
+//!
+//! # Differs from the source
+//!
+//! * Energies are cut off at 3σ, where they are 1.1 % of α.
+//! * β has the unit of an inverse length. The unit here is d/2, and σ_max = d/2, where d is the diagonal of the box around the
+//!   surface, and no less than 2σ̂.
+//! * No particle moves farther than 0.35 σ in an iteration, and no radius changes by more than a factor of 2: with a time step that
+//!   is not small, a pair that has just divided could leave the surface, or get negative radii.
+
+use super::felt::{Felt, MAX_MOVE, Step};
+use super::state::Particle;
+use super::surface::Surface;
+use super::walk::Setup;
+use glam::DVec3;
+
+/// Energies reach as far as this, in σ.
+pub(super) const RANGE: f64 = 3.0;
+
+// The values of the source.
+/// Δt: time step.
+const TIME_STEP: f64 = 0.03;
+/// α: repulsion amplitude.
+const ALPHA: f64 = 6.0;
+/// Ê: wanted energy.
+const WANTED_ENERGY: f64 = 0.8 * ALPHA;
+/// ρ: feedback of the energy.
+const RHO: f64 = 15.0;
+/// φ: feedback of the distance from the surface.
+const PHI: f64 = 15.0;
+/// β: keeps the growth of a lone particle finite, in 1 / (d/2).
+const BETA: f64 = 10.0;
+/// γ: a particle slower than this, in σ per unit of time, is near equilibrium.
+const GAMMA: f64 = 4.0;
+/// ν: share of the wanted energy above which a large particle divides.
+const NU: f64 = 0.2;
+/// δ: share of σ̂ below which a particle may die.
+const DELTA: f64 = 0.7;
+
+/// Largest factor by which a radius changes in an iteration.
+const MAX_GROWTH: f64 = 2.0;
+/// Smallest σ, in σ̂: a particle as small dies with a probability of 13/14.
+const LEAST: f64 = 0.05;
+
+/// σ̂.
+fn wanted(setup: &Setup) -> f64 {
+    setup.radius()
+}
+
+/// σ_max, which is d/2.
+fn largest(setup: &Setup) -> f64 {
+    match setup.settings.radius_max {
+        0.0 => (0.5 * setup.diameter).max(wanted(setup)),
+        given => given,
+    }
+}
+
+/// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of particle i due to j, and its part of the
+/// velocities of both.
+///
+/// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source subtracts the two terms as printed; its
+/// erratum adds them. Every pair is met from both sides, each with its own σ.
+pub(super) fn feel(felt: &mut [Felt], (i, own): (usize, &Particle), (j, other): (usize, &Particle)) {
+    let offset = own.p() - other.p();
+    let sigma_sq = own.radius * own.radius;
+    let energy = ALPHA * libm::exp(-offset.length_squared() / (2.0 * sigma_sq));
+    felt[i].energy += energy;
+    felt[i].moment += offset.length_squared() * energy;
+    felt[i].force += offset * (energy / sigma_sq);
+    felt[j].force -= offset * (energy / sigma_sq);
+}
+
+/// "Compute the repulsion radius", "update the position": one time step.
+///
+/// σ̇ = −ρ (D − Ê) / (σ⁻³ Σⱼ |r_ij|² E_ij + β) brings D to Ê. ṗ is the part of P along the surface, less φ f ∇f/|∇f|², which leads
+/// back to the surface.
+pub(super) fn step(surface: &mut Surface, setup: &Setup, own: &mut Particle, felt: &mut Felt) -> Step {
+    let sigma = own.radius;
+    let normal = own.n();
+    let force = felt.force * (sigma * sigma);
+    let velocity = force - normal * (normal.dot(force) + PHI * own.height);
+    felt.is_at_rest = velocity.length() < GAMMA * sigma;
+
+    let stretch = felt.moment / (sigma * sigma * sigma);
+    let growth = RHO * (WANTED_ENERGY - felt.energy) / (stretch + BETA / largest(setup));
+    // The radius changes whether the particle can go or not.
+    own.radius = (sigma + growth * TIME_STEP)
+        .max(sigma / MAX_GROWTH)
+        .min(sigma * MAX_GROWTH)
+        .clamp(LEAST * wanted(setup), largest(setup));
+
+    let target = own.p() + (velocity * TIME_STEP).clamp_length_max(MAX_MOVE * sigma);
+    let sample = surface.sample(target);
+    let (height, there) = (sample.value / sample.slope, sample.gradient / sample.slope);
+    let can_go = height.is_finite() && surface.contains(target) && there.dot(normal) > 0.0;
+    let arrived = can_go.then(|| Particle {
+        position: target.to_array(),
+        normal: DVec3::to_array(&there),
+        height,
+        ..*own
+    });
+    Step { force, target, arrived }
+}
+
+/// Whether a particle dies: near equilibrium, σ < δσ̂, and a random number above σ/(δσ̂).
+pub(super) fn dies(setup: &Setup, own: &Particle, felt: &Felt, chance: f64) -> bool {
+    let share = own.radius / (DELTA * wanted(setup));
+    felt.is_at_rest && share < 1.0 && chance > share
+}
+
+/// Whether a particle divides: near equilibrium, and either σ ≥ σ_max, or D > νÊ and σ > σ̂.
+pub(super) fn divides(setup: &Setup, own: &Particle, felt: &Felt) -> bool {
+    let is_large = felt.energy > NU * WANTED_ENERGY && own.radius > wanted(setup);
+    felt.is_at_rest && (own.radius >= largest(setup) || is_large)
+}

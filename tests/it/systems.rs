@@ -1,0 +1,214 @@
+//! Tests of the two particle systems that the paper compares its methods with: they do what their sources say, and the fast ones of
+//! `baseline` do what those written for reading do.
+
+use marching_particles::baseline::{self, Baseline};
+use marching_particles::field::gallery;
+use marching_particles::reference::{Event, Method, Particle, Reference, Settings};
+use marching_particles::sampler::{LawKind, Sampling, Settings as Sizes};
+
+fn start(surface: &str, settings: &Settings) -> Reference {
+    let surface = gallery::find(surface).expect("a gallery surface");
+    Reference::new(Box::new(surface.field()), &surface.bounds, settings).expect("valid settings")
+}
+
+fn run(surface: &str, settings: &Settings) -> Reference {
+    let mut run = start(surface, settings);
+    while !run.step(10_000).is_done {}
+    run.seek(u32::MAX);
+    run
+}
+
+fn witkin_heckbert(radius: f64) -> Settings {
+    Settings { method: Method::WitkinHeckbert, radius, ..Settings::default() }
+}
+
+/// Radius of one size.
+const RADIUS: f64 = 0.04;
+
+/// Iterations in which both have the same particles on the sphere.
+const EQUAL_ITERATIONS: [(Sampling, u32); 2] = [(Sampling::Uniform, 30), (Sampling::Adaptive, 30)];
+
+fn forces() -> Settings {
+    Settings {
+        method: Method::Forces,
+        sampling: Sampling::Adaptive,
+        law: LawKind::MaxCurvature,
+        law_scale: 0.12,
+        radius_min: 0.03,
+        radius_max: 0.12,
+        ..Settings::default()
+    }
+}
+
+/// Distance from each particle to the nearest of its side, in r_i + r_j.
+fn nearest(particles: &[Particle]) -> Vec<f64> {
+    let apart = |a: &Particle, b: &Particle| a.p().distance(b.p()) / (a.radius + b.radius);
+    let others =
+        |i: usize| particles.iter().enumerate().filter(move |(j, _)| *j != i).map(|(_, other)| other);
+    (0..particles.len())
+        .map(|i| {
+            let own = &particles[i];
+            others(i)
+                .filter(|b| own.n().dot(b.n()) > 0.0)
+                .map(|b| apart(own, b))
+                .fold(f64::INFINITY, f64::min)
+        })
+        .collect()
+}
+
+#[test]
+fn one_particle_divides_until_the_surface_is_covered_and_all_is_at_rest() {
+    for (settings, least, most) in [(witkin_heckbert(0.12), 1.0, 1.35), (forces(), 0.65, 1.0)] {
+        let run = run("sphere", &settings);
+        let progress = run.progress();
+        assert!(progress.is_settled && !progress.is_capped, "{progress:?}");
+        let particles = run.particles();
+        // On the unit sphere the curvature is 1, so both have the radius 0.12.
+        let hexagons = 4.0 * core::f64::consts::PI / (2.0 * 3.0_f64.sqrt() * 0.12 * 0.12);
+        let share = particles.len() as f64 / hexagons;
+        assert!((least..most).contains(&share), "{:?}: {share} of the hexagons", settings.method);
+        let chapters = run.chapters();
+        let (fissions, deaths) = chapters
+            .iter()
+            .fold((0, 0), |(born, dead), chapter| (born + chapter.fissions, dead + chapter.deaths));
+        assert_eq!(particles.len() as u32, 1 + fissions - deaths, "{:?}", settings.method);
+        assert!(chapters[chapters.len() - 20..].iter().all(|chapter| chapter.fissions + chapter.deaths == 0));
+        let apart = nearest(particles);
+        assert!(apart.iter().all(|share| (0.6..1.5).contains(share)), "{:?}: {apart:?}", settings.method);
+        assert!(particles.iter().all(|particle| (particle.p().length() - 1.0).abs() < 1e-3));
+    }
+}
+
+#[test]
+fn lone_particle_of_witkin_and_heckbert_grows_to_half_the_diameter_and_divides() {
+    let mut run = run("sphere", &Settings { max_iterations: 30, ..witkin_heckbert(0.05) });
+    let events = run.events(0, u32::MAX);
+    let divided = events.iter().position(|event| matches!(event, Event::Divided { .. })).expect("a fission");
+    let radii: Vec<f64> = events[..divided]
+        .iter()
+        .filter_map(|event| match event {
+            Event::Moved { particle: 0, radius, .. } => Some(*radius),
+            _ => None,
+        })
+        .collect();
+    // The diagonal of the box around the unit sphere is 2 √3.
+    let largest = radii.last().expect("the first particle has moved");
+    assert!((largest / 3.0_f64.sqrt() - 1.0).abs() < 0.03, "{radii:?}");
+    assert!(radii.windows(2).all(|pair| pair[1] > pair[0]), "{radii:?}");
+    let Event::Divided { data, particle: 0, child: 1, .. } = &events[divided] else {
+        panic!("{:?}", events[divided])
+    };
+    for child in data.iter() {
+        assert!((child.radius / largest * 2.0_f64.sqrt() - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn only_a_free_disc_divides_and_only_a_pressed_one_dies() {
+    let mut run = run("ellipsoid", &forces());
+    let (mut divided, mut died) = (0, 0);
+    for event in run.events(0, u32::MAX) {
+        match event {
+            Event::Divided { energy, .. } => {
+                assert!(energy < 0.01, "{energy}");
+                divided += 1;
+            }
+            Event::Died { energy, .. } => {
+                // Six neighbours at 0.7 of the spacing: 6 (2.3 − 1.4)².
+                assert!(energy > 4.86, "{energy}");
+                died += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(divided > 300 && died < divided, "{divided} divided, {died} died");
+}
+
+/// The fast system, and the one written for reading from the same particle with the same sizes.
+fn both(id: &str, sampling: Sampling) -> (Baseline, Reference) {
+    let surface = gallery::find(id).expect("a gallery surface");
+    let diagonal = surface.bounds.diagonal();
+    let (scale, [least, most]) = (0.1, [0.02, 0.1].map(|share| share / 3.0));
+    let sizes = Sizes {
+        sampling,
+        radius_share: RADIUS / diagonal,
+        radius_law: LawKind::MaxCurvature,
+        curvature_scale: scale,
+        radius_min_share: least,
+        radius_max_share: most,
+        // The reference does not limit how steeply the radius changes.
+        grading: 0.5,
+        ..Sizes::default()
+    };
+    let settings = baseline::Settings { sizes, ..baseline::Settings::default() };
+    let fast = Baseline::start(&mut surface.field(), &surface.bounds, &settings).expect("valid settings");
+    let settings = Settings {
+        method: if sampling == Sampling::Uniform { Method::WitkinHeckbert } else { Method::Forces },
+        sampling,
+        radius: RADIUS,
+        law: LawKind::MaxCurvature,
+        law_scale: scale,
+        radius_min: least * diagonal,
+        radius_max: fast.largest_radius().unwrap_or(most * diagonal),
+        seeds: vec![fast.positions()[0].as_dvec3().to_array()],
+        ..Settings::default()
+    };
+    (fast, start(id, &settings))
+}
+
+/// Goes on by one iteration.
+fn iterate(run: &mut Reference) {
+    let steps = run.progress().steps;
+    while !run.progress().is_done && run.progress().steps == steps {
+        run.step(1);
+    }
+    run.seek(u32::MAX);
+}
+
+#[test]
+fn on_the_sphere_the_fast_systems_begin_particle_by_particle_as_those_written_for_reading() {
+    let surface = gallery::find("sphere").expect("a gallery surface");
+    for (sampling, iterations) in EQUAL_ITERATIONS {
+        let (mut fast, mut slow) = both("sphere", sampling);
+        for iteration in 1..=iterations {
+            fast.step(&mut surface.field(), u32::MAX);
+            assert_eq!(fast.progress().iterations, iteration);
+            iterate(&mut slow);
+            let (quick, exact) = (fast.positions(), slow.particles());
+            assert_eq!(quick.len(), exact.len(), "{sampling:?}: iteration {iteration}");
+            let apart = |(a, b): (&glam::Vec3, &Particle)| a.as_dvec3().distance(b.p());
+            let farthest = quick.iter().zip(exact).map(apart).fold(0.0, f64::max);
+            assert!(farthest < 0.05 * RADIUS, "{sampling:?}: iteration {iteration}: {farthest} apart");
+        }
+    }
+}
+
+/// Particle systems multiply every difference: one that rounding makes decides which particle divides, and what follows is another
+/// run. Its statistics are the same.
+#[test]
+fn elsewhere_the_fast_systems_end_with_the_statistics_of_those_written_for_reading() {
+    for id in ["ellipsoid", "torus"] {
+        let surface = gallery::find(id).expect("a gallery surface");
+        for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+            let (mut fast, mut slow) = both(id, sampling);
+            while fast.progress().stop_reason.is_none() {
+                fast.step(&mut surface.field(), u32::MAX);
+            }
+            while !slow.step(10_000).is_done {}
+            slow.seek(u32::MAX);
+            let (quick, exact) = (fast.progress(), slow.progress());
+            let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+            let radii = [
+                mean(fast.radii().into_iter().map(f64::from).collect()),
+                mean(slow.particles().iter().map(|particle| particle.radius).collect()),
+            ];
+            let context = format!("{id}, {sampling:?}: {quick:?}, {exact:?}, mean radii {radii:?}");
+            assert_eq!(quick.stop_reason, Some(baseline::StopReason::Settled), "{context}");
+            assert!(exact.is_settled, "{context}");
+            let near = |a: f64, b: f64, share: f64| (a / b - 1.0).abs() < share;
+            assert!(near(quick.particles as f64, f64::from(exact.particles), 0.03), "{context}");
+            assert!(near(radii[0], radii[1], 0.01), "{context}");
+            assert!(near(f64::from(quick.iterations), f64::from(exact.steps), 0.4), "{context}");
+        }
+    }
+}
