@@ -73,13 +73,14 @@ export class LessonClient {
    * Begins a run and goes to its end, or to where it is stopped. The run before is given up. While it goes on, questions are
    * answered about the part that there is.
    * @param {Surface} surface @param {Partial<LessonSettings>} settings  what is missing has its default; `radius` has none
+   * @param {boolean} [holds]  the run only begins, and goes on as far as `ask('advance', …)` says
    * @returns {Promise<LessonProgress>}
    */
-  start(surface, settings) {
+  start(surface, settings, holds = false) {
     this.giveUp('another run has begun');
     return this.send((id) => {
       this.run = id;
-      return { type: 'start', id, surface, settings };
+      return { type: 'start', id, surface, settings, holds };
     });
   }
 

@@ -10,6 +10,7 @@ import { nextBudget } from '../bundle/budget.js';
  * @typedef {import('./protocol.js').ToLesson} ToLesson
  * @typedef {import('./protocol.js').FromLesson} FromLesson
  * @typedef {import('./protocol.js').Particles} Particles
+ * @typedef {import('./protocol.js').Advanced} Advanced
  * @typedef {import('./protocol.js').LessonProgress} LessonProgress
  * @typedef {InstanceType<typeof import('../../wasm/lesson/lesson.js').Lesson>} Lesson
  */
@@ -29,7 +30,7 @@ export function follow(lesson, env) {
   let stops = false;
 
   /** @param {Extract<ToLesson, {type: 'start'}>} order */
-  async function start({ id, surface, settings }) {
+  async function start({ id, surface, settings, holds }) {
     present = id;
     stops = false;
     const answer =
@@ -37,6 +38,7 @@ export function follow(lesson, env) {
         ? lesson.start_points(surface.system, surface.bounds, settings)
         : lesson.start(surface, settings);
     if (!answer.ok) return env.post({ type: 'refused', id, error: answer.error });
+    if (holds) return env.post({ type: 'ended', id, progress: answer });
     for (let budget = FIRST_BUDGET; ; ) {
       const before = env.nowMs();
       const progress = /** @type {LessonProgress} */ (lesson.step(budget));
@@ -48,6 +50,12 @@ export function follow(lesson, env) {
       if (present !== id) return;
       if (stops) return env.post({ type: 'ended', id, progress });
     }
+  }
+
+  /** @param {number} units @returns {Advanced} */
+  function advance(units) {
+    const before = env.nowMs();
+    return { progress: lesson.step(units), workMs: env.nowMs() - before };
   }
 
   /** @returns {Particles} */
@@ -82,6 +90,8 @@ export function follow(lesson, env) {
       }
       case 'newton':
         return lesson.newton(Float64Array.from(question.ask.start), question.ask.reach);
+      case 'advance':
+        return advance(question.ask.units);
       case 'digest':
         return lesson.digest();
     }

@@ -34,6 +34,11 @@
  * @property {Uint8Array} done
  */
 
+/**
+ * How far a run has come, and the milliseconds that its worker has worked for it since it was asked.
+ * @typedef {{progress: LessonProgress, workMs: number}} Advanced
+ */
+
 /** A plane through a point: `right` and `up` are perpendicular unit vectors. @typedef {{centre: Vec3, right: Vec3, up: Vec3, half: number, cells: number}} Plane */
 
 /**
@@ -45,16 +50,18 @@
  * @property {{ask: {particle: number}, answer: LessonLife | null}} life
  * @property {{ask: Plane, answer: Float32Array}} section  the curve f = 0 in the plane: segments as x₀, y₀, x₁, y₁ around the centre
  * @property {{ask: {start: Vec3, reach: number}, answer: LessonIterate[]}} newton  Newton's method in space from a point
+ * @property {{ask: {units: number}, answer: Advanced}} advance  goes on with a run that was begun and held
  * @property {{ask: {}, answer: string}} digest  of the particles at the moment that was sought
  */
 
 /**
- * @typedef {{type: 'start', id: number, surface: Surface, settings: Partial<LessonSettings>}
+ * `holds`: the run only begins, and goes on by `advance`.
+ * @typedef {{type: 'start', id: number, surface: Surface, settings: Partial<LessonSettings>, holds: boolean}
  *   | {type: 'stop'}
  *   | {[K in keyof Questions]: {type: 'ask', id: number, about: K, ask: Questions[K]['ask']}}[keyof Questions]} ToLesson
  */
 /**
- * `ended`: the run came to its end, or was stopped; `refused`: it could not begin; `failed`: the bundle did not load.
+ * `ended`: the run came to its end, or was stopped or held; `refused`: it could not begin; `failed`: the bundle did not load.
  * @typedef {{type: 'progress', id: number, progress: LessonProgress}
  *   | {type: 'ended', id: number, progress: LessonProgress}
  *   | {type: 'refused', id: number, error: Fault}
