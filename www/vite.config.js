@@ -3,6 +3,14 @@ import { readdirSync, readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { build, defineConfig } from 'vite';
 
+/** What the builds of both pages share. */
+const SHARED = {
+  target: 'es2022',
+  // Nothing is turned into a data: address: the page's content security policy allows none for code.
+  assetsInlineLimit: 0,
+  modulePreload: { polyfill: false },
+};
+
 /**
  * Has the built page ask for the core in its head, so that it comes at the same time as the scripts. The development server
  * needs no such thing.
@@ -19,6 +27,37 @@ const preloadCore = {
       // `fetch` takes what is preloaded only if the two agree in mode and credentials: hence `crossorigin`.
       const attrs = { rel: 'preload', as: 'fetch', type: 'application/wasm', href: `./${core[0]}`, crossorigin: true };
       return [{ tag: 'link', attrs, injectTo: 'head' }];
+    },
+  },
+};
+
+/**
+ * Builds the lesson's page by itself: if the two pages were one build, what both use would become files of their own, and the first
+ * page would wait for more of them.
+ * @type {import('vite').Plugin & {folder?: string}}
+ */
+const lessonPage = {
+  name: 'lesson-page',
+  apply: 'build',
+  configResolved({ root, build: { outDir } }) {
+    lessonPage.folder = join(root, outDir);
+  },
+  closeBundle: {
+    sequential: true,
+    async handler() {
+      await build({
+        configFile: false,
+        logLevel: 'warn',
+        base: './',
+        worker: { format: 'es' },
+        build: {
+          ...SHARED,
+          outDir: lessonPage.folder ?? '',
+          emptyOutDir: false,
+          copyPublicDir: false,
+          rollupOptions: { input: join('learn', 'index.html') },
+        },
+      });
     },
   },
 };
@@ -93,14 +132,11 @@ const offline = {
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
-  plugins: [preloadCore, offline, noServiceWorker],
+  plugins: [preloadCore, lessonPage, offline, noServiceWorker],
   build: {
+    ...SHARED,
     outDir: '../dist',
     emptyOutDir: true,
-    target: 'es2022',
-    // Nothing is turned into a data: address: the page's content security policy allows none for code.
-    assetsInlineLimit: 0,
-    modulePreload: { polyfill: false },
     // The renderer bundles are large by nature; `cargo xtask build` holds every file to its own budget.
     chunkSizeWarningLimit: 4096,
   },

@@ -84,6 +84,7 @@ export function mountInterface(engine) {
     void boxDrawn.value;
     untracked(layout.measure);
   });
+  linkLesson(engine);
   const follow = followOf(engine, shell, toast);
   mountHover(stage, engine, { view, follow });
   byId('tabs').append(goButton(engine));
@@ -119,6 +120,15 @@ export function mountInterface(engine) {
       },
     );
   });
+}
+
+/** Has the link to the lesson carry the surface over. Without that it leads to the lesson all the same. @param {Engine} engine */
+function linkLesson(engine) {
+  const link = /** @type {HTMLAnchorElement} */ (byId('lesson-link'));
+  import('./lesson/link.js').then(
+    ({ bindLessonLink }) => bindLessonLink(link, engine),
+    () => {},
+  );
 }
 
 /** Names the browser's tab after the surface. @param {Engine} engine */

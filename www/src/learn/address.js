@@ -1,0 +1,65 @@
+/**
+ * The fragment of the lesson's address: the stop, then what is carried along, such as `#rings&surface=…&mode=present`. A stop alone is
+ * an ordinary anchor, which works without scripts.
+ */
+
+/** Parts that a fragment may have beside the stop. */
+const PARTS = ['surface', 'mode', 'task'];
+
+/** @typedef {{ stop: string, parts: Record<string, string> }} Address */
+
+/** @param {string} fragment  with or without `#` @returns {Address} */
+export function readAddress(fragment) {
+  let stop = '';
+  /** @type {Record<string, string>} */
+  const parts = {};
+  for (const piece of fragment.replace(/^#/, '').split('&')) {
+    const at = piece.indexOf('=');
+    const name = piece.slice(0, at);
+    if (at < 0) stop ||= decoded(piece);
+    else if (PARTS.includes(name)) parts[name] = decoded(piece.slice(at + 1));
+  }
+  return { stop, parts };
+}
+
+/** @param {string} text */
+function decoded(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+}
+
+/** @param {Address} address */
+export function writeAddress({ stop, parts }) {
+  const pairs = PARTS.filter((name) => parts[name]).map((name) => `${name}=${encodeURIComponent(parts[name])}`);
+  const pieces = [...(stop ? [encodeURIComponent(stop)] : []), ...pairs];
+  return pieces.length > 0 ? `#${pieces.join('&')}` : '';
+}
+
+/**
+ * Returns the stop that a name means: the one of this name, else the one whose name is nearest to it by the letters that have to be
+ * changed; null for an empty name.
+ * @param {string} name @param {readonly string[]} stops  at least one
+ */
+export function nearestStop(name, stops) {
+  if (name === '') return null;
+  if (stops.includes(name)) return { stop: name, isExact: true };
+  const distances = stops.map((stop) => editDistance(name.slice(0, LONGEST_NAME), stop));
+  return { stop: stops[distances.indexOf(Math.min(...distances))], isExact: false };
+}
+
+const LONGEST_NAME = 64;
+
+/** Letters to insert, to drop or to change (Levenshtein). @param {string} a @param {string} b */
+function editDistance(a, b) {
+  let row = Array.from({ length: b.length + 1 }, (_, j) => j);
+  for (let i = 1; i <= a.length; i += 1) {
+    const next = [i];
+    for (let j = 1; j <= b.length; j += 1)
+      next.push(Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + (a[i - 1] === b[j - 1] ? 0 : 1)));
+    row = next;
+  }
+  return row[b.length];
+}

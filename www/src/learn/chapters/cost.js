@@ -1,0 +1,58 @@
+/** What placing costs and what relaxing costs, in evaluations of f. */
+import { effect } from '@preact/signals-core';
+import { h } from '../../ui/dom.js';
+import { formatCount, formatSignificant } from '../../ui/format.js';
+
+/** @typedef {import('./index.js').Context} Context */
+
+/** Steps of Witkin and Heckbert's system for 10,633 particles on an ellipsoid, as Table 1 of the paper has it. */
+const STEPS_OF_TABLE_1 = 373;
+
+/** @param {import('../lab.js').Lab} lab */
+export async function costOf(lab) {
+  const { progress, placing } = await lab.run({}, { keep: true });
+  const { particles, evaluations } = progress;
+  return { particles, placing, resting: evaluations - placing };
+}
+
+/** @param {Context} context */
+export async function cost({ lab, stops }) {
+  const { particles, placing, resting } = await costOf(await lab);
+  const rows = [
+    { name: 'Placing, once', value: placing, kind: 'own' },
+    { name: 'Ten steps of relaxation', value: resting, kind: 'own' },
+    {
+      name: `${formatCount(STEPS_OF_TABLE_1)} steps, as the paper counts for Witkin and Heckbert’s system`,
+      value: (resting / 10) * STEPS_OF_TABLE_1,
+      kind: 'other',
+    },
+  ];
+  const most = Math.max(...rows.map(({ value }) => value));
+  const table = h(
+    'table',
+    { class: 'cost' },
+    h('caption', null, `Evaluations of f for each of ${formatCount(particles)} particles`),
+    h(
+      'tbody',
+      null,
+      rows.map(({ name, value, kind }) => {
+        const bar = h('span', { class: 'cost-bar', data: { kind } });
+        bar.style.width = `${(100 * value) / most}%`;
+        return h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, name),
+          h('td', { class: 'cost-cell' }, bar),
+          h('td', null, formatSignificant(value / particles, 3)),
+        );
+      }),
+    ),
+  );
+  const waiting = h('p', { class: 'figure-count' }, 'The bars follow your prediction below.');
+  effect(() => {
+    const isOpen = stops.isOpen('predict-cost');
+    table.hidden = !isOpen;
+    waiting.hidden = isOpen;
+  });
+  return [table, waiting];
+}

@@ -1,0 +1,22 @@
+/** The live figure of each chapter, by the name that the page's markup gives it. */
+import { circle } from './circle.js';
+import { cost } from './cost.js';
+import { sixChildren, whoWasFirst } from './particle.js';
+import { rest, seams } from './rest.js';
+import { opening, rings } from './rings.js';
+import { sizes } from './sizes.js';
+
+/** What a figure is given: the runs, and which predictions are out. @typedef {{ lab: Promise<import('../lab.js').Lab>, stops: import('../predict.js').Stops }} Context */
+
+/** @type {Record<string, (context: Context) => Promise<(Node | null)[]>>} */
+export const FIGURES = {
+  why: opening,
+  cost,
+  six: sixChildren,
+  circle,
+  first: whoWasFirst,
+  rings,
+  seams,
+  rest,
+  sizes,
+};

@@ -1,0 +1,161 @@
+/** One particle and its children: the tangent plane event by event, and the particles that were there first. */
+import { effect, signal } from '@preact/signals-core';
+import { tangentPlane } from '../../figures/drawings.js';
+import { momentAt } from '../../figures/moment.js';
+import { openParticle } from '../../figures/particle.js';
+import { fateShape, s } from '../../figures/svg.js';
+import { FATES, tell } from '../../figures/words.js';
+import { fill, h } from '../../ui/dom.js';
+import { formatCount, plural } from '../../ui/format.js';
+import { icon } from '../../ui/icons.js';
+import { COARSE_PARTICLES } from '../lab.js';
+import { createRange } from '../parts.js';
+
+/**
+ * @typedef {import('./index.js').Context} Context
+ * @typedef {import('../../figures/particle.js').Opened} Opened
+ */
+
+/** The shapes of fates in words. @param {readonly string[]} fates */
+const keyOf = (fates) =>
+  h(
+    'ul',
+    { class: 'key' },
+    fates.map((fate) => {
+      const svg = s('svg', { class: 'shape', viewBox: '-1.4 -1.4 2.8 2.8', 'aria-hidden': 'true' });
+      svg.append(fateShape(fate, [0, 0], 1));
+      return h('li', null, svg, FATES[fate]);
+    }),
+  );
+
+/** Steps through the events of a particle. @param {Opened} opened @param {number} at  the event that is shown first */
+function stepThrough(opened, at) {
+  const drawing = h('div', { class: 'drawing-box' });
+  const told = h('p', { class: 'told', 'aria-live': 'polite' });
+  const { events, subject } = opened;
+  const last = events.length - 1;
+  const show = (/** @type {number} */ to) => {
+    const moment = momentAt(events, to);
+    fill(drawing, tangentPlane(opened, moment));
+    told.textContent = tell(moment, subject);
+  };
+  const range = createRange({
+    name: 'Event',
+    max: last,
+    value: at < 0 ? last : at,
+    say: (to) => `${formatCount(to + 1)} of ${formatCount(last + 1)}`,
+    change: show,
+  });
+  show(range.get());
+  const step = (/** @type {number} */ by, /** @type {string} */ label, /** @type {'back' | 'forward'} */ name) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        class: 'button square',
+        'aria-label': label,
+        on: { click: () => range.set(Math.min(last, Math.max(0, range.get() + by))) },
+      },
+      icon(name),
+    );
+  const controls = h(
+    'div',
+    { class: 'controls' },
+    step(-1, 'Event back', 'back'),
+    step(1, 'Event forward', 'forward'),
+    range.element,
+  );
+  return { drawing, told, controls };
+}
+
+/** The seed, and once its prediction is out, its first child. @param {Context} context */
+export async function sixChildren({ lab, stops }) {
+  const run = await (await lab).run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+  const chosen = signal(0);
+  const place = h('div', { class: 'two' });
+  const names = ['The seed', 'Its first child', 'A child of that'];
+  const third = run.end.parents.indexOf(1);
+  const subjects = [0, 1, ...(third > 0 ? [third] : [])];
+  const buttons = subjects.map((_, k) =>
+    h('button', { type: 'button', class: 'button', on: { click: () => choose(k) } }, names[k]),
+  );
+  effect(() => {
+    const isOpen = stops.isOpen('predict-children');
+    for (const [k, button] of buttons.entries()) {
+      button.setAttribute('aria-pressed', String(chosen.value === k));
+      button.disabled = k > 0 && !isOpen;
+    }
+  });
+  /** @param {number} k */
+  async function choose(k) {
+    const opened = await openParticle(run.client, run, subjects[k]);
+    chosen.value = k;
+    const { drawing, told, controls } = stepThrough(opened, -1);
+    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(['parent', 'added', 'matched'])));
+  }
+  await choose(0);
+  return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
+}
+
+/** What became of the children, level by level. @param {import('../lab.js').Run} run */
+function fateChart(run) {
+  const levels = run.chapters.filter((chapter) => chapter.kind === 'level');
+  const rows = levels.map(({ fates }) => [fates.added, fates.matched]);
+  const most = Math.max(1, ...rows.map(([added, matched]) => added + matched));
+  const totals = [0, 1].map((k) => rows.reduce((sum, row) => sum + row[k], 0));
+  const svg = s('svg', {
+    class: 'bars fates',
+    viewBox: `0 0 ${rows.length} 1`,
+    preserveAspectRatio: 'none',
+    role: 'img',
+    'aria-label': `Children of each level: in the whole run ${totals[0]} added and ${totals[1]} matched`,
+  });
+  for (const [k, [added, matched]] of rows.entries()) {
+    const [low, high] = [added / most, matched / most];
+    svg.append(
+      s('rect', { class: 'added', x: k + 0.08, y: 1 - low, width: 0.84, height: low }),
+      s('rect', { class: 'matched', x: k + 0.08, y: 1 - low - high, width: 0.84, height: high }),
+    );
+  }
+  const words = `Children by level: ${formatCount(totals[0])} added below, ${formatCount(totals[1])} matched above. Parents are not counted.`;
+  return h('div', { class: 'chart' }, svg, h('p', { class: 'figure-count' }, words));
+}
+
+/** A particle amid the front, and the fates of all children. @param {Context} context */
+export async function whoWasFirst({ lab, stops }) {
+  const run = await (await lab).run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+  const place = h('div', { class: 'two' });
+  const count = run.end.radii.length;
+  let particle = Math.floor(count / 2);
+  async function show() {
+    const opened = await openParticle(run.client, run, particle);
+    // It begins where the first child is compared, which is what the chapter is about.
+    const first = opened.events.findIndex(({ type }) => type === 'compared');
+    const { drawing, told, controls } = stepThrough(opened, first);
+    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(['parent', 'added', 'matched'])));
+  }
+  await show();
+  const another = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button',
+      on: {
+        click: () => {
+          particle = (particle + 7) % count;
+          void show();
+        },
+      },
+    },
+    'Another particle',
+  );
+  const chart = fateChart(run);
+  effect(() => {
+    chart.hidden = !stops.isOpen('predict-average');
+  });
+  return [
+    h('div', { class: 'controls choices' }, another, h('span', null, `of ${plural(count, 'particle')}`)),
+    place,
+    chart,
+  ];
+}

@@ -1,0 +1,105 @@
+/** The front that grows ring by ring: the opening picture, and the chapter on rings. */
+import { effect } from '@preact/signals-core';
+import { h, reducedMotion } from '../../ui/dom.js';
+import { formatCount, plural } from '../../ui/format.js';
+import { ringsOf } from '../measure.js';
+import { createBars, createPlay, createRange } from '../parts.js';
+import { byLevel, Orbit, Picture } from '../picture.js';
+
+/** @typedef {import('./index.js').Context} Context */
+
+/** Time in which the whole front grows. */
+const GROWTH_MS = 4500;
+
+/** Counts of the particles up to each level. @param {import('../../engine/types.js').LessonParticles} particles */
+function countsOf({ levels }) {
+  const last = levels.reduce((most, level) => Math.max(most, level), 0);
+  return Array.from({ length: last + 1 }, (_, level) => levels.reduce((sum, own) => sum + (own <= level ? 1 : 0), 0));
+}
+
+/** The particles up to a level. @param {import('../../engine/types.js').LessonParticles} all @param {number} level */
+function upTo(all, level) {
+  const kept = [...all.levels.keys()].filter((i) => all.levels[i] <= level);
+  const vectors = (/** @type {Float32Array} */ column) =>
+    Float32Array.from(kept.flatMap((i) => [column[3 * i], column[3 * i + 1], column[3 * i + 2]]));
+  return {
+    ...all,
+    positions: vectors(all.positions),
+    normals: vectors(all.normals),
+    radii: Float32Array.from(kept, (i) => all.radii[i]),
+    levels: Uint32Array.from(kept, (i) => all.levels[i]),
+  };
+}
+
+/** @param {Context} context */
+async function growth({ lab }, /** @type {string} */ name) {
+  const { placed } = await (await lab).run({}, { keep: true });
+  const orbit = new Orbit((await lab).surface.bounds);
+  orbit.fitTo(placed);
+  const counts = countsOf(placed);
+  const picture = new Picture(orbit, { name });
+  const range = createRange({
+    name: 'Level',
+    max: counts.length - 1,
+    value: counts.length - 1,
+    say: (level) => `${formatCount(level)} of ${formatCount(counts.length - 1)}`,
+    change: (level) => show(level),
+  });
+  /** @param {number} level */
+  function show(level) {
+    const particles = upTo(placed, level);
+    picture.show({ particles, colours: byLevel(particles) });
+  }
+  show(counts.length - 1);
+  const play = createPlay(range, { label: 'Grow', totalMs: GROWTH_MS });
+  return { placed, counts, picture, range, play, show };
+}
+
+/** The opening picture grows once by itself. @param {Context} context */
+export async function opening(context) {
+  const { picture, range, play, counts } = await growth(context, 'The surface, covered by particles ring by ring');
+  const count = h('p', { class: 'figure-count' }, plural(counts[counts.length - 1], 'particle'));
+  const observer = new IntersectionObserver((entries) => {
+    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+    observer.disconnect();
+    if (!reducedMotion()) play.play();
+  });
+  observer.observe(picture.element);
+  return [picture.element, h('div', { class: 'controls' }, play.element, range.element, count)];
+}
+
+/** With a bar for each ring, once its prediction is out. @param {Context} context */
+export async function rings(context) {
+  const { placed, picture, range, play } = await growth(context, 'The rings of the front around the seed');
+  const sizes = ringsOf(placed);
+  const bars = createBars({
+    values: sizes,
+    words: `New particles on each level: ${sizes.slice(0, 8).join(', ')}; at most ${Math.max(...sizes)}`,
+  });
+  const words = h('p', { class: 'figure-count' });
+  const chart = h('div', { class: 'chart' }, bars.element, words);
+  effect(() => {
+    chart.hidden = !context.stops.isOpen('predict-ring');
+  });
+  const tell = () => {
+    const level = range.get();
+    bars.mark(level);
+    const flat = level === 0 ? '' : ` On a plane: ${formatCount(6 * level)}.`;
+    words.textContent = `Level ${formatCount(level)}: ${plural(sizes[level] ?? 0, 'new particle')}.${flat}`;
+  };
+  range.input.addEventListener('input', tell);
+  range.input.addEventListener('change', tell);
+  const { set } = range;
+  range.set = (to) => {
+    set(to);
+    tell();
+  };
+  bars.element.addEventListener('click', (event) => {
+    const { clientX } = /** @type {MouseEvent} */ (event);
+    const box = bars.element.getBoundingClientRect();
+    const at = Math.floor(((clientX - box.left) / box.width) * sizes.length);
+    range.set(Math.min(sizes.length - 1, Math.max(0, at)));
+  });
+  tell();
+  return [picture.element, h('div', { class: 'controls' }, play.element, range.element), chart];
+}

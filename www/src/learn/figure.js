@@ -1,0 +1,58 @@
+/** Puts a live figure in the place of its still, once it comes near the window, and says what is missing if it cannot be made. */
+import { h } from '../ui/dom.js';
+import { NoSurface } from './lab.js';
+
+/** How far from the window a figure begins, in pixels. */
+const AHEAD_PX = 500;
+
+/** @typedef {{ load: () => Promise<void> }} Figure */
+
+/**
+ * @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure}
+ */
+export function mountFigure(stage, build) {
+  const status = h('p', { class: 'figure-status', role: 'status' });
+  stage.after(status);
+  /** @type {Promise<void> | null} */
+  let made = null;
+  async function make() {
+    stage.dataset.state = 'running';
+    status.textContent = 'Running the algorithm on the surface';
+    try {
+      const parts = await build();
+      stage.replaceChildren(...parts.filter((part) => part !== null));
+      stage.dataset.state = 'live';
+      status.textContent = '';
+    } catch (error) {
+      stage.dataset.state = 'still';
+      status.textContent = `${reasonOf(error)} This is a still picture of the ellipsoid.`;
+    }
+  }
+  const load = () => {
+    made ??= make();
+    return made;
+  };
+  const observer = new IntersectionObserver(
+    (entries) => {
+      if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+      observer.disconnect();
+      void load();
+    },
+    { rootMargin: `${AHEAD_PX}px 0px` },
+  );
+  observer.observe(stage);
+  return { load };
+}
+
+/** @param {any} error */
+export function reasonOf(error) {
+  if (error instanceof NoSurface) return error.message;
+  switch (error?.kind) {
+    case 'bundle':
+      return 'The part of the page that runs the algorithm did not load. The text is complete without it.';
+    case 'refused':
+      return `The algorithm cannot run on this surface: ${error.message}.`;
+    default:
+      return `The figure stopped on an error: ${error instanceof Error ? error.message : String(error)}.`;
+  }
+}

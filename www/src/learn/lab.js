@@ -1,0 +1,147 @@
+/**
+ * Runs the paper's algorithms for the figures. Runs with different settings are kept apart: each has a worker of its own while its
+ * events may still be asked for, and a run that is only looked at leaves its particles and frees the worker.
+ */
+import { RESIDUAL } from '../figures/particle.js';
+
+/**
+ * @typedef {import('../engine/types.js').LessonClient} LessonClient
+ * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
+ * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
+ * @typedef {import('../engine/lesson/protocol.js').LessonChapter} LessonChapter
+ * @typedef {import('../engine/lesson/protocol.js').LessonProgress} LessonProgress
+ * @typedef {import('../ui/surface-link.js').FormulaSurface} FormulaSurface
+ */
+/**
+ * A run that has come to its end. `placed` are the particles before the first relaxation step, `end` those after the last;
+ * `placing` counts the evaluations of f until then.
+ * @typedef {object} Run
+ * @property {LessonClient} client  closed if the run was not to be kept
+ * @property {Partial<LessonSettings>} settings
+ * @property {number} radius
+ * @property {LessonChapter[]} chapters
+ * @property {LessonProgress} progress
+ * @property {LessonParticles} placed
+ * @property {LessonParticles} end
+ * @property {number} placing
+ */
+
+/** Particles that the figures have: many enough for rings, few enough to tell them apart. */
+export const PARTICLES = 1500;
+/** Particles where single ones are looked at, and the surface bends much within 2r. */
+export const COARSE_PARTICLES = 180;
+/** The radius of the first trial is this share of the box's diagonal. */
+const TRIAL = 1 / 30;
+/** A count this close to the wanted one is taken. */
+const CLOSE = 0.12;
+const MOST_TRIALS = 4;
+
+/** What the figures run unless they say otherwise: Algorithm 2 child by child, and ten steps. @type {Partial<LessonSettings>} */
+export const USUAL = { placing: 'one_by_one', matched: 'stay', gaps: 'leave', relax_steps: 10, residual: RESIDUAL };
+
+/** Why a surface has no figures. */
+export class NoSurface extends Error {}
+
+export class Lab {
+  /** @param {FormulaSurface} surface @param {() => Promise<LessonClient>} open */
+  constructor(surface, open) {
+    this.surface = surface;
+    this.open = open;
+    /** @type {Map<string, Promise<Run>>} */
+    this.runs = new Map();
+    /** @type {Map<number, Promise<number>>} */
+    this.radii = new Map();
+    /** Runs follow one another, so that a page of figures keeps one processor busy and not all. @type {Promise<unknown>} */
+    this.last = Promise.resolve();
+  }
+
+  /** @template T @param {() => Promise<T>} job @returns {Promise<T>} */
+  queued(job) {
+    const done = this.last.then(job, job);
+    this.last = done.catch(() => {});
+    return done;
+  }
+
+  /** The radius with which the surface has about so many particles. @param {number} particles @returns {Promise<number>} */
+  radiusFor(particles) {
+    const known = this.radii.get(particles);
+    if (known) return known;
+    const found = this.queued(() => this.searchRadius(particles));
+    this.radii.set(particles, found);
+    found.catch(() => this.radii.delete(particles));
+    return found;
+  }
+
+  /** @param {number} particles */
+  async searchRadius(particles) {
+    const { min, max } = this.surface.bounds;
+    const client = await this.open();
+    let radius = TRIAL * Math.hypot(...max.map((m, k) => m - min[k]));
+    try {
+      for (let trial = 0; trial < MOST_TRIALS; trial += 1) {
+        const settings = { ...USUAL, relax_steps: 0, radius, max_particles: 4 * particles };
+        const { particles: count } = await client.start(this.surface, settings);
+        if (count === 0 && trial > 0) throw new NoSurface('The formula has no surface in its box.');
+        if (Math.abs(count / particles - 1) < CLOSE) break;
+        // A count of nothing says that the trial was too coarse, or that there is nothing.
+        radius *= count === 0 ? 0.25 : Math.sqrt(count / particles);
+      }
+    } finally {
+      client.close();
+    }
+    return Number(radius.toPrecision(3));
+  }
+
+  /**
+   * Returns a run, which is made once for the same settings.
+   * @param {Partial<LessonSettings>} change  of the usual settings
+   * @param {{ particles?: number, keep?: boolean }} [how]  `particles`: how many there should be about, unless a radius is given; `keep`: events
+   *   will be asked for
+   * @returns {Promise<Run>}
+   */
+  async run(change, { particles = PARTICLES, keep = false } = {}) {
+    const radius = change.radius ?? (await this.radiusFor(particles));
+    const settings = { ...USUAL, ...change, radius };
+    const key = JSON.stringify([settings, keep]);
+    const known = this.runs.get(key);
+    if (known) return known;
+    const made = this.queued(() => this.make(settings, radius, keep));
+    this.runs.set(key, made);
+    made.catch(() => this.runs.delete(key));
+    return made;
+  }
+
+  /** @param {Partial<LessonSettings>} settings @param {number} radius @param {boolean} keep @returns {Promise<Run>} */
+  async make(settings, radius, keep) {
+    const client = await this.open();
+    try {
+      const progress = await client.start(this.surface, settings);
+      const chapters = await client.ask('chapters', { first: 0 });
+      const rest = chapters.find(({ kind }) => kind === 'relaxation');
+      const placed = await client.ask('seek', { event: rest?.first_event ?? Infinity });
+      const placing = await evaluationsOf(client, rest?.first_event ?? progress.events, progress.evaluations);
+      const end = await client.ask('seek', { event: Infinity });
+      if (end.radii.length === 0) throw new NoSurface('The formula has no surface in its box.');
+      return { client, settings, radius, chapters, progress, placed, end, placing };
+    } catch (error) {
+      client.close();
+      throw error;
+    } finally {
+      if (!keep) client.close();
+    }
+  }
+}
+
+/** Events that are looked at for the last particle that was done: more than one particle and the filling of gaps have. */
+const LOOK_BACK = 400;
+
+/**
+ * Evaluations of f before an event: what the last particle that was done says.
+ * @param {LessonClient} client @param {number} event @param {number} fallback
+ */
+async function evaluationsOf(client, event, fallback) {
+  const first = Math.max(0, event - LOOK_BACK);
+  const events = await client.ask('events', { first, count: event - first });
+  const done = events.findLast(({ type }) => type === 'done');
+  return done?.type === 'done' ? done.evaluations : fallback;
+}

@@ -1,0 +1,85 @@
+/** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
+import '../ui/trusted.js';
+import { LessonClient } from '../engine/lesson/client.js';
+import { byId } from '../ui/dom.js';
+import { readAddress } from './address.js';
+import { createBench, mountCards, setupOf, stopsOfBench } from './bench.js';
+import { FIGURES } from './chapters/index.js';
+import { mountFigure } from './figure.js';
+import { Lab, NoSurface, PARTICLES } from './lab.js';
+import { keepOffline } from './offline.js';
+import { createPair } from './pair.js';
+import { mountPrediction, Stops } from './predict.js';
+import { PREDICTIONS } from './predictions.js';
+import { mountStops } from './stops.js';
+import { subjectOf, wordsOf } from './surface.js';
+import { sidesOf, WHAT_IFS } from './whatifs.js';
+
+const address = readAddress(location.hash);
+const subject = subjectOf(address.parts.surface);
+const open = async () => new LessonClient();
+const notice = byId('notice');
+const stops = new Stops();
+
+/** Tries the learner's surface; where it has no particles, the ellipsoid stands in. */
+async function openLab() {
+  if (!subject.isOwn) return new Lab(subject.surface, open);
+  const own = new Lab(subject.surface, open);
+  try {
+    await own.radiusFor(PARTICLES);
+    return own;
+  } catch (error) {
+    const isRefused = error instanceof NoSurface || /** @type {any} */ (error)?.kind === 'refused';
+    if (!isRefused) return own;
+    const stand = subjectOf(undefined).surface;
+    notice.textContent = `${/** @type {Error} */ (error).message} The figures show an ellipsoid.`;
+    byId('surface-name').textContent = 'an ellipsoid';
+    return new Lab(stand, open);
+  }
+}
+
+/** The comparison whose picture is to be told from the other: both without a word. @param {Lab} lab */
+async function blindPair(lab) {
+  const pair = createPair(lab, { bare: true });
+  const order = WHAT_IFS[0];
+  const [queue, stack] = sidesOf(order, ['queue', 'stack']);
+  await pair.show(
+    [
+      { ...stack, label: 'A' },
+      { ...queue, label: 'B' },
+    ],
+    'level',
+  );
+  return [pair.element];
+}
+
+notice.textContent = subject.notice;
+if (subject.isOwn) byId('surface-name').textContent = `your surface, ${wordsOf(subject.surface)}`;
+for (const id of ['back', 'back-end']) /** @type {HTMLAnchorElement} */ (byId(id)).href = `../${subject.from}`;
+
+const lab = openLab();
+const context = { lab, stops };
+for (const stage of document.querySelectorAll('[data-figure]')) {
+  const host = /** @type {HTMLElement} */ (stage);
+  const name = host.dataset.figure ?? '';
+  const build = name === 'order' ? async () => blindPair(await lab) : () => FIGURES[name](context);
+  mountFigure(host, build);
+}
+for (const host of document.querySelectorAll('.predict'))
+  mountPrediction(/** @type {HTMLElement} */ (host), PREDICTIONS[host.id], context);
+const bench = lab.then((ready) => {
+  mountCards(byId('cards'), ready);
+  return createBench(byId('bench'), ready);
+});
+mountStops({
+  stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
+  others: stopsOfBench,
+  onBench: async (id) => {
+    const { show, setup } = await bench;
+    await show(id ? setupOf(id) : setup());
+  },
+  say: (words) => {
+    notice.textContent = words;
+  },
+});
+keepOffline();

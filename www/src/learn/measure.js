@@ -1,0 +1,101 @@
+/** What the figures say about a run, worked out from its particles. */
+import { NO_PARENT } from '../engine/columns.js';
+
+/**
+ * @typedef {import('./lab.js').Run} Run
+ * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
+ */
+
+/** @param {ArrayLike<number>} positions @param {number} i @param {number} j */
+export const distance = (positions, i, j) =>
+  Math.hypot(
+    positions[3 * i] - positions[3 * j],
+    positions[3 * i + 1] - positions[3 * j + 1],
+    positions[3 * i + 2] - positions[3 * j + 2],
+  );
+
+/**
+ * Distance of each particle to its nearest one, over the sum of their radii: 1 where two discs touch. Infinite if there is none
+ * within two and a half of the largest radius.
+ * @param {LessonParticles} particles
+ */
+export function nearestDistances({ positions, radii }) {
+  const cell = 2.5 * Math.max(...radii);
+  /** @type {Map<string, number[]>} */
+  const cells = new Map();
+  const at = (/** @type {number} */ i) => [0, 1, 2].map((k) => Math.floor(positions[3 * i + k] / cell));
+  for (let i = 0; i < radii.length; i += 1) {
+    const key = at(i).join();
+    const list = cells.get(key);
+    if (list) list.push(i);
+    else cells.set(key, [i]);
+  }
+  return Float32Array.from(radii, (radius, i) => {
+    const [x, y, z] = at(i);
+    let least = Infinity;
+    for (let k = 0; k < 27; k += 1) {
+      const key = [x + (k % 3) - 1, y + (Math.floor(k / 3) % 3) - 1, z + Math.floor(k / 9) - 1].join();
+      for (const j of cells.get(key) ?? [])
+        if (j !== i) least = Math.min(least, distance(positions, i, j) / (radius + radii[j]));
+    }
+    return least;
+  });
+}
+
+/** Distance of each particle to its parent over 2r, as placed; 1 for a seed. @param {LessonParticles} placed @param {number} radius */
+export const parentDistances = ({ positions, parents }, radius) =>
+  Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : distance(positions, i, parent) / (2 * radius)));
+
+/** Mean and standard deviation of the finite values. @param {ArrayLike<number>} values */
+export function spread(values) {
+  const finite = Array.from(values).filter(Number.isFinite);
+  const mean = finite.reduce((sum, value) => sum + value, 0) / Math.max(1, finite.length);
+  const variance = finite.reduce((sum, value) => sum + (value - mean) ** 2, 0) / Math.max(1, finite.length);
+  return { mean, deviation: Math.sqrt(variance), least: Math.min(...finite) };
+}
+
+/** Number of particles of each level of the first front. @param {LessonParticles} particles */
+export function ringsOf({ levels, fronts }) {
+  /** @type {number[]} */
+  const rings = [];
+  for (let i = 0; i < levels.length; i += 1) if (fronts[i] === 0) rings[levels[i]] = (rings[levels[i]] ?? 0) + 1;
+  return Array.from(rings, (count) => count ?? 0);
+}
+
+/** The relaxation steps of a run: energy per particle, from before the first step on. @param {Run} run */
+export async function energiesOf({ client, chapters }) {
+  const steps = chapters.filter(({ kind }) => kind === 'relaxation');
+  if (steps.length === 0) return [];
+  const [begins] = await client.ask('events', { first: steps[0].first_event, count: 1 });
+  const before = begins?.type === 'step_begins' ? begins.energy : Number.NaN;
+  return [before, ...steps.map(({ energy }) => energy ?? Number.NaN)];
+}
+
+/**
+ * The first step after which nine tenths of the fall in energy are done.
+ * @param {readonly number[]} energies  @returns {number}
+ */
+export function stepOfRest(energies) {
+  const [first, last] = [energies[0], energies[energies.length - 1]];
+  const at = energies.findIndex((energy) => first - energy >= 0.9 * (first - last));
+  return Math.max(1, at);
+}
+
+/** The particle and the slot where the surface bends most between a particle and its parent. @param {LessonParticles} placed */
+export function sharpestBend({ normals, parents }) {
+  let [child, least] = [-1, 2];
+  for (let i = 0; i < parents.length; i += 1) {
+    const parent = parents[i];
+    if (parent === NO_PARENT) continue;
+    const cosine = [0, 1, 2].reduce((sum, k) => sum + normals[3 * i + k] * normals[3 * parent + k], 0);
+    if (cosine < least) [child, least] = [i, cosine];
+  }
+  return child < 0 ? null : { child, parent: parents[child] };
+}
+
+/** Particles of one size that would cover the same area as these with the least of their radii. @param {ArrayLike<number>} radii */
+export function asFineEverywhere(radii) {
+  const all = Array.from(radii);
+  const least = Math.min(...all);
+  return all.reduce((sum, radius) => sum + (radius / least) ** 2, 0);
+}

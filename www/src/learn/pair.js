@@ -1,0 +1,148 @@
+/** Two runs side by side, seen by one camera. */
+import { fill, h } from '../ui/dom.js';
+import { formatCount, formatFixed, formatSignificant, MISSING } from '../ui/format.js';
+import { reasonOf } from './figure.js';
+import { nearestDistances, parentDistances, spread } from './measure.js';
+import { createScale } from './parts.js';
+import { byLevel, byValue, Orbit, Picture } from './picture.js';
+
+/**
+ * @typedef {import('./lab.js').Lab} Lab
+ * @typedef {import('./lab.js').Run} Run
+ */
+/** How the two pictures are coloured. @typedef {'level' | 'parent' | 'nearest' | 'radius'} Colouring */
+/** @typedef {{ label: string, make: (lab: Lab) => Promise<Run> }} Side */
+
+/** Distances over the ideal one span this range of colours. */
+const [LOW, HIGH] = [0.7, 1.15];
+
+/** @param {Run} run @param {Colouring} colouring @param {[number, number]} radii  the smallest and the largest of both runs */
+function sceneOf(run, colouring, [least, most]) {
+  // The distance to the parent is what placing gave; the others are as the run ended.
+  const particles = colouring === 'parent' ? run.placed : run.end;
+  switch (colouring) {
+    case 'parent':
+      return { particles, colours: byValue(parentDistances(run.placed, run.radius), LOW, HIGH) };
+    case 'nearest':
+      return { particles, colours: byValue(nearestDistances(particles), LOW, HIGH) };
+    case 'radius':
+      return { particles, colours: byValue(particles.radii, least, most) };
+    default:
+      return { particles, colours: byLevel(particles) };
+  }
+}
+
+/** The colours in words. @param {Colouring} colouring @param {[number, number]} radii */
+function legendOf(colouring, [least, most]) {
+  const ends = /** @type {const} */ ([formatFixed(LOW, 2), formatFixed(HIGH, 2)]);
+  switch (colouring) {
+    case 'parent':
+      return createScale('Distance to the parent, in 2r', ...ends);
+    case 'nearest':
+      return createScale('Distance to the nearest, in 2r', ...ends);
+    case 'radius':
+      return createScale('Radius', formatSignificant(least, 2), formatSignificant(most, 2));
+    default:
+      return h('p', { class: 'scale' }, 'Each ring of the front has a colour; they repeat after twelve.');
+  }
+}
+
+/** A mean and its deviation, to three decimals. @param {{ mean: number, deviation: number }} values */
+const around = ({ mean, deviation }) =>
+  `${formatFixed(mean, 3)} ± ${formatFixed(Math.round(deviation * 1000) / 1000, 3)}`;
+
+/** What is compared. @param {Run} run @returns {[string, string][]} */
+export function figuresOf(run) {
+  const { particles, evaluations } = run.progress;
+  const nearest = spread(nearestDistances(run.end));
+  const parents = run.settings.sampling === 'adaptive' ? null : spread(parentDistances(run.placed, run.radius));
+  return [
+    ['Particles', formatCount(particles)],
+    ['Evaluations of f for each', formatSignificant(evaluations / Math.max(1, particles), 3)],
+    ['Nearest neighbour, in 2r', around(nearest)],
+    ['Closest pair, in 2r', formatFixed(nearest.least, 3)],
+    ['Distance to the parent, in 2r', parents ? around(parents) : MISSING],
+  ];
+}
+
+/** @param {readonly [Side, Side]} sides @param {readonly [Run, Run]} runs */
+function tableOf(sides, runs) {
+  const [left, right] = runs.map(figuresOf);
+  return h(
+    'table',
+    { class: 'compare' },
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        h('td'),
+        sides.map(({ label }) => h('th', { scope: 'col' }, label)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      left.map(([name, value], k) =>
+        h('tr', null, h('th', { scope: 'row' }, name), h('td', null, value), h('td', null, right[k][1])),
+      ),
+    ),
+  );
+}
+
+/**
+ * @param {Lab} lab @param {{ bare?: boolean }} [how]  `bare`: pictures alone, since figures would tell which is which
+ */
+export function createPair(lab, { bare = false } = {}) {
+  const orbit = new Orbit(lab.surface.bounds);
+  const pictures = ['left', 'right'].map(
+    (side) => new Picture(orbit, { name: `The picture on the ${side}; both turn together` }),
+  );
+  const captions = pictures.map(() => h('figcaption', null));
+  const legend = h('div');
+  const table = h('div', { class: 'compare-box' });
+  const status = h('p', { class: 'figure-status', role: 'status' });
+  const element = h(
+    'div',
+    { class: 'pair-box' },
+    h(
+      'div',
+      { class: 'pair' },
+      pictures.map((picture, k) => h('figure', null, picture.element, captions[k])),
+    ),
+    status,
+    legend,
+    bare ? null : table,
+  );
+  let asked = 0;
+  return {
+    element,
+    /** @type {readonly [Run, Run] | null} */
+    runs: null,
+    /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
+    async show(sides, colouring) {
+      asked += 1;
+      const mine = asked;
+      status.textContent = 'Running both';
+      try {
+        const left = await sides[0].make(lab);
+        const right = await sides[1].make(lab);
+        if (mine !== asked) return;
+        this.runs = [left, right];
+        orbit.fitTo(left.end);
+        const all = [...left.end.radii, ...right.end.radii];
+        const radii = /** @type {[number, number]} */ ([Math.min(...all), Math.max(...all)]);
+        for (const [k, run] of this.runs.entries()) {
+          pictures[k].show(sceneOf(run, colouring, radii));
+          captions[k].textContent = sides[k].label;
+        }
+        if (!bare) fill(legend, legendOf(colouring, radii));
+        fill(table, tableOf(sides, this.runs));
+        status.textContent = '';
+      } catch (error) {
+        if (mine === asked) status.textContent = reasonOf(error);
+      }
+    },
+  };
+}

@@ -1,0 +1,123 @@
+/** Controls and small charts that several figures have. */
+import { s } from '../figures/svg.js';
+import { h, reducedMotion, uniqueId } from '../ui/dom.js';
+import { icon } from '../ui/icons.js';
+
+/**
+ * A native range with its name and its value in words.
+ * @param {{ name: string, max: number, value?: number, say: (value: number) => string, change: (value: number) => void }} about
+ */
+export function createRange({ name, max, value = 0, say, change }) {
+  const id = uniqueId('range');
+  const input = h('input', { type: 'range', class: 'slider', id, min: 0, max, step: 1, value });
+  const output = h('output', { class: 'range-value', for: id });
+  const tell = () => {
+    const at = Number(input.value);
+    output.textContent = say(at);
+    input.setAttribute('aria-valuetext', say(at));
+    input.style.setProperty('--place', String(max > 0 ? at / max : 0));
+  };
+  input.addEventListener('input', () => {
+    tell();
+    change(Number(input.value));
+  });
+  tell();
+  return {
+    element: h('div', { class: 'range-row' }, h('label', { for: id }, name), input, output),
+    input,
+    get: () => Number(input.value),
+    /** @param {number} to */
+    set(to) {
+      input.value = String(to);
+      tell();
+      change(Number(input.value));
+    },
+  };
+}
+
+/**
+ * A button that moves a range from its beginning to its end. Under reduced motion it goes there at once.
+ * @param {ReturnType<typeof createRange>} range @param {{ label: string, totalMs: number }} about
+ */
+export function createPlay(range, { label, totalMs }) {
+  const max = Number(range.input.max);
+  let timer = 0;
+  const face = () => button.replaceChildren(icon(timer ? 'pause' : 'play'), timer ? 'Pause' : label);
+  function stop() {
+    clearInterval(timer);
+    timer = 0;
+    face();
+  }
+  function play() {
+    if (reducedMotion()) return range.set(max);
+    if (range.get() >= max) range.set(0);
+    timer = window.setInterval(() => {
+      range.set(range.get() + 1);
+      if (range.get() >= max) stop();
+    }, totalMs / Math.max(1, max));
+    face();
+  }
+  const button = h('button', { type: 'button', class: 'button', on: { click: () => (timer ? stop() : play()) } });
+  face();
+  range.input.addEventListener('pointerdown', stop);
+  return { element: button, play, stop };
+}
+
+/**
+ * Bars of one kind, with the one that is shown in the accent.
+ * @param {{ values: readonly number[], words: string }} about  `words`: what they say, for those who do not see them
+ */
+export function createBars({ values, words }) {
+  const most = Math.max(...values, 1e-12);
+  const svg = s('svg', {
+    class: 'bars',
+    viewBox: `0 0 ${values.length} 1`,
+    preserveAspectRatio: 'none',
+    role: 'img',
+    'aria-label': words,
+  });
+  const bars = values.map((value, k) =>
+    s('rect', { x: k + 0.08, y: 1 - value / most, width: 0.84, height: value / most }),
+  );
+  svg.append(...bars);
+  return {
+    element: svg,
+    /** @param {number} at */
+    mark: (at) => {
+      for (const [k, bar] of bars.entries()) bar.toggleAttribute('data-now', k === at);
+    },
+  };
+}
+
+/**
+ * A select with its name.
+ * @param {{ name: string, choices: readonly { value: string, label: string }[], value?: string, change: (value: string) => void }} about
+ */
+export function createSelect({ name, choices, value, change }) {
+  const id = uniqueId('select');
+  const select = h(
+    'select',
+    { class: 'select', id, on: { change: () => change(select.value) } },
+    choices.map((choice) => h('option', { value: choice.value, selected: choice.value === value }, choice.label)),
+  );
+  return { element: h('div', { class: 'select-row' }, h('label', { for: id }, name), select), select };
+}
+
+/** Names and values in two columns. @param {readonly [string, string][]} rows */
+export const facts = (rows) =>
+  h(
+    'dl',
+    { class: 'facts' },
+    rows.flatMap(([name, value]) => [h('dt', null, name), h('dd', null, value)]),
+  );
+
+/** A scale of colours with its ends in words. @param {string} name @param {string} low @param {string} high */
+export const createScale = (name, low, high) =>
+  h(
+    'p',
+    { class: 'scale' },
+    h('span', null, name),
+    h('span', { class: 'scale-end' }, low),
+    h('span', { class: 'scale-ramp', 'aria-hidden': 'true' }),
+    h('span', { class: 'scale-end' }, high),
+  );

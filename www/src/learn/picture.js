@@ -1,0 +1,299 @@
+/**
+ * A picture of particles, drawn by the page's own 2-D painter at twice its size, so that the browser smooths the edges. A page of
+ * figures would run out of contexts of the graphics card.
+ */
+import { effect, signal } from '@preact/signals-core';
+import { ballOf, Camera, projected, viewOf } from '../engine/view/camera.js';
+import { rgbFromPacked } from '../engine/view/oklab.js';
+import { Painter } from '../engine/view/painter.js';
+import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
+import { h } from '../ui/dom.js';
+
+/**
+ * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
+ * @typedef {import('../engine/types.js').Vec3} Vec3
+ * @typedef {import('../engine/view/palettes.js').Palette} Palette
+ */
+/** A place that is marked, if its side is in view. @typedef {{ place: ArrayLike<number>, normal: ArrayLike<number>, radius: number, kind: 'ring' | 'cross' }} Mark */
+/**
+ * What a picture shows. `count`: the first so many particles; `colours`: one for each, of this theme's palette.
+ * @typedef {object} Scene
+ * @property {LessonParticles} particles
+ * @property {number} [count]
+ * @property {(palette: Palette) => Uint32Array} colours
+ * @property {readonly Mark[]} [marks]
+ */
+
+const KEY_STEP_RAD = 0.14;
+const KEY_ZOOM = 1.2;
+/** Radians for a drag over a picture's whole height. */
+const DRAG_RAD = 3.4;
+/** A press that moves by less, in pixels, points at something. */
+const PRESS_PX = 5;
+/** Canvas pixels for a page pixel. */
+const FINENESS = 2;
+
+const dark = matchMedia('(prefers-color-scheme: dark)');
+/** Paper is white whatever the screen is. */
+const printing = signal(false);
+const isDark = signal(dark.matches);
+dark.addEventListener('change', () => {
+  isDark.value = dark.matches;
+});
+addEventListener('beforeprint', () => {
+  printing.value = true;
+});
+addEventListener('afterprint', () => {
+  printing.value = false;
+});
+
+/** A camera that one or several pictures share. */
+export class Orbit {
+  /** @param {import('../engine/types.js').Bounds} bounds */
+  constructor(bounds) {
+    this.ball = ballOf(bounds);
+    this.camera = new Camera();
+    this.camera.calm = true;
+    this.home = { ...this.camera.state };
+    this.camera.fit(this.ball, true);
+    /** Counts the changes. */
+    this.turned = signal(0);
+  }
+
+  /** @param {(camera: Camera) => void} act */
+  change(act) {
+    act(this.camera);
+    this.turned.value += 1;
+  }
+
+  /** Fits the particles instead of the box, once they are known. @param {LessonParticles} particles */
+  fitTo({ positions, radii }) {
+    if (radii.length === 0) return;
+    const min = [Infinity, Infinity, Infinity];
+    const max = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < positions.length; i += 1) {
+      min[i % 3] = Math.min(min[i % 3], positions[i]);
+      max[i % 3] = Math.max(max[i % 3], positions[i]);
+    }
+    const { centre } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+    const radius = radii.reduce((most, own, i) => {
+      const far = Math.hypot(...centre.map((c, k) => positions[3 * i + k] - c));
+      return Math.max(most, far + own);
+    }, 0);
+    this.ball = { centre, radius };
+    this.change((camera) => camera.fit(this.ball, true));
+  }
+
+  reset() {
+    this.change((camera) => {
+      camera.set(this.home);
+      camera.fit(this.ball, true);
+    });
+  }
+}
+
+export class Picture {
+  /**
+   * @param {Orbit} orbit
+   * @param {{ name: string, onPick?: (particle: number) => void }} about  `name`: what the picture shows, for those who do not see it
+   */
+  constructor(orbit, { name, onPick }) {
+    this.orbit = orbit;
+    this.onPick = onPick;
+    this.scene = signal(/** @type {Scene | null} */ (null));
+    this.canvas = h('canvas', { class: 'picture-canvas' });
+    const keys = onPick ? 'Arrow keys turn it, Enter chooses the particle in the middle.' : 'Arrow keys turn it.';
+    this.element = h(
+      'div',
+      { class: 'picture', role: 'application', tabindex: 0, 'aria-label': `${name}. ${keys}` },
+      this.canvas,
+    );
+    const context = this.canvas.getContext('2d', { alpha: false });
+    this.painter = context ? new Painter(this.canvas, context) : null;
+    this.size = signal({ width: 0, height: 0 });
+    this.frame = 0;
+    new ResizeObserver(() => this.measure()).observe(this.element);
+    effect(() => {
+      void [this.scene.value, this.size.value, this.orbit.turned.value, isDark.value];
+      // Printing does not wait for a frame.
+      if (printing.value) this.draw();
+      else this.ask();
+    });
+    this.listen();
+  }
+
+  measure() {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    const old = this.size.peek();
+    if (width !== old.width || height !== old.height) this.size.value = { width, height };
+  }
+
+  ask() {
+    this.frame ||= requestAnimationFrame(() => {
+      this.frame = 0;
+      this.draw();
+    });
+  }
+
+  /** @param {Scene} scene */
+  show(scene) {
+    this.scene.value = scene;
+  }
+
+  view() {
+    const { width, height } = this.size.peek();
+    return viewOf(this.orbit.camera.state, width, height, this.orbit.ball);
+  }
+
+  draw() {
+    const scene = this.scene.peek();
+    const { width, height } = this.size.peek();
+    if (!scene || !this.painter || width === 0 || height === 0) return;
+    const { painter } = this;
+    const { particles } = scene;
+    const palette = PALETTES[isDark.peek() && !printing.peek() ? 'dark' : 'light'];
+    const background = printing.peek() ? [1, 1, 1, 1] : [...rgbFromPacked(palette.ground), 1];
+    const [w, high] = [width * FINENESS, height * FINENESS];
+    if (painter.width !== w || painter.height !== high) painter.resize(w, high);
+    const { positions, normals, radii, levels } = particles;
+    painter.write(0, positions, normals, radii, levels, scene.colours(palette), -Infinity);
+    painter.set_count(scene.count ?? radii.length);
+    painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
+    const view = this.view();
+    painter.set_view(view.packed);
+    painter.draw(0);
+    this.drawMarks(painter.context, scene.marks ?? [], view);
+    this.element.dataset.drawn = String(scene.count ?? radii.length);
+  }
+
+  /** @param {CanvasRenderingContext2D} context @param {readonly Mark[]} marks @param {import('../engine/view/camera.js').View} view */
+  drawMarks(context, marks, view) {
+    const { width, height } = this.size.peek();
+    const style = getComputedStyle(this.element);
+    context.lineWidth = 2 * FINENESS;
+    for (const { place, normal, radius, kind } of marks) {
+      const at = projected(view, place, width, height);
+      if (!at || !isFacing(view.eye, place, normal)) continue;
+      const [x, y] = [at.x * FINENESS, at.y * FINENESS];
+      const r = Math.max(6, (1.6 * radius) / at.perPx) * FINENESS;
+      context.strokeStyle = style.getPropertyValue(kind === 'ring' ? '--mark' : '--mark-own') || style.color;
+      context.beginPath();
+      if (kind === 'ring') context.arc(x, y, r, 0, 2 * Math.PI);
+      else {
+        context.moveTo(x - r, y);
+        context.lineTo(x + r, y);
+        context.moveTo(x, y - r);
+        context.lineTo(x, y + r);
+      }
+      context.stroke();
+    }
+  }
+
+  /** The particle under a point of the picture; null if there is none. @param {number} xPx @param {number} yPx */
+  pick(xPx, yPx) {
+    const scene = this.scene.peek();
+    if (!scene) return null;
+    const { positions, normals, radii } = scene.particles;
+    const { width, height } = this.size.peek();
+    const view = this.view();
+    let best = null;
+    let nearest = Infinity;
+    for (let i = 0; i < (scene.count ?? radii.length); i += 1) {
+      const place = positions.subarray(3 * i, 3 * i + 3);
+      const at = projected(view, place, width, height);
+      if (!at || !isFacing(view.eye, place, normals.subarray(3 * i, 3 * i + 3))) continue;
+      const far = Math.hypot(at.x - xPx, at.y - yPx) * at.perPx;
+      // Of the particles under the point, the one in front.
+      if (far < 2 * radii[i] && at.perPx < nearest) [best, nearest] = [i, at.perPx];
+    }
+    return best;
+  }
+
+  listen() {
+    const { element, orbit } = this;
+    /** @type {{ x: number, y: number, moved: number } | null} */
+    let held = null;
+    element.addEventListener('pointerdown', (event) => {
+      if (event.button !== 0) return;
+      held = { x: event.clientX, y: event.clientY, moved: 0 };
+      element.setPointerCapture(event.pointerId);
+    });
+    element.addEventListener('pointermove', ({ clientX, clientY }) => {
+      if (!held) return;
+      const [dx, dy] = [clientX - held.x, clientY - held.y];
+      held = { x: clientX, y: clientY, moved: held.moved + Math.abs(dx) + Math.abs(dy) };
+      const scale = DRAG_RAD / Math.max(1, this.size.peek().height);
+      if (held.moved > PRESS_PX) orbit.change((camera) => camera.orbit(dx * scale, dy * scale));
+    });
+    element.addEventListener('pointerup', ({ clientX, clientY }) => {
+      const isPress = held !== null && held.moved <= PRESS_PX;
+      held = null;
+      const box = element.getBoundingClientRect();
+      if (isPress) this.choose(clientX - box.left, clientY - box.top);
+    });
+    element.addEventListener('pointercancel', () => {
+      held = null;
+    });
+    element.addEventListener('dblclick', () => {
+      if (!this.onPick) orbit.reset();
+    });
+    element.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || !this.press(event.key)) return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  }
+
+  /** @param {number} x @param {number} y */
+  choose(x, y) {
+    const found = this.onPick ? this.pick(x, y) : null;
+    if (found !== null) this.onPick?.(found);
+  }
+
+  /** @param {string} key @returns {boolean} whether the key means something here */
+  press(key) {
+    const { orbit } = this;
+    /** @type {Record<string, [number, number]>} */
+    const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const turn = turns[key];
+    if (turn) orbit.change((camera) => camera.orbit(turn[0] * KEY_STEP_RAD, turn[1] * KEY_STEP_RAD));
+    else if (key === '+' || key === '=') orbit.change((camera) => camera.zoom(KEY_ZOOM));
+    else if (key === '-' || key === '_') orbit.change((camera) => camera.zoom(1 / KEY_ZOOM));
+    else if (key === 'Enter' && this.onPick) this.choose(this.size.peek().width / 2, this.size.peek().height / 2);
+    else return false;
+    return true;
+  }
+}
+
+/** @param {readonly number[]} eye @param {ArrayLike<number>} place @param {ArrayLike<number>} normal */
+const isFacing = (eye, place, normal) => [0, 1, 2].reduce((sum, k) => sum + (eye[k] - place[k]) * normal[k], 0) > 0;
+
+/** Colours by generation level. @param {LessonParticles} particles */
+export const byLevel = ({ levels }) =>
+  once((palette) => Uint32Array.from(levels, (level) => palette.levels[level % CYCLE]));
+
+/** Colours by a number for each particle, from `low` to `high`. @param {ArrayLike<number>} values @param {number} low @param {number} high */
+export const byValue = (values, low, high) =>
+  once((palette) =>
+    Uint32Array.from(values, (value) => {
+      const at = (value - low) / (high - low || 1);
+      return palette.sequential[Math.round(Math.min(1, Math.max(0, at)) * (RAMP - 1))];
+    }),
+  );
+
+/** Some particles in a strong colour, the others plain. @param {number} count @param {(particle: number) => boolean} isMarked */
+export const byMark = (count, isMarked) =>
+  once((palette) =>
+    Uint32Array.from({ length: count }, (_, i) => (isMarked(i) ? palette.fate.trouble : palette.plain)),
+  );
+
+/** Works out the colours of a palette once. @param {(palette: Palette) => Uint32Array} colours */
+function once(colours) {
+  /** @type {Map<Palette, Uint32Array>} */
+  const known = new Map();
+  return (/** @type {Palette} */ palette) => {
+    const made = known.get(palette) ?? colours(palette);
+    known.set(palette, made);
+    return made;
+  };
+}

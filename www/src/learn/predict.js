@@ -1,0 +1,157 @@
+/**
+ * Predictions: a question, a guess, and the answer that the run itself gives. Nothing is scored or sent; a prediction may be skipped.
+ */
+import { signal } from '@preact/signals-core';
+import { fill, h, uniqueId } from '../ui/dom.js';
+import { reasonOf } from './figure.js';
+
+/**
+ * @typedef {import('./lab.js').Lab} Lab
+ */
+/** `right` is compared with the guess; `words` say it in a sentence. @typedef {{ right: string | number, words: string }} Answer */
+/**
+ * `choice`: one of several; `number`: a count; `pick`: a particle pressed in the figure before it.
+ * @typedef {object} Prediction
+ * @property {'choice' | 'number' | 'pick'} kind
+ * @property {readonly { value: string, label: string }[]} [choices]
+ * @property {string} [label]  of the number
+ * @property {number} [most]  largest number
+ * @property {(lab: Lab, guess: string | number | null) => Promise<Answer>} answer
+ * @property {(guess: string | number, right: string | number) => string} [judge]
+ */
+/** What a learner has guessed and what the run said. @typedef {{ stop: string, question: string, guess: string | number | null, answer: string }} Outcome */
+
+/** Which predictions are out. Figures show what would give the answer away only then. */
+export class Stops {
+  constructor() {
+    /** @type {Map<string, import('@preact/signals-core').Signal<boolean>>} */
+    this.open = new Map();
+    /** @type {Map<string, import('@preact/signals-core').Signal<number | null>>} */
+    this.picks = new Map();
+    /** @type {Map<string, Outcome>} */
+    this.outcomes = new Map();
+  }
+
+  /** @param {string} stop */
+  state(stop) {
+    const known = this.open.get(stop) ?? signal(false);
+    this.open.set(stop, known);
+    return known;
+  }
+
+  /** @param {string} stop */
+  pickOf(stop) {
+    const known = this.picks.get(stop) ?? signal(/** @type {number | null} */ (null));
+    this.picks.set(stop, known);
+    return known;
+  }
+
+  /** Whether a prediction is out; an effect that asks runs again when it is. @param {string} stop */
+  isOpen(stop) {
+    return this.state(stop).value;
+  }
+
+  /** The particle that was pressed, once there is one. @param {string} stop */
+  picked(stop) {
+    return this.pickOf(stop).value;
+  }
+
+  /** @param {string} stop @param {number} particle */
+  pick(stop, particle) {
+    if (!this.state(stop).peek()) this.pickOf(stop).value = particle;
+  }
+}
+
+/**
+ * Gives a question of the page's markup its controls.
+ * @param {HTMLElement} host @param {Prediction} prediction @param {{ lab: Promise<Lab>, stops: Stops }} context
+ */
+export function mountPrediction(host, prediction, { lab, stops }) {
+  const { id } = host;
+  const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
+  const input = inputOf(prediction, question, stops.pickOf(id));
+  const result = h('div', { class: 'predict-result', role: 'status' });
+  const reveal = h('button', { type: 'submit', class: 'button primary' }, 'Reveal');
+  const skip = h('button', { type: 'button', class: 'button plain', on: { click: () => void answer(null) } }, 'Skip');
+  const submit = (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const guess = input.get();
+    if (guess === null) fill(result, h('p', null, `${input.missing} You can also skip the question.`));
+    else void answer(guess);
+  };
+  const form = h(
+    'form',
+    { class: 'predict-form', on: { submit } },
+    input.element,
+    h('div', { class: 'controls' }, reveal, skip),
+  );
+
+  /** @param {string | number | null} guess */
+  async function answer(guess) {
+    reveal.disabled = true;
+    skip.disabled = true;
+    fill(result, h('p', null, 'The run is asked.'));
+    try {
+      const { right, words } = await prediction.answer(await lab, guess);
+      const judged = guess === null ? '' : (prediction.judge ?? plainJudge)(guess, right);
+      fill(result, judged ? h('p', { class: 'predict-judged' }, judged) : null, h('p', null, words));
+      stops.outcomes.set(id, { stop: id, question, guess, answer: words });
+      host.dataset.state = 'open';
+      input.lock();
+      form.querySelector('.controls')?.remove();
+      stops.state(id).value = true;
+    } catch (error) {
+      fill(result, h('p', null, reasonOf(error)));
+      reveal.disabled = false;
+      skip.disabled = false;
+    }
+  }
+  host.append(form, result);
+  return { answer };
+}
+
+/** @param {string | number} guess @param {string | number} right */
+const plainJudge = (guess, right) => (guess === right ? 'As you said.' : 'It is not so.');
+
+/** @param {Prediction} prediction @param {string} question @param {import('@preact/signals-core').Signal<number | null>} picked */
+function inputOf(prediction, question, picked) {
+  const { kind } = prediction;
+  if (kind === 'pick')
+    return {
+      element: null,
+      missing: 'Press a particle of the picture first.',
+      get: () => picked.peek(),
+      lock: () => {},
+    };
+  if (kind === 'number') {
+    const id = uniqueId('guess');
+    const box = h('input', {
+      class: 'box',
+      id,
+      type: 'number',
+      inputmode: 'numeric',
+      min: 0,
+      max: prediction.most ?? 9999,
+      step: 1,
+    });
+    return {
+      element: h('div', { class: 'predict-number' }, h('label', { for: id }, prediction.label ?? 'Your guess'), box),
+      missing: 'Write a number first.',
+      get: () => (box.value === '' || !box.checkValidity() ? null : Number(box.value)),
+      lock: () => {
+        box.disabled = true;
+      },
+    };
+  }
+  const name = uniqueId('guess');
+  const radios = (prediction.choices ?? []).map(({ value }) => h('input', { type: 'radio', name, value }));
+  const labels = (prediction.choices ?? []).map(({ label }, k) => h('label', { class: 'check' }, radios[k], label));
+  return {
+    element: h('fieldset', { class: 'predict-choices' }, h('legend', { class: 'visually-hidden' }, question), labels),
+    missing: 'Choose an answer first.',
+    get: () => radios.find(({ checked }) => checked)?.value ?? null,
+    lock: () => {
+      for (const radio of radios) radio.disabled = true;
+    },
+  };
+}

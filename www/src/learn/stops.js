@@ -1,0 +1,64 @@
+/** Stops in the address: each chapter, question and comparison has its own. */
+import { nearestStop, readAddress, writeAddress } from './address.js';
+import { STOP } from './bench.js';
+
+/**
+ * @param {object} about
+ * @param {readonly string[]} about.stops  ids of elements
+ * @param {readonly string[]} about.others  stops of the bench: `what-if-…`
+ * @param {(id: string) => Promise<void>} about.onBench  shows a comparison; the one that is there for an empty id
+ * @param {(words: string) => void} about.say
+ */
+export function mountStops({ stops, others, onBench, say }) {
+  const all = [...stops, ...others];
+  let isBenchShown = false;
+  const showBench = (/** @type {string} */ id) => {
+    isBenchShown = true;
+    void onBench(id);
+  };
+
+  /** Goes where the address says. */
+  function go() {
+    const { stop, parts } = readAddress(location.hash);
+    const found = nearestStop(stop, all);
+    if (!found) return;
+    if (!found.isExact) {
+      say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`);
+      history.replaceState(history.state, '', writeAddress({ stop: found.stop, parts }));
+    }
+    const isBench = others.includes(found.stop);
+    if (isBench) showBench(found.stop.slice(STOP.length + 1));
+    document.getElementById(isBench ? STOP : found.stop)?.scrollIntoView({ block: 'start' });
+  }
+
+  // What the address carries along stays in it when a link of the page leads to another stop.
+  document.addEventListener('click', (event) => {
+    const link = event.target instanceof Element ? event.target.closest('a[href^="#"]') : null;
+    if (!link || event.ctrlKey || event.metaKey || event.shiftKey || event.button !== 0) return;
+    event.preventDefault();
+    const { parts } = readAddress(location.hash);
+    const { stop } = readAddress(link.getAttribute('href') ?? '');
+    const next = writeAddress({ stop, parts });
+    if (next === location.hash) go();
+    else location.hash = next;
+    // As an anchor does, the reading place of the keyboard goes along.
+    const target = document.getElementById(others.includes(stop) ? STOP : stop);
+    target?.setAttribute('tabindex', '-1');
+    target?.focus({ preventScroll: true });
+  });
+  addEventListener('hashchange', go);
+  go();
+
+  // The comparison runs when it comes near, as figures do.
+  const bench = document.getElementById(STOP);
+  const observer = new IntersectionObserver(
+    (entries) => {
+      if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+      observer.disconnect();
+      if (!isBenchShown) showBench('');
+    },
+    { rootMargin: '300px 0px' },
+  );
+  if (bench) observer.observe(bench);
+  return { all, go };
+}

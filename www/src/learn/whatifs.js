@@ -1,0 +1,175 @@
+/** The choices of the method that can be seen side by side. */
+import { adaptiveRun, LAWS } from './chapters/sizes.js';
+
+/**
+ * @typedef {import('./lab.js').Lab} Lab
+ * @typedef {import('./pair.js').Side} Side
+ * @typedef {import('./pair.js').Colouring} Colouring
+ * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
+ */
+/**
+ * One choice. `makes` is given a value and makes the run; the first two values are shown first.
+ * @typedef {object} WhatIf
+ * @property {string} id
+ * @property {string} name
+ * @property {string} look  what to look for
+ * @property {Colouring} colouring
+ * @property {readonly { value: string, label: string }[]} values
+ * @property {(lab: Lab, value: string) => Promise<import('./lab.js').Run>} make
+ */
+
+/** Runs whose particles are counted and drawn, and not asked for events. @param {(value: string) => Partial<LessonSettings>} settings */
+const even = (settings) => (/** @type {Lab} */ lab, /** @type {string} */ value) => lab.run(settings(value));
+
+/** @param {readonly (readonly [string, string])[]} pairs */
+const values = (pairs) => pairs.map(([value, label]) => ({ value, label }));
+
+/** @type {readonly WhatIf[]} */
+export const WHAT_IFS = [
+  {
+    id: 'order',
+    name: 'Queue or stack',
+    look: 'Which particle comes next decides whether the front grows in rings or runs off like a thread, and so how many seams it leaves.',
+    colouring: 'level',
+    values: values([
+      ['queue', 'Queue'],
+      ['stack', 'Stack'],
+    ]),
+    make: even((order) => ({ order: /** @type {'queue' | 'stack'} */ (order) })),
+  },
+  {
+    id: 'projection',
+    name: 'Circle or Newton',
+    look: 'The distance of each child to its parent. The circle keeps 2r everywhere; Newton’s method falls short of it where the surface bends.',
+    colouring: 'parent',
+    values: values([
+      ['circle', 'Circle'],
+      ['newton', 'Newton’s method'],
+    ]),
+    make: even((projection) => ({ projection: /** @type {'circle' | 'newton'} */ (projection), relax_steps: 0 })),
+  },
+  {
+    id: 'tolerance',
+    name: 'Match tolerance',
+    look: 'How near a particle has to be to count as the child. Too small, and particles crowd along the seams; too large, and holes stay open.',
+    colouring: 'nearest',
+    values: values([
+      ['0.7', '0.7 · 2r'],
+      ['0.4', '0.4 · 2r'],
+      ['0.55', '0.55 · 2r'],
+      ['0.85', '0.85 · 2r'],
+      ['0.95', '0.95 · 2r'],
+    ]),
+    make: even((tolerance) => ({ match_tolerance: Number(tolerance), relax_steps: 0 })),
+  },
+  {
+    id: 'seed',
+    name: 'Another seed',
+    look: 'Where the front begins moves the rings and the seams. The number of particles and the spacing hardly change.',
+    colouring: 'level',
+    values: values([
+      ['0', 'Seed 0'],
+      ['1', 'Seed 1'],
+      ['2', 'Seed 2'],
+      ['3', 'Seed 3'],
+    ]),
+    make: even((seed) => ({ seed: Number(seed) })),
+  },
+  {
+    id: 'steps',
+    name: 'Steps of relaxation',
+    look: 'Ten steps close most of the holes. Ninety more change little that one can see.',
+    colouring: 'nearest',
+    values: values([
+      ['0', 'None'],
+      ['10', 'Ten steps'],
+      ['100', 'A hundred steps'],
+    ]),
+    make: even((steps) => ({ relax_steps: Number(steps) })),
+  },
+  {
+    id: 'step',
+    name: 'Size of a step',
+    look: 'How far a particle moves for the push it feels. Ten short steps leave seams that ten long ones close.',
+    colouring: 'nearest',
+    values: values([
+      ['0.6', '0.6 r²'],
+      ['0.2', '0.2 r²'],
+      ['1', '1.0 r²'],
+    ]),
+    make: even((size) => ({ step_size: Number(size) })),
+  },
+  {
+    id: 'matched',
+    name: 'Matched particles leave or stay',
+    look: 'The paper takes a matched particle out of the neighbours. Two children of one parent can then not be matched with the same particle, and one of them is added beside it.',
+    colouring: 'nearest',
+    values: values([
+      ['stay', 'They stay'],
+      ['leave', 'They leave'],
+    ]),
+    make: even((matched) => ({ matched: /** @type {'stay' | 'leave'} */ (matched), relax_steps: 0 })),
+  },
+  {
+    id: 'gaps',
+    name: 'Gaps left or filled',
+    look: 'A hole that is wide enough for a particle can be given one before the relaxation.',
+    colouring: 'nearest',
+    values: values([
+      ['leave', 'Left'],
+      ['fill', 'Filled'],
+    ]),
+    make: even((gaps) => ({ gaps: /** @type {'leave' | 'fill'} */ (gaps) })),
+  },
+  {
+    id: 'start',
+    name: 'Where the search begins',
+    look: 'The pictures agree. Look at the evaluations: a start where the parent’s curvature expects the surface needs fewer steps.',
+    colouring: 'level',
+    values: values([
+      ['tangent', 'In the tangent plane'],
+      ['curvature', 'Where the curvature points'],
+    ]),
+    make: even((start) => ({ start: /** @type {'tangent' | 'curvature'} */ (start), relax_steps: 0 })),
+  },
+  {
+    id: 'placing',
+    name: 'Child by child or level by level',
+    look: 'Placing a whole level at once gives nearly the same particles and can compare children before it projects them.',
+    colouring: 'level',
+    values: values([
+      ['one_by_one', 'Child by child'],
+      ['level_by_level', 'Level by level'],
+    ]),
+    make: even((placing) => ({ placing: /** @type {'one_by_one' | 'level_by_level'} */ (placing), relax_steps: 0 })),
+  },
+  {
+    id: 'law',
+    name: 'Laws of the radius',
+    look: 'Where the two curvatures have opposite signs their sum is small, and the paper’s law gives large particles there.',
+    colouring: 'radius',
+    values: LAWS,
+    make: (lab, law) => adaptiveRun(lab, /** @type {LessonSettings['law']} */ (law)),
+  },
+  {
+    id: 'fit',
+    name: 'Room for an adaptive child',
+    look: 'A child is added if enough of the angle that it takes is free. Asking for all of it leaves holes, since on a lattice the two angles are equal and rounding decides.',
+    colouring: 'nearest',
+    values: values([
+      ['0.5', 'Half of it'],
+      ['1', 'All of it'],
+      ['0.75', 'Three quarters'],
+    ]),
+    make: (lab, fit) => adaptiveRun(lab, 'max_curvature', { fit: Number(fit), relax_steps: 0 }),
+  },
+];
+
+/** @param {WhatIf} whatIf @param {readonly [string, string]} chosen @returns {[Side, Side]} */
+export const sidesOf = ({ values: all, make }, chosen) =>
+  /** @type {[Side, Side]} */ (
+    chosen.map((value) => ({
+      label: all.find((known) => known.value === value)?.label ?? value,
+      make: (/** @type {Lab} */ lab) => make(lab, value),
+    }))
+  );

@@ -1,0 +1,22 @@
+/** The link to the lesson's page, which carries the surface of the picture over. */
+import { explain } from '../explain.js';
+import { packCarried } from '../surface-link.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+
+const PAGE = './learn/';
+
+/** @param {HTMLAnchorElement} link  of the page's markup @param {Engine} engine */
+export function bindLessonLink(link, engine) {
+  /** Says where the link leads just before it is followed or copied. */
+  const write = () => {
+    const surface = engine.lessonSurface();
+    const formula = surface && 'formula' in surface ? surface : null;
+    link.href = `${PAGE}#surface=${packCarried({ surface: formula, from: location.hash })}`;
+  };
+  for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
+  explain(link, () => ({
+    title: 'The lesson',
+    text: 'The paper’s idea in nine short chapters, with figures on this surface.',
+  }));
+}

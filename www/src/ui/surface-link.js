@@ -1,0 +1,78 @@
+/**
+ * A surface in the address of the lesson's page: its formula, its parameters and its box, and the way back to the page from which it
+ * comes. What is read from an address may be anything, so every part of it is checked.
+ */
+
+/**
+ * @typedef {import('../engine/types.js').Bounds} Bounds
+ * @typedef {import('../engine/types.js').Parameter} Parameter
+ */
+/** @typedef {{ formula: string, parameters: Parameter[], bounds: Bounds }} FormulaSurface */
+/**
+ * What is carried over. `surface` is null if it comes from points, which no address can hold; `from` is the fragment of the page's
+ * own address.
+ * @typedef {{ surface: FormulaSurface | null, from: string }} Carried
+ */
+
+/** Longest text that is read: more than a formula of the greatest length with all parameters. */
+const LONGEST = 65_536;
+const MOST_PARAMETERS = 64;
+
+/** @param {string} text */
+function toBase64url(text) {
+  const bytes = new TextEncoder().encode(text);
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''))
+    .replaceAll('+', '-')
+    .replaceAll('/', '_')
+    .replace(/=+$/, '');
+}
+
+/** @param {string} text */
+function fromBase64url(text) {
+  const bytes = Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
+  return new TextDecoder('utf-8', { fatal: true }).decode(bytes);
+}
+
+/** Writes any plain data for an address. @param {unknown} data */
+export const packed = (data) => toBase64url(JSON.stringify(data));
+
+/** Reads what `packed` has written; null if it is damaged. @param {string} text @returns {any} */
+export function unpacked(text) {
+  if (text.length > LONGEST) return null;
+  try {
+    return JSON.parse(fromBase64url(text));
+  } catch {
+    return null;
+  }
+}
+
+/** @param {Carried} carried */
+export function packCarried({ surface, from }) {
+  const parameters = Object.fromEntries((surface?.parameters ?? []).map(({ name, value }) => [name, value]));
+  return packed(surface ? { formula: surface.formula, parameters, bounds: surface.bounds, from } : { from });
+}
+
+/** @param {unknown} v @returns {v is [number, number, number]} */
+const isVector = (v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
+
+/** @param {string} text @returns {Carried | null} */
+export function unpackCarried(text) {
+  const raw = unpacked(text);
+  if (typeof raw !== 'object' || raw === null) return null;
+  const from = typeof raw.from === 'string' && /^#v\d+\.[jz]\.[\w-]*$/.test(raw.from) ? raw.from : '';
+  if (raw.formula === undefined) return { surface: null, from };
+  const { formula, bounds } = raw;
+  const values = Object.entries(raw.parameters ?? {}).slice(0, MOST_PARAMETERS);
+  const isWhole =
+    typeof formula === 'string' &&
+    isVector(bounds?.min) &&
+    isVector(bounds?.max) &&
+    [0, 1, 2].every((k) => bounds.min[k] < bounds.max[k]) &&
+    values.every(([, value]) => Number.isFinite(value));
+  if (!isWhole) return null;
+  const parameters = values.map(([name, value]) => {
+    const number = /** @type {number} */ (value);
+    return { name, label: name, value: number, min: Math.min(0, number), max: Math.max(1, number), step: 0.01 };
+  });
+  return { surface: { formula, parameters, bounds: { min: bounds.min, max: bounds.max } }, from };
+}

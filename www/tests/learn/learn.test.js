@@ -1,0 +1,112 @@
+/** The parts of the lesson that need no browser. */
+import { expect, test } from 'vitest';
+import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.js';
+import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
+import { subjectOf } from '../../src/learn/surface.js';
+import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
+
+const SURFACE = {
+  formula: 'x^2 + y^2 = a − é',
+  parameters: [{ name: 'a', label: 'a', value: -2.5, min: -2.5, max: 1, step: 0.01 }],
+  bounds: {
+    min: /** @type {[number, number, number]} */ ([-1, -1, -1]),
+    max: /** @type {[number, number, number]} */ ([1, 1, 2]),
+  },
+};
+
+/** @param {number[][]} places @param {Partial<Record<'levels' | 'parents' | 'fronts', number[]>>} [more] @returns {any} */
+const particles = (places, { levels = [], parents = [], fronts = [] } = {}) => ({
+  positions: Float32Array.from(places.flat()),
+  normals: Float32Array.from(places.flat()),
+  radii: new Float32Array(places.length).fill(0.5),
+  levels: Uint32Array.from(levels),
+  parents: Uint32Array.from(parents),
+  fronts: Uint32Array.from(fronts),
+});
+
+test('an address is read as it was written, and a bare anchor is one', () => {
+  const address = { stop: 'what-if-order', parts: { surface: 'abc_-', mode: 'present' } };
+  expect(readAddress(writeAddress(address))).toEqual(address);
+  expect(readAddress('#rings')).toEqual({ stop: 'rings', parts: {} });
+  expect(readAddress('#surface=abc')).toEqual({ stop: '', parts: { surface: 'abc' } });
+  expect(readAddress('#rings&unknown=1&%E0%A4%A=2').parts).toEqual({});
+  expect(writeAddress({ stop: '', parts: {} })).toBe('');
+});
+
+test('an unknown stop leads to the one with the nearest name', () => {
+  const stops = ['why', 'rings', 'rest', 'what-if-order'];
+  expect(nearestStop('rings', stops)).toEqual({ stop: 'rings', isExact: true });
+  expect(nearestStop('ring', stops)).toEqual({ stop: 'rings', isExact: false });
+  expect(nearestStop('what-if-orders', stops)).toEqual({ stop: 'what-if-order', isExact: false });
+  expect(nearestStop('', stops)).toBe(null);
+  expect(nearestStop('x'.repeat(10_000), stops)?.isExact).toBe(false);
+});
+
+test('a surface comes out of a link as it went in, with the way back', () => {
+  const carried = { surface: SURFACE, from: '#v1.j.eyJ9' };
+  const read = unpackCarried(packCarried(carried));
+  expect(read).toEqual(carried);
+  expect(unpackCarried(packCarried({ surface: null, from: '' }))).toEqual({ surface: null, from: '' });
+});
+
+test('a damaged surface is refused, and a way back that is none is dropped', () => {
+  for (const bad of [
+    '',
+    '!',
+    'AAAA',
+    packed(3),
+    packed({ formula: 1 }),
+    packed({ ...SURFACE, bounds: { min: [0, 0, 0], max: [1, 0, 1] } }),
+  ])
+    expect(unpackCarried(bad), bad).toBe(null);
+  expect(unpackCarried(packed({ from: 'javascript:alert(1)' }))).toEqual({ surface: null, from: '' });
+  expect(unpacked('A'.repeat(100_000))).toBe(null);
+});
+
+test('the lesson says which surface stands in, and why', () => {
+  expect(subjectOf(undefined)).toMatchObject({ isOwn: false, notice: '' });
+  expect(subjectOf('%%%').notice).toContain('no surface that can be read');
+  expect(subjectOf(packCarried({ surface: null, from: '' })).notice).toContain('points');
+  expect(subjectOf(packCarried({ surface: SURFACE, from: '' }))).toMatchObject({ isOwn: true, surface: SURFACE });
+});
+
+test('the nearest distance is that of a pair, over the sum of the radii', () => {
+  const found = nearestDistances(
+    particles([
+      [0, 0, 0],
+      [0.8, 0, 0],
+      [1.9, 0, 0],
+      [40, 0, 0],
+    ]),
+  );
+  expect([...found.slice(0, 2)].map((v) => Number(v.toFixed(3)))).toEqual([0.8, 0.8]);
+  expect(found[2]).toBeCloseTo(1.1);
+  expect(found[3]).toBe(Infinity);
+});
+
+test('rings are counted on the first front alone', () => {
+  const places = Array.from({ length: 5 }, () => [0, 0, 0]);
+  expect(ringsOf(particles(places, { levels: [0, 1, 1, 0, 3], fronts: [0, 0, 0, 1, 0] }))).toEqual([1, 2, 0, 1]);
+});
+
+test('the sharpest bend is where the normals of parent and child differ most', () => {
+  const none = 0xffffffff;
+  const found = sharpestBend(
+    particles(
+      [
+        [0, 0, 1],
+        [0, 0.6, 0.8],
+        [0, 1, 0],
+      ],
+      { parents: [none, 0, 1] },
+    ),
+  );
+  expect(found).toEqual({ child: 2, parent: 1 });
+  expect(sharpestBend(particles([[0, 0, 1]], { parents: [none] }))).toBe(null);
+});
+
+test('nine tenths of a fall are done at a step, and a fine sampling counts areas', () => {
+  expect(stepOfRest([10, 5, 1.5, 0.9, 0])).toBe(3);
+  expect(stepOfRest([1, 0])).toBe(1);
+  expect(asFineEverywhere([1, 2])).toBe(5);
+});

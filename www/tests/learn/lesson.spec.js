@@ -1,0 +1,204 @@
+/** The lesson as an article: its figures, its questions, its comparisons, and what it does where something is missing. */
+import { expect, test } from '@playwright/test';
+import { createSite } from '../server.js';
+import { fingerprint, live, openLesson, overflow, scan, settled, TORUS } from './helpers.js';
+
+const FIGURES = ['why', 'cost', 'six', 'circle', 'first', 'rings', 'order', 'seams', 'rest', 'sizes'];
+
+test('every chapter has a live figure, in a folder of a host, too', async ({ page }) => {
+  const { clean } = await openLesson(page, { place: './sub/path/' });
+  await expect(page.locator('.chapter h2')).toHaveCount(11);
+  for (const name of FIGURES) await live(page, name);
+  expect(
+    await page.locator('canvas').evaluateAll((all) => all.every((one) => /** @type {any} */ (one).getContext('2d'))),
+  ).toBe(true);
+  clean();
+});
+
+test('the learner’s own formula is carried over, and back', async ({ page }) => {
+  const formula = 'x^2 + y^2 + z^2 = 0.5';
+  const state = Buffer.from(JSON.stringify({ formula })).toString('base64url');
+  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.goto(`./?backend=canvas2d#v1.j.${state}`);
+  await page.waitForFunction(
+    () => /** @type {any} */ (window).marchingParticles?.engine.progress.value.phase === 'done',
+  );
+  await page.waitForFunction(() => performance.getEntriesByType('resource').some(({ name }) => /\/link-/.test(name)));
+  await page.getByRole('link', { name: 'Lesson' }).click();
+  await page.waitForURL(/learn\/#surface=/);
+  await expect(page.locator('#surface-name')).toContainText(formula);
+  await live(page, 'why');
+  await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
+  await page.waitForURL((url) => !url.pathname.includes('learn') && url.hash.startsWith('#v1'));
+  await page.waitForFunction(() => /** @type {any} */ (window).marchingParticles?.engine.state.value.formula !== '');
+  expect(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.formula)).toBe(formula);
+});
+
+test('a surface without a point gives way to the ellipsoid, and the page says so', async ({ page }) => {
+  const none = Buffer.from(
+    JSON.stringify({ formula: 'x^2 + y^2 + z^2 + 1 = 0', bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, from: '' }),
+  ).toString('base64url');
+  await openLesson(page, { hash: `#surface=${none}` });
+  await live(page, 'why');
+  await expect(page.locator('#notice')).toContainText('The figures show an ellipsoid.');
+});
+
+test('a figure keeps the answer to itself until the question is revealed', async ({ page }) => {
+  await openLesson(page, { hash: `#predict-ring&surface=${TORUS}` });
+  const rings = await live(page, 'rings');
+  await expect(rings.locator('.chart')).toBeHidden();
+  const question = page.locator('#predict-ring');
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question.getByRole('status')).toContainText('Write a number first.');
+  await question.getByLabel('Particles in ring 12').fill('72');
+  await question.getByRole('button', { name: 'Reveal' }).click();
+  await expect(question.getByRole('status')).toContainText(/Ring 12 of this surface has \d+ particles/);
+  const told = Number(/has (\d+)/.exec((await question.getByRole('status').textContent()) ?? '')?.[1]);
+  await expect(rings.locator('.chart')).toBeVisible();
+  await rings.getByRole('slider', { name: 'Level' }).fill('12');
+  await expect(rings.locator('.chart')).toContainText(`Level 12: ${told} new particles.`);
+});
+
+test('every question is answered by the run, or skipped', async ({ page }) => {
+  const { clean } = await openLesson(page);
+  const questions = page.locator('.predict');
+  await expect(questions).toHaveCount(9);
+  for (const question of await questions.all()) {
+    await question.getByRole('button', { name: 'Skip' }).click();
+    await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    await expect(question.locator('.predict-result')).toContainText(/\w{4}/);
+  }
+  clean();
+});
+
+test('a question is answered from the keyboard alone, by a press on the picture, too', async ({ page }) => {
+  await openLesson(page);
+  await live(page, 'cost');
+  const cost = page.locator('#predict-cost');
+  await cost.getByRole('radio').first().focus();
+  await page.keyboard.press('Space');
+  await page.keyboard.press('Enter');
+  await expect(cost.locator('.predict-judged')).not.toBeEmpty();
+  const seams = await live(page, 'seams');
+  await seams.getByRole('application').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('Enter');
+  const hole = page.locator('#predict-hole');
+  await hole.getByRole('button', { name: 'Reveal' }).focus();
+  await page.keyboard.press('Enter');
+  await expect(hole.getByRole('status')).toContainText(/particle distances away|Exactly there/);
+});
+
+test('one camera turns both pictures of a comparison', async ({ page }) => {
+  await openLesson(page, { hash: '#what-if-tolerance' });
+  const bench = page.locator('#bench');
+  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.getByLabel('What changes')).toHaveValue('tolerance');
+  const [left, right] = [bench.locator('.picture').first(), bench.locator('.picture').last()];
+  const before = [await fingerprint(left), await fingerprint(right)];
+  expect(before[0]).not.toBe(before[1]);
+  await left.focus();
+  await page.keyboard.press('ArrowRight');
+  await expect.poll(() => fingerprint(right)).not.toBe(before[1]);
+  await expect.poll(() => fingerprint(left)).not.toBe(before[0]);
+  await bench.getByLabel('What changes').selectOption('steps');
+  await expect(bench.getByRole('columnheader', { name: 'Ten steps' })).toBeVisible({ timeout: 60_000 });
+});
+
+test('a card shows what the paper says and what the program does', async ({ page }) => {
+  await openLesson(page, { hash: '#differences' });
+  await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
+  const card = page.locator('.card', { hasText: 'Who comes next' });
+  await expect(card.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+});
+
+test('an unknown stop leads to the nearest one, and the page says so', async ({ page }) => {
+  await openLesson(page, { hash: '#ringz' });
+  await expect(page.locator('#notice')).toContainText('There is no stop “ringz”');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
+  await expect(page.locator('#rings h2')).toBeInViewport();
+});
+
+test('without the bundle the text stays and a figure says what is missing', async ({ page }) => {
+  await page.route(/lesson_bg.*\.wasm$/, (route) => route.abort());
+  await openLesson(page);
+  const why = await settled(page, 'why');
+  await expect(why).toHaveAttribute('data-state', 'still');
+  await expect(why.locator('img')).toBeVisible();
+  await expect(page.locator('[data-figure="why"] + .figure-status')).toContainText('did not load');
+  await expect(page.getByText('Particles are such a list.')).toBeVisible();
+});
+
+test.describe('without JavaScript', () => {
+  test.use({ javaScriptEnabled: false });
+  test('the article is complete, with a still for every figure', async ({ page }) => {
+    await page.goto('./learn/');
+    await expect(page.getByText('Particles are such a list.')).toBeVisible();
+    await expect(page.locator('.opening noscript p')).toBeVisible();
+    const stills = page.locator('.still');
+    await expect(stills).toHaveCount(FIGURES.length);
+    for (const still of await stills.all()) {
+      await still.scrollIntoViewIfNeeded();
+      await expect(still).toHaveJSProperty('complete', true);
+      expect(await still.evaluate((image) => /** @type {HTMLImageElement} */ (image).naturalWidth)).toBeGreaterThan(
+        600,
+      );
+    }
+    await page.getByRole('link', { name: 'Rings', exact: true }).click();
+    await expect(page.locator('#rings h2')).toBeInViewport();
+  });
+});
+
+test.describe('stored', () => {
+  test.use({ serviceWorkers: 'allow' });
+  test('after one visit the lesson needs no network', async ({ page }) => {
+    const server = createSite();
+    await new Promise((done) => server.listen(0, 'localhost', () => done(undefined)));
+    const { port } = /** @type {import('node:net').AddressInfo} */ (server.address());
+    await page.goto(`http://localhost:${port}/sub/path/learn/`);
+    await page.waitForFunction(() => navigator.serviceWorker.controller?.state === 'activated');
+    server.closeAllConnections();
+    await new Promise((done) => server.close(() => done(undefined)));
+    await page.goto(`http://localhost:${port}/sub/path/learn/#rings`);
+    await page.reload();
+    await live(page, 'rings');
+    await page.getByRole('link', { name: 'Marching Particles', exact: true }).click();
+    await expect(page.getByRole('heading', { name: 'Marching Particles' })).toBeVisible();
+  });
+});
+
+for (const width of [390, 320]) {
+  test(`at ${width} px nothing is wider than the page`, async ({ page }) => {
+    await openLesson(page, { width, height: 760 });
+    for (const name of FIGURES) await live(page, name);
+    for (const question of await page.locator('.predict').all()) {
+      await question.getByRole('button', { name: 'Skip' }).click();
+      await expect(question).toHaveAttribute('data-state', 'open', { timeout: 60_000 });
+    }
+    await page.locator('#what-if').scrollIntoViewIfNeeded();
+    await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+    expect(await overflow(page)).toBe(0);
+  });
+}
+
+test('the lesson is accessible, live and in the dark', async ({ page }) => {
+  await openLesson(page);
+  for (const name of ['why', 'six', 'first', 'rest']) await live(page, name);
+  for (const colorScheme of /** @type {const} */ (['light', 'dark'])) {
+    await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
+    expect((await scan(page)).violations.map(({ id, nodes }) => [id, nodes.map(({ target }) => target)])).toEqual([]);
+  }
+});
+
+test('the front grows by itself, but not under reduced motion', async ({ page }) => {
+  await openLesson(page);
+  const why = await live(page, 'why');
+  const level = why.getByRole('slider', { name: 'Level' });
+  const last = await level.getAttribute('max');
+  await expect(level).toHaveValue(last ?? '');
+  await page.emulateMedia({ reducedMotion: 'no-preference' });
+  await page.reload();
+  await live(page, 'why');
+  await expect(why.getByRole('button', { name: 'Pause' })).toBeVisible();
+  await expect(level).toHaveValue(last ?? '');
+});

@@ -1,0 +1,57 @@
+/**
+ * Takes the still pictures of the lesson from its own figures, from the built site: `npm run pictures:lesson [-- address]`.
+ *
+ * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot be.
+ */
+import { writeFile } from 'node:fs/promises';
+import { fileURLToPath } from 'node:url';
+import { chromium } from '@playwright/test';
+
+const [base = 'http://localhost:4517/'] = process.argv.slice(2);
+const folder = fileURLToPath(new URL('../../learn/stills/', import.meta.url));
+/** What is not of the picture. The bars of the costs are shown, since their still is for readers without JavaScript alone. */
+const STYLE = `.controls, .choices, .figure-count, .key, .scale, .bar, .check, figcaption { display: none !important }
+  .told { min-height: 0 !important } .cost { display: table !important }`;
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM_PATH ?? '/usr/bin/chromium',
+  args: ['--no-sandbox'],
+});
+const page = await browser.newPage({
+  viewport: { width: 1040, height: 900 },
+  colorScheme: 'light',
+  reducedMotion: 'reduce',
+  bypassCSP: true,
+});
+await page.goto(`${base}learn/`);
+await page.addStyleTag({ content: STYLE });
+for (const stage of await page.locator('[data-figure]').all()) {
+  const name = await stage.getAttribute('data-figure');
+  await stage.scrollIntoViewIfNeeded();
+  await page.waitForFunction(
+    (element) => /** @type {HTMLElement} */ (element).dataset.state === 'live',
+    await stage.elementHandle(),
+  );
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const png = await stage.screenshot();
+  const bytes = await page.evaluate(
+    async (picture) => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(picture)], { type: 'image/png' }));
+      const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+      canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
+      const webp = await canvas.convertToBlob({ type: 'image/webp', quality: 0.8 });
+      return [
+        ...new Uint8Array(await webp.arrayBuffer()),
+        bitmap.width >> 8,
+        bitmap.width & 255,
+        bitmap.height >> 8,
+        bitmap.height & 255,
+      ];
+    },
+    [...png],
+  );
+  const size = bytes.splice(-4);
+  await writeFile(`${folder}${name}.webp`, new Uint8Array(bytes));
+  console.log(`${name}: ${bytes.length} bytes, ${size[0] * 256 + size[1]} × ${size[2] * 256 + size[3]}`);
+}
+await browser.close();
