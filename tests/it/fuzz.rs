@@ -1,80 +1,129 @@
-//! Whole runs on damaged formulas of the gallery, with random settings: none panics, each ends within a bounded number of
-//! evaluations, and what comes out is finite. `FUZZ_CASES` sets the number of runs, 300 by default.
+//! Mutated formulas, files and requests, by the checks that libFuzzer runs for long (`fuzz/`), and whole runs on damaged formulas of
+//! the gallery. `FUZZ_CASES` multiplies the number of each.
 
 use marching_particles::field::formula::MAX_FORMULA_BYTES;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
-use marching_particles::session::{FieldRequest, Session};
+use marching_particles::session::FieldRequest;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
+use std::fs;
+use std::path::Path;
 
-/// Pieces that are put into a formula.
-const PIECES: &[&str] = &[
-    "x", "y", "z", "+", "-", "*", "/", "^", "(", ")", "^2", "^-1", "1e300", "1e-300", "0", "7", ".", ",",
-    "=", "sin(", "cos(", "exp(", "ln(", "sqrt(", "abs(", "floor(", "sign(", "min(", "atan2(", "tan(", "100*",
-    "mod(", "²", "π", "|",
-];
+#[path = "../../fuzz/harness.rs"]
+#[expect(unreachable_pub, reason = "it is a library of its own for libFuzzer")]
+mod harness;
 
-/// A formula of the gallery in which some pieces are dropped, put in or taken from another formula.
-fn damaged(random: &mut Pcg32) -> String {
-    let mut pick = |count: usize| random.next_u32() as usize % count;
-    let of_gallery = |k: usize| gallery::SURFACES[k].formula;
-    let mut text: Vec<char> = of_gallery(pick(gallery::SURFACES.len())).chars().collect();
-    for _ in 0..pick(4) {
-        let (at, length) = (pick(text.len() + 1), pick(6));
-        let end = (at + length).min(text.len());
-        match pick(4) {
-            0 => drop(text.drain(at..end)),
-            1 => drop(text.splice(at..at, PIECES[pick(PIECES.len())].chars())),
-            2 => drop(text.splice(at..end, PIECES[pick(PIECES.len())].chars())),
+/// How many times as many cases are asked for as usual.
+fn times() -> u64 {
+    std::env::var("FUZZ_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(1)
+}
+
+fn below(random: &mut Pcg32, count: usize) -> usize {
+    random.next_u32() as usize % count.max(1)
+}
+
+/// The files of a folder of `fuzz/seeds`, in the order of their names.
+fn seeds(folder: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(folder);
+    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("a file").path()).collect();
+    paths.sort();
+    assert!(paths.len() >= 5, "{}: {} seeds", folder.display(), paths.len());
+    paths.iter().map(|path| fs::read(path).expect("a seed")).collect()
+}
+
+/// The pieces of `fuzz/tokens.dict`.
+fn tokens() -> Vec<Vec<u8>> {
+    let quoted = include_str!("../../fuzz/tokens.dict").lines().filter_map(|line| line.strip_prefix('"'));
+    quoted.map(|line| line.trim_end_matches('"').replace("\\\\", "\\").into_bytes()).collect()
+}
+
+/// A seed with fewer than `most` changes: bytes drop out or change, pieces of the dictionary or of another seed come in.
+fn mutated(random: &mut Pcg32, seeds: &[Vec<u8>], tokens: &[Vec<u8>], most: usize) -> Vec<u8> {
+    let mut bytes = seeds[below(random, seeds.len())].clone();
+    for _ in 0..below(random, most) {
+        let at = below(random, bytes.len() + 1);
+        let end = (at + below(random, 8)).min(bytes.len());
+        match below(random, 6) {
+            0 => drop(bytes.drain(at..end)),
+            1 => drop(bytes.splice(at..end, tokens[below(random, tokens.len())].iter().copied())),
+            2 => drop(bytes.splice(at..at, tokens[below(random, tokens.len())].iter().copied())),
+            3 => {
+                let again = bytes[at..end].to_vec();
+                drop(bytes.splice(at..at, again));
+            }
+            4 => {
+                let other = &seeds[below(random, seeds.len())];
+                bytes.truncate(at);
+                bytes.extend(&other[below(random, other.len())..]);
+            }
             _ => {
-                let other: Vec<char> = of_gallery(pick(gallery::SURFACES.len())).chars().collect();
-                text.truncate(at);
-                text.extend(&other[pick(other.len())..]);
+                if let Some(byte) = bytes.get_mut(at) {
+                    *byte ^= 1 << below(random, 8);
+                }
             }
         }
     }
-    text.into_iter().take(MAX_FORMULA_BYTES).collect()
+    bytes.truncate(MAX_FORMULA_BYTES);
+    bytes
+}
+
+/// Checks every seed and `cases` mutations of them.
+fn fuzz(folder: &str, cases: u64, check: impl Fn(&[u8])) {
+    let (seeds, tokens) = (seeds(folder), tokens());
+    seeds.iter().for_each(|seed| check(seed));
+    for case in 0..cases * times() {
+        let bytes = mutated(&mut Pcg32::seed_from_u64(case), &seeds, &tokens, 7);
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(&bytes)));
+        assert!(outcome.is_ok(), "case {case} of {folder}: {:?}", String::from_utf8_lossy(&bytes));
+    }
+}
+
+#[test]
+fn all_readings_of_mutated_formulas_agree() {
+    fuzz("formula", 20_000, harness::formula);
+}
+
+#[test]
+fn mutated_files_are_read_or_refused() {
+    fuzz("file", 20_000, harness::file);
+}
+
+#[test]
+fn mutated_requests_end_with_finite_particles_or_are_refused() {
+    fuzz("request", 200, harness::request);
+}
+
+/// A formula of the gallery in which some pieces are dropped, put in or taken from another formula.
+fn damaged(random: &mut Pcg32, tokens: &[Vec<u8>]) -> String {
+    let formulas: Vec<Vec<u8>> = gallery::SURFACES.iter().map(|surface| surface.formula.into()).collect();
+    String::from_utf8_lossy(&mutated(random, &formulas, tokens, 4)).into_owned()
 }
 
 #[test]
 fn runs_on_damaged_formulas_end_with_finite_particles() {
-    /// Evaluations that no run of so few particles needs.
-    const MOST: u64 = 20_000_000;
-    let cases: u64 = std::env::var("FUZZ_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(300);
+    let (cases, tokens) = (300 * times(), tokens());
     let (mut ran, mut proven) = (0, 0);
     for seed in 0..cases {
         let mut random = Pcg32::seed_from_u64(seed);
-        let formula = damaged(&mut random);
-        let mut session = Session::new();
-        let half = [0.01, 1.0, 3.0, 40.0, 1e4][random.next_u32() as usize % 5];
-        let bounds = Some(Bounds::cube(half));
-        let request = FieldRequest { formula: Some(formula.clone()), bounds, ..FieldRequest::default() };
-        if session.set_field(&request).is_err() {
-            continue;
-        }
-        ran += 1;
+        let formula = Some(damaged(&mut random, &tokens));
+        let bounds = Some(Bounds::cube([0.01, 1.0, 3.0, 40.0, 1e4][below(&mut random, 5)]));
         let settings = Settings {
-            radius_share: [0.01, 0.03, 0.2][random.next_u32() as usize % 3],
-            sampling: if random.next_u32() % 3 == 0 { Sampling::Adaptive } else { Sampling::Uniform },
-            method: if random.next_u32() % 3 == 0 { Method::Refined } else { Method::Front },
+            radius_share: [0.01, 0.03, 0.2][below(&mut random, 3)],
+            sampling: if below(&mut random, 3) == 0 { Sampling::Adaptive } else { Sampling::Uniform },
+            method: if below(&mut random, 3) == 0 { Method::Refined } else { Method::Front },
             relax_steps: random.next_u32() % 4,
             max_particles: 3_000,
             seed,
             ..Settings::default()
         };
-        let context = format!("{seed}: {formula} in ±{half}, {settings:?}");
-        session.start(&settings).unwrap_or_else(|error| panic!("{context}: {error}"));
-        while session.step(20_000).stop_reason.is_none() {}
-        let report = session.report();
-        assert!(report.evaluations < MOST, "{context}: {} evaluations", report.evaluations);
-        for (p, n) in session.particles().position.iter().zip(&session.particles().normal) {
-            assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-4, "{context}: {p} {n}");
+        let request = FieldRequest { formula, bounds, ..FieldRequest::default() };
+        if let Some(report) = harness::run(&request, &settings, 20_000) {
+            ran += 1;
+            proven += u32::from(report.search == Search::Proven);
         }
-        let is_proven = report.search == Search::Proven;
-        proven += u32::from(is_proven);
-        assert!(!is_proven || report.sampled.missing == Some(report.sampled.without.len()), "{context}");
     }
     println!("{ran} of {cases} formulas are valid, {proven} of the runs proven");
     assert!(u64::from(proven) * 10 > cases, "{proven} of {cases} proven");

@@ -14,6 +14,7 @@ mod formula;
 mod formula_functions;
 mod formula_properties;
 mod front;
+#[cfg(feature = "points")]
 mod fuzz;
 mod gallery;
 mod golden;

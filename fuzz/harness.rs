@@ -1,0 +1,246 @@
+//! What must hold of any formula, file and request. Each function takes any bytes and panics where something does not hold.
+//!
+//! libFuzzer calls them (`targets/`), and so does `tests/it/fuzz.rs`, with mutations of the files in `seeds/`.
+
+use glam::{DVec3, Vec3};
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::{Enclosure, Field, Jet};
+use marching_particles::math::Sym3;
+use marching_particles::pointcloud::job::Job;
+use marching_particles::pointcloud::read::{ReadError, Reader};
+use marching_particles::sampler::{Search, Settings};
+use marching_particles::session::{FieldRequest, Report, Session};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// Numbers that are the same for the same bytes.
+struct Random(Pcg32);
+
+impl Random {
+    fn of(bytes: &[u8]) -> Self {
+        let fnv = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        Self(Pcg32::seed_from_u64(bytes.iter().fold(0xcbf2_9ce4_8422_2325, fnv)))
+    }
+
+    fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * f64::from(self.0.next_u32()) / 4_294_967_296.0
+    }
+
+    fn point(&mut self, half: f64) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| self.between(-half, half)))
+    }
+}
+
+/// A formula: a mistake in it has a place and a message; without one, it means the same once it is printed, and all its readings
+/// agree: value, derivatives, bounds over boxes, and single points in batches.
+pub fn formula(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let mut random = Random::of(bytes);
+    let mut field = match FormulaField::parse(&text, &[]) {
+        Ok(field) => field,
+        Err(error) => {
+            let (start, end) = (error.span.start, error.span.end);
+            assert!(start <= end && text.is_char_boundary(start) && text.is_char_boundary(end), "{error:?}");
+            assert!(!error.message.is_empty() && error.utf16_span(&text).start <= text.len(), "{error:?}");
+            return;
+        }
+    };
+    let printed = field.normal_form();
+    match FormulaField::parse(&printed, &[]) {
+        Ok(again) => assert!(field.same_tree(&again), "{text} → {printed}"),
+        // What is printed may be longer than what may be typed.
+        Err(error) => assert!(printed.len() > text.len(), "{text} → {printed}: {error}"),
+    }
+    for name in field.auto().to_vec() {
+        field.set_parameter(&name, random.between(-2.0, 2.0)).expect("a finite value");
+    }
+    for _ in 0..4 {
+        let p = random.point(3.0);
+        let scale = 0.25_f64.powi(random.0.next_u32() as i32 & 15);
+        check_interval(&mut field, p, random.point(1.0).abs() * scale, random.point(1.0).abs() * scale);
+        check_derivatives(&mut field, p);
+    }
+    check_batch(&mut field, random.point(2.0).as_vec3(), 1 + random.0.next_u32() as usize % 40);
+    // A sum is its own only factor, provided that its last term cancels nothing.
+    if let Ok(mut sum) = FormulaField::parse(&format!("({text}) + x^2 + 0.618034"), &[]) {
+        for name in sum.auto().to_vec() {
+            sum.set_parameter(&name, random.between(-2.0, 2.0)).expect("a finite value");
+        }
+        let scale = 0.25_f64.powi(random.0.next_u32() as i32 & 15);
+        check_enclosure(&mut sum, random.point(3.0), random.point(1.0).abs() * scale, &mut random);
+    }
+}
+
+/// The bounds over a box around a point hold the value there.
+fn check_interval(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3) {
+    let bounds = field.interval(p - below, p + above);
+    let value = field.jet(p).value;
+    let context = || format!("{} at {p}, {below} {above}: {value}, {bounds:?}", field.text());
+    assert!(!bounds.lo.is_nan() && !bounds.hi.is_nan(), "{}", context());
+    // An intermediate result beyond the numbers makes 0·∞ of what is 0 (`tests/it/formula_properties.rs` asks for more of tamer
+    // formulas), and at a pole the sign of a zero decides that of the infinity.
+    if !value.is_nan() && (value.is_finite() || bounds.defined) {
+        assert!(bounds.lo <= value && value <= bounds.hi, "{}", context());
+    }
+}
+
+/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes.
+fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, random: &mut Random) {
+    let mut out = [Enclosure::UNKNOWN];
+    field.enclose(0, &[[lo, lo + size]], &mut out);
+    let [known] = out;
+    if !(known.defined && known.continuous) {
+        return;
+    }
+    let [p, q] = [(); 2].map(|()| {
+        let share = DVec3::from_array([(); 3].map(|()| random.between(0.0, 1.0)));
+        (lo + size * share).min(lo + size)
+    });
+    let gradient = field.transformed_jet(p).gradient;
+    for axis in 0..3 {
+        let ([least, most], slope) = (known.gradient[axis], gradient[axis]);
+        let is_within = !slope.is_finite() || least <= slope && slope <= most;
+        assert!(is_within, "{}: {gradient} at {p}, not in {known:?}", field.text());
+    }
+    // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across kinks.
+    let (from, to) = (field.jet(p).value, field.jet(q).value);
+    let mut rise = [0.0, 0.0];
+    for axis in 0..3 {
+        let way = q[axis] - p[axis];
+        let [a, b] = known.gradient[axis].map(|slope| if way == 0.0 { 0.0 } else { slope * way });
+        rise = [rise[0] + a.min(b), rise[1] + a.max(b)];
+    }
+    let slack = 1e-11 * (from.abs() + to.abs() + known.value[0].abs() + known.value[1].abs());
+    let is_outside = to - from < rise[0] - slack || to - from > rise[1] + slack;
+    assert!(!is_outside, "{}: {from} at {p} and {to} at {q}, but {known:?}", field.text());
+}
+
+/// Derivatives by transformation of the formula are those of forward jets.
+fn check_derivatives(field: &mut FormulaField, p: DVec3) {
+    let numbers = |jet: Jet| {
+        let (g, h) = (jet.gradient, jet.hessian);
+        [jet.value, g.x, g.y, g.z, h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]
+    };
+    let exact = numbers(field.jet(p));
+    let other = numbers(field.transformed_jet(p));
+    // Where a motion by thousands of units in the last place changes the result, rounding does too.
+    let size = 1.0 + exact.iter().map(|v| v.abs()).sum::<f64>();
+    let is_steady = [1e-12, -1e-12].iter().all(|step| {
+        let moved = numbers(field.jet(p * (1.0 + step)));
+        exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size)
+    });
+    if is_steady && size < 1e9 {
+        for (a, b) in exact.iter().zip(&other) {
+            // A branch that is not taken may overflow.
+            let is_same = b.is_nan() || (a - b).abs() < 1e-6 * size;
+            assert!(is_same, "{} at {p}: {exact:?} but {other:?}", field.text());
+        }
+    }
+}
+
+/// A point gives the same bits alone and in a batch, and the same value whatever is asked for with it.
+fn check_batch(field: &mut FormulaField, first: Vec3, length: usize) {
+    let points: Vec<Vec3> = (0..length).map(|k| first * (k as f32 * 0.01 + 1.0)).collect();
+    let (mut value, mut gradient) = (vec![0.0; length], vec![Vec3::ZERO; length]);
+    let mut hessian = vec![Sym3::default(); length];
+    field.hessians(&points, &mut value, &mut gradient, &mut hessian);
+    let k = length / 2;
+    let (mut alone, mut slope, mut second) = ([0.0], [Vec3::ZERO], [Sym3::default()]);
+    field.hessians(&points[k..=k], &mut alone, &mut slope, &mut second);
+    let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+    let is_same = same(value[k], alone[0])
+        && (0..3).all(|axis| same(gradient[k][axis], slope[0][axis]))
+        && same(hessian[k].xy, second[0].xy);
+    assert!(is_same, "{} at {}: {} {}", field.text(), points[k], value[k], alone[0]);
+}
+
+/// A file of points: it is read alike in steps of any size or refused in words, what is read is finite, and a surface is fitted to it
+/// or refused. The first byte chooses the extension of its name.
+pub fn file(bytes: &[u8]) {
+    /// Steps that no job on so small a file needs.
+    const MOST_STEPS: u32 = 1_000_000;
+    /// Larger ones are read, not solved: that takes a second.
+    const MOST_SOLVED: usize = 64;
+    let Some((&first, content)) = bytes.split_first() else { return };
+    let name = ["a", "a.ply", "a.obj", "a.stl", "a.xyz"][usize::from(first) % 5];
+    let read = |rows: u32| -> Result<_, ReadError> {
+        let mut reader = Reader::new(name, content.to_vec())?;
+        while !reader.step(rows)? {
+            assert!((0.0..=1.0).contains(&reader.fraction()), "{}", reader.fraction());
+        }
+        Ok(reader.into_mesh())
+    };
+    let (by_three, by_many) = (read(3), read(1_000));
+    let mut mesh = match (by_three, by_many) {
+        (Ok(a), Ok(b)) => {
+            assert!(a.position == b.position && a.faces == b.faces, "steps change what is read");
+            b
+        }
+        (Err(a), Err(b)) => {
+            assert!(a == b && !a.to_string().is_empty(), "{a} but {b}");
+            return;
+        }
+        (a, b) => panic!("{:?} but {:?}", a.err(), b.err()),
+    };
+    while !mesh.sum_areas(3).expect("memory enough") {}
+    let (cloud, _) = mesh.into_cloud();
+    assert!(cloud.position.iter().all(|p| p.is_finite()));
+    assert!(cloud.normal.iter().all(|n| (n.length() - 1.0).abs() < 1e-9), "{:?}", cloud.normal);
+    if cloud.len() <= MOST_SOLVED
+        && let Ok(mut job) = Job::file(name, content.to_vec(), 20)
+    {
+        let mut steps = 0;
+        while job.step(10_000).is_ok_and(|progress| !progress.done) {
+            steps += 1;
+            assert!(steps < MOST_STEPS, "the job does not end");
+        }
+    }
+}
+
+/// A request as the page sends it, `{"field": …, "settings": …}`: it is refused in words, or the run ends within a bounded number of
+/// evaluations with finite particles, and what is proven is whole. The particles do not depend on the size of the steps.
+pub fn request(bytes: &[u8]) {
+    let Ok(mut given) = serde_json::from_slice::<serde_json::Value>(bytes) else { return };
+    let Ok(field) = serde_json::from_value::<FieldRequest>(given["field"].take()) else { return };
+    let Ok(settings) = serde_json::from_value::<Settings>(given["settings"].take()) else { return };
+    // Small runs, so that there are many.
+    let settings = Settings {
+        max_particles: settings.max_particles.min(2_000),
+        relax_steps: settings.relax_steps.min(4),
+        radius_share: settings.radius_share.max(0.01),
+        count: settings.count.min(2_000),
+        ..settings
+    };
+    let Some(report) = run(&field, &settings, 20_000) else { return };
+    if Random::of(bytes).0.next_u32().is_multiple_of(8) {
+        let again = run(&field, &settings, 977).map(|report| report.digest);
+        assert_eq!(Some(report.digest), again, "{field:?} {settings:?}");
+    }
+}
+
+/// Runs a request, in steps of `budget` units, and checks its particles; nothing if it is refused.
+pub fn run(request: &FieldRequest, settings: &Settings, budget: u32) -> Option<Report> {
+    /// Evaluations that no run of so few particles needs.
+    const MOST: u64 = 20_000_000;
+    let context = || format!("{request:?} {settings:?}");
+    let mut session = Session::new();
+    if let Err(error) = session.set_field(request) {
+        assert!(!error.to_string().is_empty(), "{}", context());
+        return None;
+    }
+    while session.fit(settings, false, budget).is_none() {}
+    if let Err(error) = session.start(settings) {
+        assert!(!error.to_string().is_empty(), "{}", context());
+        return None;
+    }
+    while session.step(budget).stop_reason.is_none() {}
+    let report = session.report();
+    assert!(report.evaluations < MOST, "{}: {} evaluations", context(), report.evaluations);
+    for (p, n) in session.particles().position.iter().zip(&session.particles().normal) {
+        assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-4, "{}: {p} {n}", context());
+    }
+    let is_whole =
+        report.search != Search::Proven || report.sampled.missing == Some(report.sampled.without.len());
+    assert!(is_whole, "{}: {:?}", context(), report.sampled);
+    Some(report)
+}
