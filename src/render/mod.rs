@@ -41,8 +41,9 @@
 //!
 //! Colours are given in sRGB, lit and blended in linear light, and written through an sRGB view.
 //!
-//! The modules for layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.
+//! The modules for chunks, layout, style and camera need no GPU. Everything that uses wgpu is behind the feature `render`.
 
+pub mod chunks;
 pub mod frame;
 pub mod layout;
 pub mod pixels;
