@@ -100,4 +100,25 @@ describe('the keeper of devices', () => {
     expect(log).toEqual(['close webgpu']);
     expect(keeper.device).toBe(null);
   });
+
+  test('out of sight draws dots in place of a device that it lost, and opens that again in sight', async () => {
+    const { keeper, log, events, settle } = kept(['webgpu']);
+    await keeper.start();
+    keeper.seen(false);
+    events.at(-1).onLost('unknown', 'another frame needs it');
+    await settle();
+    expect(log.slice(-2)).toEqual(['close webgl2', 'open canvas2d']);
+    keeper.seen(false);
+    await settle();
+    expect(keeper.device?.kind).toBe('canvas2d');
+    keeper.seen(true);
+    await settle();
+    expect(log.slice(-2)).toEqual(['close canvas2d', 'open webgl2']);
+    // It was no fault of the device's.
+    expect(keeper.losses).toEqual([]);
+    expect(log.filter((line) => line.startsWith('lost'))).toEqual([]);
+    keeper.seen(true);
+    await settle();
+    expect(keeper.opened).toBe(3);
+  });
 });

@@ -2,6 +2,9 @@
  * Keeps a graphics device open: opens the best one, reopens it after a loss, and falls back to the next kind after
  * repeated losses.
  *
+ * Browsers keep some 16 contexts alive on all frames of a page together, and take the oldest one away for the next. A picture out of
+ * sight that loses its device therefore does not take another frame's: it is drawn as dots until it is seen again.
+ *
  * @module
  */
 import { BACKENDS, openDevice } from './backends.js';
@@ -49,6 +52,10 @@ export class DeviceKeeper {
     this.losses = [];
     /** Number of devices opened so far. */
     this.opened = 0;
+    /** Whether the picture is in sight. */
+    this.inSight = true;
+    /** Whether dots stand for a device that was lost out of sight. */
+    this.resting = false;
   }
 
   /** Opens the first working device, starting from the present rank. @returns {Promise<void>} */
@@ -71,9 +78,7 @@ export class DeviceKeeper {
           device.dispose();
           return;
         }
-        this.device = device;
-        this.opened += 1;
-        this.onOpen(device);
+        this.take(device);
         return;
       } catch (error) {
         if (this.epoch !== epoch) return;
@@ -86,7 +91,32 @@ export class DeviceKeeper {
     }
   }
 
+  /** @param {Device} device */
+  take(device) {
+    this.device = device;
+    this.opened += 1;
+    this.onOpen(device);
+  }
+
+  /** Draws dots on a 2-D canvas, which needs no context of the graphics device, until the picture is in sight. */
+  async rest() {
+    this.resting = true;
+    const { epoch } = this;
+    const device = await this.open('canvas2d', this.host, { onLost: () => {}, onError: () => {} });
+    if (this.epoch === epoch) this.take(device);
+    else device.dispose();
+  }
+
+  /** Notes whether the picture is in sight. A device that was lost out of sight is opened again. @param {boolean} inSight */
+  seen(inSight) {
+    this.inSight = inSight;
+    if (!inSight || !this.resting) return;
+    this.close();
+    void this.start();
+  }
+
   close() {
+    this.resting = false;
     this.epoch += 1;
     this.device?.dispose();
     this.device = null;
@@ -96,6 +126,10 @@ export class DeviceKeeper {
   lost(message) {
     const kind = BACKENDS[this.rank];
     this.close();
+    if (!this.inSight) {
+      void this.rest();
+      return;
+    }
     const { epoch } = this;
     const now = this.clock.now();
     this.losses = [...this.losses.filter((t) => now - t < WINDOW_MS), now];

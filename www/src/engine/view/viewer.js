@@ -80,6 +80,8 @@ export class Viewer {
       onLost: events.onLost,
       onFallback: events.onFallback,
     });
+    this.sight = new IntersectionObserver((entries) => this.keeper.seen(entries[entries.length - 1].isIntersecting));
+    this.sight.observe(host);
   }
 
   start() {
@@ -87,6 +89,7 @@ export class Viewer {
   }
 
   destroy() {
+    this.sight.disconnect();
     this.screen.close();
     this.calm.onchange = null;
     this.keeper.close();
