@@ -39,6 +39,44 @@ test('without navigator.gpu WebGL2 draws', async ({ page }) => {
   await expectSurface(page);
 });
 
+test('a shader that the driver refuses is no end of the page: WebGL2 takes over, and a notice has what the driver says', async ({
+  page,
+}) => {
+  await page.addInitScript(() => {
+    const { prototype } = /** @type {any} */ (window).GPUDevice;
+    const make = prototype.createShaderModule;
+    prototype.createShaderModule = function (/** @type {{code: string}} */ descriptor) {
+      return make.call(this, { ...descriptor, code: `${descriptor.code}\nfn broken( {` });
+    };
+  });
+  const { errors } = await open(page);
+  await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
+  await expectSurface(page);
+  // It is found after the device has opened, and so it is said.
+  const { notice } = await status(page);
+  if (notice) expect(notice).toMatchObject({ id: 'fallback', details: expect.stringMatching(/webgpu: ./) });
+  expect(errors.filter((text) => /panicked|unreachable/.test(text))).toEqual([]);
+});
+
+test('a call that the device refuses while it draws is no panic either', async ({ page }) => {
+  await open(page);
+  await page.evaluate(() => {
+    // A buffer that is too small for what is written into it.
+    const { prototype } = /** @type {any} */ (window).GPUDevice;
+    const make = prototype.createBuffer;
+    prototype.createBuffer = function (/** @type {{size: number, usage: number}} */ descriptor) {
+      const isOfInstances = (descriptor.usage & 0x20) !== 0;
+      return make.call(this, { ...descriptor, size: isOfInstances ? 16 : descriptor.size });
+    };
+  });
+  await page.evaluate(() =>
+    /** @type {any} */ (window).marchingParticles.set({ surface: 'torus', settings: { radius_share: 0.003 } }),
+  );
+  await expect.poll(async () => (await status(page)).backend).toBe('webgl2');
+  expect((await status(page)).notice).toMatchObject({ id: 'fallback' });
+  await expectSurface(page);
+});
+
 test('WebGPU draws the points of a model', async ({ page }) => {
   await open(page);
   await page.evaluate(() =>

@@ -575,6 +575,16 @@ test.describe('a sampler that does not load', () => {
     });
   }
 
+  test('because the browser has no SIMD says which browsers have it', async ({ page }) => {
+    await page.addInitScript(() => {
+      WebAssembly.validate = () => false;
+    });
+    await page.goto('/');
+    const words = page.getByText(/lacks WebAssembly SIMD.*Chrome.*Firefox.*Safari/);
+    await expect(words).toBeVisible();
+    expect((await status(page)).notice).toMatchObject({ id: 'load', kind: 'error' });
+  });
+
   test('is fetched once: what the page preloads is what it uses, also for the worker that replaces another', async ({
     page,
   }) => {

@@ -36,7 +36,10 @@ export async function loadModule(
   const { wasm } = env;
   if (!wasm) throw new LoadError('no_wasm', `This browser has WebAssembly switched off. The ${what} needs it.`);
   if (!wasm.validate(SIMD_PROBE))
-    throw new LoadError('no_simd', 'This browser lacks WebAssembly SIMD. Any browser from 2023 on has it.');
+    throw new LoadError(
+      'no_simd',
+      `This browser lacks WebAssembly SIMD, which the ${what} needs. Chrome and Edge have it from 91 on, Firefox from 89, Safari from 16.4.`,
+    );
   const name = new URL(url, 'http://localhost').pathname.split('/').pop();
   let response;
   try {
