@@ -1,4 +1,4 @@
-//! Holds the table of settings in the README to the settings.
+//! Holds the table of settings in the README to the settings, and the compiler that is promised to the one that is used.
 
 use marching_particles::math::shortest_text;
 use marching_particles::sampler::{Condition, Setting, Settings, Value};
@@ -59,6 +59,15 @@ fn table() -> String {
         );
     }
     rows
+}
+
+#[test]
+fn the_oldest_compiler_that_is_promised_is_the_one_that_every_check_runs_with() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = |name: &str| std::fs::read_to_string(root.join(name)).expect("a file of the project");
+    let promised = env!("CARGO_PKG_RUST_VERSION");
+    assert!(text("rust-toolchain.toml").contains(&format!("channel = \"{promised}.0\"")), "{promised}");
+    assert!(text("README.md").contains(&format!("`rust-toolchain.toml` ({promised};")), "{promised}");
 }
 
 #[test]

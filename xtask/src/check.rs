@@ -7,6 +7,7 @@ use clap::ValueEnum as _;
 
 use crate::bundle::{self, Bundle};
 use crate::chromium;
+use crate::deny;
 use crate::engines;
 use crate::node;
 use crate::project::{Project, cargo};
@@ -19,6 +20,8 @@ use crate::wasm_target::WasmTarget;
 pub(crate) enum Part {
     /// rustfmt.
     Format,
+    /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without cargo-deny.
+    Deny,
     /// Clippy on the native code, warnings denied.
     Lint,
     /// Clippy on every WebAssembly bundle, warnings denied.
@@ -42,8 +45,9 @@ pub(crate) enum Part {
 }
 
 /// Everything, the quick checks first.
-const ALL: [Part; 10] = [
+const ALL: [Part; 11] = [
     Part::Format,
+    Part::Deny,
     Part::Lint,
     Part::Native,
     Part::Docs,
@@ -96,6 +100,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
     for part in parts {
         let result = match part {
             Part::Format => format(project),
+            Part::Deny => deny::test(project),
             Part::Lint => lint(project),
             Part::LintWasm => lint_wasm(project),
             Part::Docs => docs(project),

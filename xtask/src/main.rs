@@ -5,6 +5,7 @@ mod bundle;
 mod check;
 mod chromium;
 mod debian;
+mod deny;
 mod engines;
 mod fingerprint;
 mod node;
