@@ -2,47 +2,37 @@
 import { fill, h } from '../ui/dom.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
-import { sidesOf, WHAT_IFS } from './whatifs.js';
+import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
 /**
  * @typedef {import('./lab.js').Lab} Lab
- * @typedef {import('./whatifs.js').WhatIf} WhatIf
+ * @typedef {import('./whatifs.js').Control} Control
+ * @typedef {import('./whatifs.js').Setup} Setup
  */
-/** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
 
 /** Stops of the bench in the address: one for each choice. */
 export const STOP = 'what-if';
 export const stopsOfBench = WHAT_IFS.map(({ id }) => `${STOP}-${id}`);
 
-/** @param {string} id */
-const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? WHAT_IFS[0];
-
-/** The setup with which a choice is first shown. @param {string} id @returns {Setup} */
-export function setupOf(id) {
-  const { id: what, values } = whatIfOf(id);
-  return { what, left: values[0].value, right: values[1].value };
-}
-
 /**
- * @param {HTMLElement} host @param {Lab} lab @param {{ locked?: Setup | null, onShow?: (setup: Setup) => void }} [how]  `locked`: it shows this
- *   and nothing else
+ * @param {HTMLElement} host @param {Lab} lab @param {{ setup?: Setup, locks?: readonly Control[] }} [how]  `locks`: controls that stay as they are
  */
-export function createBench(host, lab, { locked = null, onShow = () => {} } = {}) {
+export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id), locks = [] } = {}) {
   const pair = createPair(lab);
   const look = h('p', { class: 'look' });
   const chosen = h('div', { class: 'controls' });
-  let setup = locked ?? setupOf(WHAT_IFS[0].id);
+  let setup = first;
   const what = createSelect({
     name: 'What changes',
     choices: WHAT_IFS.map(({ id, name }) => ({ value: id, label: name })),
     value: setup.what,
     change: (id) => void show(setupOf(id)),
   });
-  what.select.disabled = locked !== null;
+  what.select.disabled = locks.includes('what');
 
   /** @param {Setup} next */
   async function show(next) {
-    setup = locked ?? next;
+    setup = next;
     const whatIf = whatIfOf(setup.what);
     what.select.value = whatIf.id;
     look.textContent = whatIf.look;
@@ -53,11 +43,10 @@ export function createBench(host, lab, { locked = null, onShow = () => {} } = {}
         value: setup[side],
         change: (value) => void show({ ...setup, [side]: value }),
       });
-      control.select.disabled = locked !== null;
+      control.select.disabled = locks.includes(side);
       return control.element;
     });
     fill(chosen, what.element, sides);
-    onShow(setup);
     await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf.colouring);
   }
 

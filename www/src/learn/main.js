@@ -1,19 +1,23 @@
 /** Entry point of the lesson's page: an article whose figures, questions and comparisons run the paper's algorithms. */
 import '../ui/trusted.js';
 import { LessonClient } from '../engine/lesson/client.js';
-import { byId } from '../ui/dom.js';
-import { readAddress } from './address.js';
-import { createBench, mountCards, setupOf, stopsOfBench } from './bench.js';
+import { byId, h } from '../ui/dom.js';
+import { readAddress, writeAddress } from './address.js';
+import { createMaker, mountAssignment } from './assignment.js';
+import { createBench, mountCards, stopsOfBench } from './bench.js';
 import { FIGURES } from './chapters/index.js';
 import { mountFigure } from './figure.js';
+import { createHandout } from './handout.js';
 import { Lab, NoSurface, PARTICLES } from './lab.js';
 import { keepOffline } from './offline.js';
 import { createPair } from './pair.js';
 import { mountPrediction, Stops } from './predict.js';
 import { PREDICTIONS } from './predictions.js';
+import { mountRace } from './race.js';
 import { mountStops } from './stops.js';
 import { subjectOf, wordsOf } from './surface.js';
-import { sidesOf, WHAT_IFS } from './whatifs.js';
+import { unpackTask } from './task.js';
+import { setupOf, sidesOf, WHAT_IFS } from './whatifs.js';
 
 const address = readAddress(location.hash);
 const subject = subjectOf(address.parts.surface);
@@ -59,19 +63,20 @@ for (const id of ['back', 'back-end']) /** @type {HTMLAnchorElement} */ (byId(id
 
 const lab = openLab();
 const context = { lab, stops };
-for (const stage of document.querySelectorAll('[data-figure]')) {
+const figures = [...document.querySelectorAll('[data-figure]')].map((stage) => {
   const host = /** @type {HTMLElement} */ (stage);
   const name = host.dataset.figure ?? '';
   const build = name === 'order' ? async () => blindPair(await lab) : () => FIGURES[name](context);
-  mountFigure(host, build);
-}
+  return mountFigure(host, build);
+});
 for (const host of document.querySelectorAll('.predict'))
   mountPrediction(/** @type {HTMLElement} */ (host), PREDICTIONS[host.id], context);
 const bench = lab.then((ready) => {
   mountCards(byId('cards'), ready);
+  mountRace(byId('race-box'), ready);
   return createBench(byId('bench'), ready);
 });
-mountStops({
+const { present } = mountStops({
   stops: [...document.querySelectorAll('[data-stop]')].map(({ id }) => id),
   others: stopsOfBench,
   onBench: async (id) => {
@@ -82,4 +87,35 @@ mountStops({
     notice.textContent = words;
   },
 });
+
+/** The dialog for teachers, once it is asked for. @type {ReturnType<typeof createMaker> | null} */
+let maker = null;
+const handout = createHandout(byId('answers'), { figures, lab });
+const tool = (/** @type {string} */ label, /** @type {() => void} */ click) =>
+  h('button', { type: 'button', class: 'button plain', on: { click } }, label);
+byId('tools').append(
+  tool('Present', present),
+  handout.button,
+  tool('Assignment', async () => {
+    maker ??= createMaker({ setup: (await bench).setup, linkOf });
+    maker.open();
+  }),
+);
+
+/** The address of this lesson with an assignment. @param {string} task */
+function linkOf(task) {
+  const { surface } = readAddress(location.hash).parts;
+  return (
+    location.origin + location.pathname + writeAddress({ stop: '', parts: { ...(surface ? { surface } : {}), task } })
+  );
+}
+
+if (address.parts.task) {
+  const task = unpackTask(address.parts.task);
+  if (!task) notice.textContent = 'The link holds no assignment that can be read. The lesson is complete without it.';
+  else
+    void lab.then((ready) =>
+      mountAssignment(byId('assignment'), task, { lab: ready, surface: wordsOf(ready.surface), stops }),
+    );
+}
 keepOffline();

@@ -108,7 +108,7 @@ export class Picture {
       { class: 'picture', role: 'application', tabindex: 0, 'aria-label': `${name}. ${keys}` },
       this.canvas,
     );
-    const context = this.canvas.getContext('2d', { alpha: false });
+    const context = this.canvas.getContext('2d');
     this.painter = context ? new Painter(this.canvas, context) : null;
     this.size = signal({ width: 0, height: 0 });
     this.frame = 0;
@@ -152,7 +152,7 @@ export class Picture {
     const { painter } = this;
     const { particles } = scene;
     const palette = PALETTES[isDark.peek() && !printing.peek() ? 'dark' : 'light'];
-    const background = printing.peek() ? [1, 1, 1, 1] : [...rgbFromPacked(palette.ground), 1];
+    const background = [...rgbFromPacked(palette.ground), 1];
     const [w, high] = [width * FINENESS, height * FINENESS];
     if (painter.width !== w || painter.height !== high) painter.resize(w, high);
     const { positions, normals, radii, levels } = particles;
@@ -161,7 +161,13 @@ export class Picture {
     painter.set_style(JSON.stringify({ background, dim_backfaces: 1 }));
     const view = this.view();
     painter.set_view(view.packed);
-    painter.draw(0);
+    if (painter.image.width !== w || painter.image.height !== high) {
+      painter.image = new ImageData(w, high);
+      painter.depth = new Float32Array(w * high);
+    }
+    // The ground is left out, so that the picture stands on that of the page or of the paper.
+    painter.paint(painter.image, painter.depth, true, 0);
+    painter.context.putImageData(painter.image, 0, 0);
     this.drawMarks(painter.context, scene.marks ?? [], view);
     this.element.dataset.drawn = String(scene.count ?? radii.length);
   }

@@ -3,10 +3,10 @@ import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
+import { adaptiveRun } from './adaptive.js';
 import { openBend } from './chapters/circle.js';
 import { costOf } from './chapters/cost.js';
 import { widestHole } from './chapters/rest.js';
-import { adaptiveRun } from './chapters/sizes.js';
 import { COARSE_PARTICLES, NoSurface } from './lab.js';
 import { asFineEverywhere, distance, energiesOf, ringsOf, stepOfRest } from './measure.js';
 
@@ -143,7 +143,9 @@ const hole = {
     const widest = await widestHole(lab);
     if (!widest) return { right: -1, words: 'On this surface the rings leave no hole wide enough to count.' };
     const { placed } = widest.run;
-    const words = 'The widest hole lies beside the particle with the ring.';
+    const level = placed.levels[widest.particle];
+    const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
+    const words = `The widest hole lies beside the particle with the ring, on level ${level} of ${last}.`;
     if (typeof guess !== 'number') return { right: widest.particle, words };
     const far = distance(placed.positions, guess, widest.particle) / (2 * widest.radius);
     return {

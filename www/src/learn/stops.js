@@ -1,6 +1,12 @@
 /** Stops in the address: each chapter, question and comparison has its own. */
 import { nearestStop, readAddress, writeAddress } from './address.js';
 import { STOP } from './bench.js';
+import { createPresenter } from './presenter.js';
+
+/** Value of the address's `mode` while presenting. */
+const PRESENT = 'present';
+/** Height of what stays at the top of the window, in pixels. */
+const HEAD_PX = 60;
 
 /**
  * @param {object} about
@@ -17,10 +23,20 @@ export function mountStops({ stops, others, onBench, say }) {
     void onBench(id);
   };
 
+  const presenter = createPresenter({
+    stops,
+    to(stop, isPresenting) {
+      const { parts } = readAddress(location.hash);
+      location.hash = writeAddress({ stop, parts: { ...parts, mode: isPresenting ? PRESENT : '' } });
+    },
+  });
+
   /** Goes where the address says. */
   function go() {
     const { stop, parts } = readAddress(location.hash);
-    const found = nearestStop(stop, all);
+    const isPresenting = parts.mode === PRESENT;
+    const found = nearestStop(stop || (isPresenting ? stops[0] : ''), all);
+    if (!isPresenting) presenter.end();
     if (!found) return;
     if (!found.isExact) {
       say(`There is no stop “${stop}” in this lesson. This is the nearest, “${found.stop}”.`);
@@ -28,7 +44,9 @@ export function mountStops({ stops, others, onBench, say }) {
     }
     const isBench = others.includes(found.stop);
     if (isBench) showBench(found.stop.slice(STOP.length + 1));
-    document.getElementById(isBench ? STOP : found.stop)?.scrollIntoView({ block: 'start' });
+    const target = isBench ? STOP : found.stop;
+    if (isPresenting) presenter.show(target);
+    else document.getElementById(target)?.scrollIntoView({ block: 'start' });
   }
 
   // What the address carries along stays in it when a link of the page leads to another stop.
@@ -60,5 +78,12 @@ export function mountStops({ stops, others, onBench, say }) {
     { rootMargin: '300px 0px' },
   );
   if (bench) observer.observe(bench);
-  return { all, go };
+  return {
+    /** Presents from the stop on that is nearest to the top of the window. */
+    present() {
+      const { parts } = readAddress(location.hash);
+      const seen = stops.find((id) => (document.getElementById(id)?.getBoundingClientRect().bottom ?? 0) > HEAD_PX);
+      location.hash = writeAddress({ stop: seen ?? stops[0], parts: { ...parts, mode: PRESENT } });
+    },
+  };
 }

@@ -1,5 +1,5 @@
 /** The choices of the method that can be seen side by side. */
-import { adaptiveRun, LAWS } from './chapters/sizes.js';
+import { adaptiveRun, LAWS } from './adaptive.js';
 
 /**
  * @typedef {import('./lab.js').Lab} Lab
@@ -7,6 +7,8 @@ import { adaptiveRun, LAWS } from './chapters/sizes.js';
  * @typedef {import('./pair.js').Colouring} Colouring
  * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
  */
+/** What may be locked on the bench. @typedef {'what' | 'left' | 'right'} Control */
+/** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
 /**
  * One choice. `makes` is given a value and makes the run; the first two values are shown first.
  * @typedef {object} WhatIf
@@ -173,3 +175,12 @@ export const sidesOf = ({ values: all, make }, chosen) =>
       make: (/** @type {Lab} */ lab) => make(lab, value),
     }))
   );
+
+/** The choice of this name, else the first. @param {string} id */
+export const whatIfOf = (id) => WHAT_IFS.find((whatIf) => whatIf.id === id) ?? WHAT_IFS[0];
+
+/** The setup with which a choice is first shown. @param {string} id @returns {Setup} */
+export function setupOf(id) {
+  const { id: what, values } = whatIfOf(id);
+  return { what, left: values[0].value, right: values[1].value };
+}

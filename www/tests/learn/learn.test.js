@@ -3,6 +3,7 @@ import { expect, test } from 'vitest';
 import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.js';
 import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
 import { subjectOf } from '../../src/learn/surface.js';
+import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
 const SURFACE = {
@@ -109,4 +110,48 @@ test('nine tenths of a fall are done at a step, and a fine sampling counts areas
   expect(stepOfRest([10, 5, 1.5, 0.9, 0])).toBe(3);
   expect(stepOfRest([1, 0])).toBe(1);
   expect(asFineEverywhere([1, 2])).toBe(5);
+});
+
+test('an assignment comes out of a link as it went in, and what is damaged of it is set right', () => {
+  const task = {
+    title: 'Seams',
+    setup: { what: 'tolerance', left: '0.7', right: '0.95' },
+    locks: /** @type {import('../../src/learn/whatifs.js').Control[]} */ (['what', 'right']),
+    questions: ['Why?', 'Where?'],
+  };
+  expect(unpackTask(packTask(task))).toEqual(task);
+  const odd = unpackTask(
+    packed({ setup: { what: 'seed', left: 9, right: '2' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
+  );
+  expect(odd).toMatchObject({ title: '', setup: { what: 'seed', left: '0', right: '2' }, locks: [] });
+  expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
+  for (const bad of [
+    '',
+    'AAAA',
+    packed(null),
+    packed({ questions: [] }),
+    packed({ setup: { what: 'none' }, questions: [] }),
+  ])
+    expect(unpackTask(bad)).toBe(null);
+});
+
+test('a table of the work quotes what needs it and starts no formula', () => {
+  const table = tableOf({
+    assignment: '=SUM(A1)',
+    surface: 'x = 1',
+    answers: [{ question: 'Why, and "how"?', answer: '-3' }],
+    predictions: [{ stop: 'predict-ring', question: 'Q', guess: 66, answer: 'A' }],
+    runs: [{ label: 'queue', new_per_level: [1, 6] }],
+  });
+  expect(table.split('\r\n')).toEqual([
+    'part,name,value',
+    "assignment,title,'=SUM(A1)",
+    'assignment,surface,x = 1',
+    'answer,"Why, and ""how""?",-3',
+    'prediction,Q,66',
+    'run,Q,A',
+    'run 1,label,queue',
+    'run 1,new_per_level,"[1,6]"',
+    '',
+  ]);
 });

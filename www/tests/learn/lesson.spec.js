@@ -7,7 +7,7 @@ const FIGURES = ['why', 'cost', 'six', 'circle', 'first', 'rings', 'order', 'sea
 
 test('every chapter has a live figure, in a folder of a host, too', async ({ page }) => {
   const { clean } = await openLesson(page, { place: './sub/path/' });
-  await expect(page.locator('.chapter h2')).toHaveCount(11);
+  await expect(page.locator('.chapter h2')).toHaveCount(12);
   for (const name of FIGURES) await live(page, name);
   expect(
     await page.locator('canvas').evaluateAll((all) => all.every((one) => /** @type {any} */ (one).getContext('2d'))),

@@ -48,7 +48,7 @@ export async function cost({ lab, stops }) {
       }),
     ),
   );
-  const waiting = h('p', { class: 'figure-count' }, 'The bars follow your prediction below.');
+  const waiting = h('p', { class: 'figure-count' }, 'The bars come with the answer.');
   effect(() => {
     const isOpen = stops.isOpen('predict-cost');
     table.hidden = !isOpen;

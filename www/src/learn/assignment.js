@@ -1,0 +1,145 @@
+/**
+ * Assignments: a link that fixes the surface and a comparison, locks chosen controls and asks questions. What a learner answers is
+ * saved with both runs as one file; nothing is sent.
+ */
+import { fill, h, uniqueId } from '../ui/dom.js';
+import { download } from '../ui/share.js';
+import { createBench } from './bench.js';
+import { ringsOf } from './measure.js';
+import { figuresOf } from './pair.js';
+import { CONTROLS, LONGEST_TITLE, packTask, tableOf } from './task.js';
+import { WHAT_IFS } from './whatifs.js';
+
+/**
+ * @typedef {import('./whatifs.js').Setup} Setup
+ * @typedef {import('./whatifs.js').Control} Control
+ * @typedef {import('./task.js').Task} Task
+ * @typedef {import('./task.js').Work} Work
+ * @typedef {import('./lab.js').Lab} Lab
+ */
+/** A run as plain numbers. @param {string} label @param {import('./lab.js').Run} run */
+const recordOf = (label, run) => ({
+  label,
+  settings: run.settings,
+  radius: run.radius,
+  particles: run.progress.particles,
+  evaluations: run.progress.evaluations,
+  figures: Object.fromEntries(figuresOf(run)),
+  new_per_level: ringsOf(run.placed),
+  fates_per_level: run.chapters.filter(({ kind }) => kind === 'level').map(({ fates }) => fates),
+  energy_per_step: run.chapters.filter(({ kind }) => kind === 'relaxation').map(({ energy }) => energy),
+});
+
+/**
+ * Puts the assignment before the first chapter.
+ * @param {HTMLElement} host @param {Task} task @param {{ lab: Lab, surface: string, stops: import('./predict.js').Stops }} context
+ */
+export function mountAssignment(host, task, { lab, surface, stops }) {
+  const id = uniqueId('assignment');
+  const benchHost = h('div', { class: 'bench' });
+  const answers = task.questions.map((question) => {
+    const own = uniqueId('answer');
+    return { question, box: h('textarea', { id: own, class: 'answer-box', rows: 3 }), id: own };
+  });
+  const save = (/** @type {'json' | 'csv'} */ format) => {
+    const { pair } = bench;
+    const labels = [bench.setup().left, bench.setup().right];
+    /** @type {Work} */
+    const work = {
+      assignment: task.title,
+      surface,
+      answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
+      predictions: [...stops.outcomes.values()],
+      runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run)),
+    };
+    const text = format === 'json' ? `${JSON.stringify(work, null, 2)}\n` : tableOf(work);
+    const type = format === 'json' ? 'application/json' : 'text/csv;charset=utf-8';
+    download(new Blob([text], { type }), `assignment.${format}`);
+  };
+  fill(
+    host,
+    h('h2', { id }, task.title || 'Assignment'),
+    benchHost,
+    answers.map(({ question, box, id: own }) =>
+      h('div', { class: 'answer-row' }, h('label', { for: own }, question), box),
+    ),
+    h(
+      'div',
+      { class: 'controls' },
+      h('button', { type: 'button', class: 'button primary', on: { click: () => save('json') } }, 'Save as JSON'),
+      h('button', { type: 'button', class: 'button', on: { click: () => save('csv') } }, 'Save as CSV'),
+      h('span', { class: 'quiet' }, 'With your answers, your predictions and both runs. Nothing is sent.'),
+    ),
+  );
+  host.setAttribute('aria-labelledby', id);
+  host.hidden = false;
+  const bench = createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
+  void bench.show(task.setup);
+}
+
+/** The dialog in which a teacher makes an assignment. @param {{ setup: () => Setup, linkOf: (task: string) => string }} about */
+export function createMaker({ setup, linkOf }) {
+  const title = h('input', { class: 'box wide', id: uniqueId('title'), maxlength: LONGEST_TITLE });
+  const questions = h('textarea', { class: 'answer-box', id: uniqueId('questions'), rows: 4 });
+  const locks = CONTROLS.map(({ value, label }) => {
+    const box = h('input', { type: 'checkbox', value, checked: true });
+    return { box, element: h('label', { class: 'check' }, box, label) };
+  });
+  const what = h('p', { class: 'quiet' });
+  const link = h('input', { class: 'box wide', readonly: true, 'aria-label': 'Link of the assignment' });
+  const told = h('p', { class: 'quiet', role: 'status' });
+  const write = () => {
+    const { what: id, left, right } = setup();
+    what.textContent = `It compares what stands under “What if”: ${WHAT_IFS.find((known) => known.id === id)?.name ?? id}.`;
+    const task = {
+      title: title.value,
+      setup: { what: id, left, right },
+      locks: locks.flatMap(({ box }) => (box.checked ? [/** @type {Control} */ (box.value)] : [])),
+      questions: questions.value
+        .split('\n')
+        .map((line) => line.trim())
+        .filter(Boolean),
+    };
+    link.value = linkOf(packTask(task));
+    told.textContent = '';
+  };
+  const copy = async () => {
+    try {
+      await navigator.clipboard.writeText(link.value);
+      told.textContent = 'The link is on the clipboard.';
+    } catch {
+      link.select();
+      told.textContent = 'Copy the link from its box.';
+    }
+  };
+  const id = uniqueId('maker');
+  const dialog = h(
+    'dialog',
+    { class: 'dialog maker', 'aria-labelledby': id, on: { input: write } },
+    h('h2', { id }, 'Make an assignment'),
+    what,
+    h('div', { class: 'answer-row' }, h('label', { for: title.id }, 'Title'), title),
+    h('div', { class: 'answer-row' }, h('label', { for: questions.id }, 'Questions, one on each line'), questions),
+    h(
+      'fieldset',
+      { class: 'predict-choices' },
+      h('legend', null, 'Locked for learners'),
+      locks.map(({ element }) => element),
+    ),
+    h('div', { class: 'answer-row' }, link),
+    h(
+      'div',
+      { class: 'controls' },
+      h('button', { type: 'button', class: 'button primary', on: { click: () => void copy() } }, 'Copy the link'),
+      h('button', { type: 'button', class: 'button', on: { click: () => dialog.close() } }, 'Close'),
+    ),
+    told,
+  );
+  document.body.append(dialog);
+  return {
+    open() {
+      write();
+      dialog.showModal();
+    },
+  };
+}

@@ -1,0 +1,204 @@
+/** The race: the front against the method that the paper compares it with, side by side under one camera. */
+import { opponentOf, Race } from '../engine/lesson/race.js';
+import { fill, h } from '../ui/dom.js';
+import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
+import { adaptiveRun } from './adaptive.js';
+import { reasonOf } from './figure.js';
+import { USUAL } from './lab.js';
+import { nearestDistances, spread } from './measure.js';
+import { createSelect } from './parts.js';
+import { byValue, Orbit, Picture } from './picture.js';
+
+/**
+ * @typedef {import('./lab.js').Lab} Lab
+ * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
+ * @typedef {import('../engine/lesson/race.js').Lane} Lane
+ */
+
+/** Particles of the front: enough to see the difference, few enough to wait for the other. */
+const PARTICLES = 1500;
+/** The pictures are brought up to date this often. */
+const PICTURE_MS = 250;
+/** Distances over the ideal one span this range of colours. */
+const [NEAR, FAR] = [0.7, 1.15];
+
+const KINDS = [
+  { value: 'uniform', label: 'One size: the front and Witkin and Heckbert’s system' },
+  { value: 'adaptive', label: 'By curvature: the front and forces' },
+];
+
+/** The settings of the front. @param {Lab} lab @param {string} kind @returns {Promise<Partial<LessonSettings>>} */
+async function settingsOf(lab, kind) {
+  const radius = await lab.radiusFor(PARTICLES);
+  if (kind === 'uniform') return { ...USUAL, radius };
+  const { settings } = await adaptiveRun(lab, 'max_curvature', {}, PARTICLES);
+  return settings;
+}
+
+/** A lane: its picture and its clock. @param {Orbit} orbit @param {string} name */
+function createLane(orbit, name) {
+  const picture = new Picture(orbit, { name: `${name}: its particles so far` });
+  const values = [h('dd', null, MISSING), h('dd', null, MISSING), h('dd', null, MISSING), h('dd', null, MISSING)];
+  const names = ['Clock', 'Particles', 'Rounds', 'Evaluations of f'];
+  const title = h('figcaption', null, name);
+  const state = h('p', { class: 'figure-count' });
+  const list = h(
+    'dl',
+    { class: 'lane' },
+    names.flatMap((label, k) => [h('dt', null, label), values[k]]),
+  );
+  return {
+    element: h('figure', null, picture.element, title, list, state),
+    picture,
+    /** @param {Lane} lane */
+    tell({ progress, workMs }) {
+      values[0].textContent = formatSeconds(workMs / 1000);
+      values[1].textContent = progress ? formatCount(progress.particles) : MISSING;
+      values[2].textContent = progress ? formatCount(progress.steps) : MISSING;
+      values[3].textContent = progress ? formatCount(progress.evaluations) : MISSING;
+      state.textContent = !progress?.is_done
+        ? ''
+        : progress.is_settled || progress.steps <= 10
+          ? 'It is done.'
+          : 'It ended without coming to rest.';
+    },
+    /** @param {import('../engine/types.js').LessonParticles} particles */
+    show(particles) {
+      picture.show({ particles, colours: byValue(nearestDistances(particles), NEAR, FAR) });
+    },
+  };
+}
+
+/** @param {HTMLElement} host @param {Lab} lab */
+export function mountRace(host, lab) {
+  let kind = KINDS[0].value;
+  /** @type {Race | null} */
+  let race = null;
+  let isPaused = false;
+  const place = h('div', { class: 'pair' });
+  const status = h('p', { class: 'figure-status', role: 'status' });
+  const result = h('div', { class: 'compare-box' });
+  const choose = createSelect({
+    name: 'Race',
+    choices: KINDS,
+    change: (value) => {
+      kind = value;
+      stop();
+      lay();
+    },
+  });
+  const go = h('button', { type: 'button', class: 'button primary', on: { click: () => void press() } }, 'Start');
+
+  function lay() {
+    const orbit = new Orbit(lab.surface.bounds);
+    const names = kind === 'uniform' ? ['The front', 'Witkin and Heckbert'] : ['The front', 'Forces'];
+    const lanes = names.map((name) => createLane(orbit, name));
+    fill(
+      place,
+      lanes.map(({ element }) => element),
+    );
+    fill(result);
+    return { orbit, lanes, names };
+  }
+
+  function stop() {
+    race?.close();
+    race = null;
+    isPaused = false;
+    go.textContent = 'Start';
+    status.textContent = '';
+  }
+
+  async function press() {
+    if (!race) return void run();
+    isPaused = !isPaused;
+    if (isPaused) race.pause();
+    else race.resume();
+    go.textContent = isPaused ? 'Go on' : 'Pause';
+  }
+
+  async function run() {
+    const { orbit, lanes, names } = lay();
+    const lastMs = [-Infinity, -Infinity];
+    const own = new Race({
+      onLane(k, lane) {
+        lanes[k].tell(lane);
+        const now = performance.now();
+        if (!lane.progress?.is_done && now - lastMs[k] < PICTURE_MS) return;
+        lastMs[k] = now;
+        own.particles(k).then(
+          (particles) => {
+            if (particles.radii.length > 0) lanes[k].show(particles);
+          },
+          () => {},
+        );
+      },
+    });
+    race = own;
+    go.textContent = 'Pause';
+    status.textContent = 'Both are running. You may turn the pictures.';
+    try {
+      const settings = await settingsOf(lab, kind);
+      orbit.fitTo((await lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES })).end);
+      await own.start(lab.surface, [settings, opponentOf(settings)]);
+      const ends = [await own.particles(0), await own.particles(1)];
+      for (const [k, particles] of ends.entries()) lanes[k].show(particles);
+      fill(result, tableOf(names, own.lanes, ends));
+      stop();
+    } catch (error) {
+      if (/** @type {any} */ (error)?.kind === 'given_up') return;
+      stop();
+      status.textContent = reasonOf(error);
+    }
+  }
+
+  fill(host, h('div', { class: 'controls' }, choose.element, go), place, status, result);
+  lay();
+}
+
+/** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly import('../engine/types.js').LessonParticles[]} ends */
+function tableOf(names, lanes, ends) {
+  const even = ends.map((particles) => spread(nearestDistances(particles)));
+  const of = (/** @type {(k: number) => string} */ write) => [0, 1].map(write);
+  const progress = lanes.map((lane) => lane.progress);
+  const rows = [
+    ['Seconds of work', ...of((k) => formatSeconds(lanes[k].workMs / 1000))],
+    ['Particles', ...of((k) => formatCount(ends[k].radii.length))],
+    ['Rounds', ...of((k) => formatCount(progress[k]?.steps))],
+    [
+      'Evaluations of f for each',
+      ...of((k) => formatSignificant((progress[k]?.evaluations ?? 0) / Math.max(1, ends[k].radii.length), 3)),
+    ],
+    [
+      'Nearest neighbour, over the sum of the radii',
+      ...of((k) => `${formatFixed(even[k].mean, 3)} ± ${formatFixed(even[k].deviation, 3)}`),
+    ],
+    ['Closest pair, likewise', ...of((k) => formatFixed(even[k].least, 3))],
+  ];
+  return h(
+    'table',
+    { class: 'compare' },
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        h('td'),
+        names.map((name) => h('th', { scope: 'col' }, name)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      rows.map(([name, ...values]) =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, name),
+          values.map((value) => h('td', null, value)),
+        ),
+      ),
+    ),
+  );
+}

@@ -1,0 +1,66 @@
+/** Assignments as plain data: in a link, and as what a learner hands in. */
+import { packed, unpacked } from '../ui/surface-link.js';
+import { setupOf, WHAT_IFS } from './whatifs.js';
+
+/**
+ * @typedef {import('./whatifs.js').Setup} Setup
+ * @typedef {import('./whatifs.js').Control} Control
+ */
+/** @typedef {{ title: string, setup: Setup, locks: Control[], questions: string[] }} Task */
+/** What a learner hands in. @typedef {{ assignment: string, surface: string, answers: { question: string, answer: string }[], predictions: import('./predict.js').Outcome[], runs: object[] }} Work */
+
+export const LONGEST_TITLE = 120;
+const LONGEST_QUESTION = 500;
+const MOST_QUESTIONS = 20;
+/** @type {readonly { value: Control, label: string }[]} */
+export const CONTROLS = [
+  { value: 'what', label: 'What changes' },
+  { value: 'left', label: 'Left' },
+  { value: 'right', label: 'Right' },
+];
+
+/** @param {Task} task */
+export const packTask = (task) => packed(task);
+
+/** Reads an assignment from an address, where anything may stand; null if it is none. @param {string} text @returns {Task | null} */
+export function unpackTask(text) {
+  const raw = unpacked(text);
+  if (typeof raw !== 'object' || raw === null || !Array.isArray(raw.questions)) return null;
+  const whatIf = WHAT_IFS.find(({ id }) => id === raw.setup?.what);
+  if (!whatIf) return null;
+  const usual = setupOf(whatIf.id);
+  const sideOf = (/** @type {'left' | 'right'} */ side) =>
+    whatIf.values.some(({ value }) => value === raw.setup[side]) ? raw.setup[side] : usual[side];
+  return {
+    title: String(raw.title ?? '').slice(0, LONGEST_TITLE),
+    setup: { what: whatIf.id, left: sideOf('left'), right: sideOf('right') },
+    locks: CONTROLS.map(({ value }) => value).filter((control) => raw.locks?.includes?.(control)),
+    questions: raw.questions
+      .slice(0, MOST_QUESTIONS)
+      .map((/** @type {unknown} */ q) => String(q).slice(0, LONGEST_QUESTION)),
+  };
+}
+
+/** A cell of a table of comma-separated values. @param {unknown} value */
+function cell(value) {
+  const text = typeof value === 'object' ? JSON.stringify(value) : String(value ?? '');
+  // A formula at the beginning of a cell would be run by a spreadsheet.
+  const safe = /^[=+@-]/.test(text) && Number.isNaN(Number(text)) ? `'${text}` : text;
+  return /[",\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
+}
+
+/** The work as a table of three columns: part, name, value. @param {Work} work */
+export function tableOf({ assignment, surface, answers, predictions, runs }) {
+  const rows = [
+    ['part', 'name', 'value'],
+    ['assignment', 'title', assignment],
+    ['assignment', 'surface', surface],
+    ...answers.map(({ question, answer }) => ['answer', question, answer]),
+    ...predictions.flatMap(({ question, guess, answer }) => [
+      ['prediction', question, guess],
+      ['run', question, answer],
+    ]),
+    ...runs.flatMap((run, k) => Object.entries(run).map(([name, value]) => [`run ${k + 1}`, name, value])),
+  ];
+  return `${rows.map((row) => row.map(cell).join(',')).join('\r\n')}\r\n`;
+}

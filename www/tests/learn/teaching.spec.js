@@ -1,0 +1,116 @@
+/** The lesson in a class: presenting, the hand-out, assignments and the race. */
+import { readFile } from 'node:fs/promises';
+import { expect, test } from '@playwright/test';
+import { live, openLesson, overflow, scan, TORUS } from './helpers.js';
+
+test('a clicker goes from stop to stop, and each has its own address', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: '#rings&mode=present' });
+  await live(page, 'rings');
+  await expect(page.locator('.chapter:visible')).toHaveCount(1);
+  await expect(page.getByRole('heading', { name: 'Rings' })).toBeVisible();
+  await page.keyboard.press('PageDown');
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#predict-ring&mode=present');
+  await expect(page.locator('#predict-ring')).toBeVisible();
+  await expect(page.locator('#predict-order')).toBeHidden();
+  // Letters in a box are text.
+  await page.getByLabel('Particles in ring 12').fill('7');
+  await expect(page.locator('#rings .notes')).toBeHidden();
+  await page.getByRole('button', { name: 'Notes' }).click();
+  await expect(page.locator('#rings .notes')).toBeVisible();
+  await page.keyboard.press('PageUp');
+  await expect(page.locator('#predict-ring')).toBeHidden();
+  expect((await scan(page)).violations.map(({ id }) => id)).toEqual([]);
+  await page.keyboard.press('Escape');
+  await expect(page.locator('.chapter:visible')).toHaveCount(12);
+  await expect.poll(() => page.evaluate(() => location.hash)).toBe('#rings');
+  clean();
+});
+
+test('a presentation begins at the chapter that is read, and fits a small window', async ({ page }) => {
+  await openLesson(page, { hash: `#seams&surface=${TORUS}`, width: 390, height: 700 });
+  await live(page, 'seams');
+  await page.getByRole('button', { name: 'Present' }).click();
+  await expect.poll(() => page.evaluate(() => location.hash)).toContain(`&surface=${TORUS}&mode=present`);
+  await page.getByRole('button', { name: 'Next stop' }).click();
+  expect(await overflow(page)).toBe(0);
+});
+
+test('the hand-out has blanks for the predictions, and every answer on its last page', async ({ page }) => {
+  await openLesson(page);
+  await page.evaluate(() => {
+    window.print = () => {
+      document.documentElement.dataset.printed = '';
+    };
+  });
+  await page.getByRole('button', { name: 'Print' }).click();
+  await expect(page.locator('html')).toHaveAttribute('data-printed', '', { timeout: 60_000 });
+  await expect(page.locator('.answers')).toBeHidden();
+  await page.emulateMedia({ media: 'print' });
+  await expect(page.locator('.answer-list > li')).toHaveCount(9);
+  await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
+  await expect(page.locator('.bar')).toBeHidden();
+  await expect(page.getByRole('button').filter({ visible: true })).toHaveCount(0);
+  for (const name of ['why', 'rest']) await expect(page.locator(`[data-figure="${name}"] canvas`)).toBeVisible();
+  expect((await page.pdf({ format: 'A4' })).length).toBeGreaterThan(100_000);
+});
+
+test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: `#what-if-tolerance&surface=${TORUS}` });
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await page.getByRole('button', { name: 'Assignment' }).click();
+  const dialog = page.getByRole('dialog');
+  await dialog.getByLabel('Title').fill('Seams');
+  await dialog.getByLabel('Questions, one on each line').fill('Which run has closer pairs?');
+  await dialog.getByRole('checkbox', { name: 'Right' }).uncheck();
+  const link = await dialog.getByLabel('Link of the assignment').inputValue();
+  await page.goto('about:blank');
+  await page.goto(link);
+  const task = page.getByRole('region', { name: 'Seams' });
+  await expect(task.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(task.getByLabel('What changes')).toBeDisabled();
+  await expect(task.getByLabel('Left', { exact: true })).toBeDisabled();
+  await task.getByLabel('Right', { exact: true }).selectOption('0.95');
+  await expect(task.getByRole('columnheader', { name: '0.95 · 2r' })).toBeVisible({ timeout: 60_000 });
+  await task.getByLabel('Which run has closer pairs?').fill('The left one, "clearly".');
+  const saved = async (/** @type {string} */ name) => {
+    const [file] = await Promise.all([page.waitForEvent('download'), task.getByRole('button', { name }).click()]);
+    return readFile(await file.path(), 'utf8');
+  };
+  const work = JSON.parse(await saved('Save as JSON'));
+  expect(work).toMatchObject({
+    assignment: 'Seams',
+    surface: '(sqrt(x^2 + y^2) - R)^2 + z^2 = 0.09, R = 0.7',
+    answers: [{ question: 'Which run has closer pairs?', answer: 'The left one, "clearly".' }],
+  });
+  expect(work.runs.map((/** @type {any} */ { settings }) => settings.match_tolerance)).toEqual([0.7, 0.95]);
+  expect(work.runs[0].new_per_level.slice(0, 2)).toEqual([1, 6]);
+  expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,"The left one, ""clearly""."');
+  clean();
+});
+
+test('a damaged assignment is named, and the lesson stays', async ({ page }) => {
+  await openLesson(page, { hash: '#task=AAAA' });
+  await expect(page.locator('#notice')).toContainText('no assignment that can be read');
+  await live(page, 'why');
+});
+
+for (const [kind, other] of [
+  ['uniform', 'Witkin and Heckbert'],
+  ['adaptive', 'Forces'],
+])
+  test(`the front races against ${other}, each by its own rules`, async ({ page }) => {
+    const { clean } = await openLesson(page, { hash: '#race' });
+    const race = page.locator('#race-box');
+    await race.getByLabel('Race').selectOption(kind);
+    await race.getByRole('button', { name: 'Start' }).click();
+    await expect(race.getByRole('columnheader', { name: other })).toBeVisible({ timeout: 55_000 });
+    const rounds = await race
+      .getByRole('row', { name: /Rounds/ })
+      .getByRole('cell')
+      .allTextContents();
+    expect(rounds[0]).toBe('10');
+    expect(Number(rounds[1].replace(/\D/g, ''))).toBeGreaterThan(50);
+    await expect(race.locator('.picture[data-drawn]')).toHaveCount(2);
+    await expect(page.getByRole('cell', { name: '373' })).toBeVisible();
+    clean();
+  });
