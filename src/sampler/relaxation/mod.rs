@@ -209,7 +209,7 @@ impl Relaxation {
     }
 
     /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase;
-    /// costly ones count for several.
+    /// costly ones count for several. It returns early where a step stands, so that its particles can be looked at.
     ///
     /// # Panics
     ///
@@ -246,7 +246,8 @@ impl Relaxation {
         let paid = self.debt.min(budget);
         self.debt -= paid;
         budget -= paid;
-        while budget > 0 && self.phase != Phase::Done {
+        let steps = self.stepper.done();
+        while budget > 0 && self.phase != Phase::Done && self.stepper.done() == steps {
             let (last, units) = self.affordable::<L>(budget, n);
             let range = self.next..last;
             self.debt = units.saturating_sub(budget);
