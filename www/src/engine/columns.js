@@ -57,6 +57,14 @@ export class Columns {
      */
     this.curvature = new Float32Array(0);
     this.curved = 0;
+    /**
+     * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept. Empty before a
+     * relaxation has ended.
+     * @type {Float32Array[]}
+     */
+    this.past = [];
+    /** The one of them that is drawn, null for the present positions. @type {number | null} */
+    this.step = null;
     /** The mesh over the particles, while it is drawn. @type {import('./types.js').Mesh | null} */
     this.mesh = null;
   }
@@ -68,7 +76,20 @@ export class Columns {
     this.stale = false;
     this.curved = 0;
     this.adaptive = adaptive;
+    this.past = [];
     this.forget();
+  }
+
+  /** The positions that are drawn. */
+  get shown() {
+    const past = this.step === null ? undefined : this.past[this.step];
+    return past && past.length >= 3 * this.count ? past : this.positions;
+  }
+
+  /** The positions as the front placed the particles, where they are known. */
+  get placed() {
+    const [first] = this.past;
+    return first && first.length >= 3 * this.count ? first : this.positions;
   }
 
   /** Drops the figures of the report and the mesh, which no longer describe the particles. */

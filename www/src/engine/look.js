@@ -59,6 +59,7 @@ export class Look {
       plane,
       points: this.points(),
       level: view.level,
+      step: view.step,
     });
     const { sampling } = this.runs;
     sampling.showCurvature(view.colour === 'curvature');
@@ -77,8 +78,9 @@ export class Look {
 
   /** Shows all generation levels again, because a new surface is shown as it grows. */
   allLevels() {
-    if (this.store.state.value.view.level === null) return;
-    changeView(this.store, { level: null });
+    const { level, step } = this.store.state.value.view;
+    if (level === null && step === null) return;
+    changeView(this.store, { level: null, step: null });
     this.show();
   }
 

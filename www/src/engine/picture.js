@@ -153,7 +153,7 @@ function particle(columns, index) {
     index,
     level: columns.levels[index],
     parent: columns.parents[index] === NO_PARENT ? null : columns.parents[index],
-    position: triple(columns.positions),
+    position: triple(columns.shown),
     normal: triple(columns.normals),
     radius: columns.radii[index],
     residual: columns.residual?.[index] ?? null,

@@ -73,6 +73,7 @@
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
+/** @typedef {'level' | 'particle' | 'event'} Grain */
 /** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
 /**
  * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
@@ -95,6 +96,9 @@
  * @property {number[] | null} measured  indices of up to two particles whose distance is measured; null while nothing is
  * @property {boolean} points  whether the points that a model interpolates are drawn
  * @property {number | null} level  the newest generation level drawn, null for all of them; a level beyond the last counts as the last
+ * @property {number | null} step  the relaxation step after which the particles are drawn, null for the last one
+ * @property {Grain} grain  what a step on the timeline is
+ * @property {[number, number] | null} follow  the particle of the paper's run that is followed, and the number of its event
  * @property {CameraState} camera
  */
 /**
@@ -275,6 +279,8 @@
  * @property {() => void} fit
  * @property {(place: Place | null, options?: {turns?: boolean}) => void} pointOut  marks a place, or none, and brings it before the
  *   camera unless `turns` is false
+ * @property {(count: number | null) => void} showFirst  draws only so many particles, the first ones; null for all
+ * @property {(normal: Vec3) => void} turnTo  turns the camera to a side of the surface, unless that side is seen already
  * @property {() => void} dismissHover  no particle is chosen any more, even if it was pressed
  * @property {(factor: number) => void} zoom  > 1 zooms in
  * @property {(dxRad: number, dyRad: number) => void} orbit

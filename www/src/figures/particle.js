@@ -64,7 +64,13 @@ export async function openParticle(client, { end, radius }, particle) {
     (whole?.children ?? []).map((child) => (child.start ? profile(client, { place, normal, radius }, child) : null)),
   );
   const parent = end.parents[particle];
-  const subject = { particle, level: end.levels[particle], parent: parent === NO_PARENT ? null : parent, radius };
+  const subject = {
+    particle,
+    level: end.levels[particle],
+    levels: end.levels.reduce((a, b) => Math.max(a, b), 0),
+    parent: parent === NO_PARENT ? null : parent,
+    radius,
+  };
   return { subject, place, normal, positions: end.positions, normals: end.normals, events, profiles };
 }
 

@@ -5,7 +5,7 @@ import { formatCount, formatFixed, formatSignificant, plural } from '../ui/forma
  * @typedef {import('../engine/types.js').LessonEvent} LessonEvent
  * @typedef {import('./moment.js').Moment} Moment
  */
-/** Whose events are told. `parent` is null for a seed. @typedef {{ particle: number, level: number, parent: number | null, radius: number }} Subject */
+/** Whose events are told. `parent` is null for a seed; `levels` is the last level of the run. @typedef {{ particle: number, level: number, levels?: number, parent: number | null, radius: number }} Subject */
 
 /** A length in radii. @param {number} length @param {number} radius @param {number} [digits] */
 export const inRadii = (length, radius, digits = 3) => `${formatFixed(length / radius, digits)}\u00a0r`;
@@ -178,12 +178,13 @@ function brief(event) {
 }
 
 /**
- * The place on the range, such as "Level 3, particle 47, child 2: matched particle 31".
+ * The place on the range, such as "Level 3 of 21, particle 47, child 2: matched particle 31".
  * @param {Moment} moment @param {Subject} subject
  */
-export function valueText({ event, slot, isNow }, { level, particle }) {
+export function valueText({ event, slot, isNow }, { level, levels, particle }) {
+  const of = levels === undefined ? '' : ` of ${formatCount(levels)}`;
   const child = isNow && slot !== null && !(event.type === 'fate' && event.fate === 'parent') ? `, child ${slot}` : '';
-  return `Level ${formatCount(level)}, particle ${formatCount(particle)}${child}: ${brief(event)}`;
+  return `Level ${formatCount(level)}${of}, particle ${formatCount(particle)}${child}: ${brief(event)}`;
 }
 
 /**

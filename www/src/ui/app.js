@@ -85,8 +85,8 @@ export function mountInterface(engine) {
     untracked(layout.measure);
   });
   linkLesson(engine);
-  const follow = followOf(engine, shell, toast);
-  mountHover(stage, engine, { view, follow });
+  const lesson = lessonOf(engine, shell, toast);
+  mountHover(stage, engine, { view, follow: (index) => void timeline?.follow(index) });
   byId('tabs').append(goButton(engine));
 
   let mounted = false;
@@ -111,8 +111,8 @@ export function mountInterface(engine) {
     );
     import('./levels/timeline.js').then(
       ({ createTimeline }) => {
-        timeline = createTimeline(byId('levels-body'), engine, told);
-        byId('levels-body').append(seedButton(engine, follow));
+        const say = (/** @type {string} */ text) => toast({ id: 'link', kind: 'warn', text });
+        timeline = createTimeline(byId('levels-body'), engine, { told, lesson: () => lesson(say), say });
       },
       // If the timeline fails to load, the rest of the page still works.
       () => {
@@ -141,45 +141,20 @@ function nameTab(engine) {
 }
 
 /**
- * Returns what follows a particle in a panel, which is loaded when it is first asked for.
+ * Returns what loads the panel that follows particles, when it is first asked for; its promise is null if that fails.
  * @param {Engine} engine @param {HTMLElement} shell @param {import('./toasts.js').Toast} toast
  */
-function followOf(engine, shell, toast) {
-  /** @type {Promise<{ follow: (index: number) => void }> | null} */
-  let panel = null;
-  return async (/** @type {number} */ index) => {
+function lessonOf(engine, shell, toast) {
+  return async (/** @type {(text: string) => void} */ say) => {
     try {
-      panel ??= import('./lesson/panel.js').then(({ mountFollow }) => mountFollow(shell, engine));
-      (await panel).follow(index);
+      const { mountFollow } = await import('./lesson/panel.js');
+      return await mountFollow(shell, engine, say);
     } catch {
-      panel = null;
       const text = 'The panel that follows particles did not load. The picture is not affected.';
       toast({ id: 'follow', kind: 'error', text });
+      return null;
     }
   };
-}
-
-/** Creates the button that follows the seed, where the front begins. @param {Engine} engine @param {(index: number) => void} follow */
-function seedButton(engine, follow) {
-  const button = h(
-    'button',
-    { type: 'button', class: 'button plain levels-follow', on: { click: () => follow(0) } },
-    icon('follow'),
-    'Follow',
-  );
-  effect(() => {
-    void engine.revision.value;
-    button.disabled = engine.empty.value || engine.columns.count === 0;
-  });
-  explain(
-    button,
-    () => ({
-      title: 'Follow the seed',
-      text: 'Opens the particle at which the front begins: the paper’s algorithm, event by event.',
-    }),
-    { side: 'above' },
-  );
-  return button;
 }
 
 /** Gives the page and the browser's frame the chosen theme. @param {Engine} engine */
@@ -264,7 +239,7 @@ const shortcutsOf = (engine, { history, motion, print, timeline, hide, open }) =
       if (!engine.busy.peek()) engine.relax(1);
     },
   },
-  { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the levels', act: () => timeline()?.toggle() },
+  { keys: ['p', 'P'], shown: 'P', label: 'Play or pause the timeline', act: () => timeline()?.toggle() },
   { keys: [','], shown: ',', label: 'Level back', act: () => timeline()?.back() },
   { keys: ['.'], shown: '.', label: 'Level forward', act: () => timeline()?.forward() },
   { keys: ['<'], shown: '<', label: 'First level', act: () => timeline()?.first() },

@@ -101,7 +101,8 @@ export function place(element, anchor, side = 'below') {
  * Attaches an explanation to `target`.
  * @param {Element} target hovered or focused
  * @param {() => Explanation | null} read
- * @param {{ tap?: boolean, side?: Side }} [options] with `tap`, a press toggles it (for elements that do nothing else)
+ * @param {{ tap?: boolean, side?: Side, focus?: boolean }} [options] with `tap`, a press toggles it (for elements that do nothing
+ *   else); without `focus` it is there for the pointer alone, where Escape has another use
  */
 export function explain(target, read, options = {}) {
   const open = () => {
@@ -117,7 +118,7 @@ export function explain(target, read, options = {}) {
   });
   target.addEventListener('focusin', () => {
     // Focus may return from a closing menu, and no popover can be shown while another one is being hidden.
-    if (usesKeyboard()) later(open, 0);
+    if (usesKeyboard() && options.focus !== false) later(open, 0);
   });
   target.addEventListener('focusout', hide);
   if (options.tap) target.addEventListener('click', () => (owner === target ? hide() : open()));

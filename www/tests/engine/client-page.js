@@ -100,6 +100,7 @@ export function page() {
         told.push(`changed ${first}..${last}`);
         drawn();
       },
+      remembered: () => {},
       meshed: () => told.push('mesh'),
       recolour: () => {},
       fit: () => told.push('fit'),

@@ -287,7 +287,7 @@ describe('a job', () => {
     expect(ranges.length).toBeGreaterThan(2);
     expect(memory).toEqual({ held: 7, meshed: 7 });
     // The mesh does not wait for the figures.
-    expect(posted.map(({ type }) => type).slice(-3)).toEqual(['columns', 'done', 'report']);
+    expect(posted.map(({ type }) => type).slice(-4)).toEqual(['columns', 'past', 'done', 'report']);
   });
 
   test('leaves a mesh on the page until the next one is there, unless it is to be seen growing', async () => {
@@ -355,6 +355,33 @@ describe('a job', () => {
       { memory: { held: 0, meshed: 0 } },
     );
     expect(of(lost.posted, 'done')[0].outcome).toBe('lost');
+  });
+
+  test('positions before every relaxation step are kept, the first as they were placed', async () => {
+    const core = fakeCore({ particles: 3000, relax_steps: 3 });
+    const { posted, memory } = await run(core, sampleJob());
+    const [{ positions }] = of(posted, 'past');
+    // The core of the tests moves everything by a half in each step.
+    expect(positions.map(([x]) => x)).toEqual([0, 0.5, 1]);
+    expect(positions.every(({ length }) => length === 9000)).toBe(true);
+    const relax = /** @type {const} */ ({ kind: 'relax', id: 8, of: 7, steps: 2, live: false, grow: true });
+    const again = await run(core, relax, { memory });
+    expect(of(again.posted, 'past')[0].positions.map(([x]) => x)).toEqual([1.5, 2]);
+  });
+
+  test('of many particles only the positions as placed are kept, and of a drag none', async () => {
+    const many = await run(fakeCore({ particles: 20_001, relax_steps: 3, usPerUnit: 1 }), sampleJob());
+    expect(of(many.posted, 'past')[0].positions).toHaveLength(1);
+    const drag = await run(fakeCore({ particles: 3000, relax_steps: 3 }), sampleJob({ live: true }));
+    expect(of(drag.posted, 'past')).toEqual([]);
+  });
+
+  test('a relaxation that is stopped has the positions before the steps that it made', async () => {
+    const core = fakeCore({ particles: 3000, relax_steps: 5 });
+    const { posted } = await run(core, sampleJob(), {
+      interrupt: (soFar) => (of(soFar, 'columns').some(({ progress }) => progress?.relax_step === 2) ? 'stop' : null),
+    });
+    expect(of(posted, 'past')[0].positions.map(([x]) => x)).toEqual([0, 0.5]);
   });
 });
 

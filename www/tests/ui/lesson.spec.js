@@ -8,13 +8,13 @@ import { open, scan, settled } from './helpers.js';
 /** @param {Page} page */
 const panel = (page) => page.getByRole('region', { name: /^Particle/ });
 /** @param {Page} page */
-const range = (page) => page.getByRole('slider', { name: 'Event of the particle' });
+const range = (page) => page.getByRole('slider', { name: /^Timeline, by/ });
 /** @param {Page} page */
-const followSeed = (page) => page.getByRole('button', { name: 'Follow', exact: true }).click();
+const followSeed = (page) => page.getByRole('radio', { name: 'Event' }).check({ force: true });
 /** What the panel shows of the present event: the sentence, the drawings and the numbers. @param {Page} page */
 const shown = (page) =>
   page.evaluate(() =>
-    ['.follow-told', '.follow-count', '.follow-views'].map((part) => document.querySelector(part)?.innerHTML),
+    ['.follow-told', '.levels-now', '.follow-views'].map((part) => document.querySelector(part)?.innerHTML),
   );
 
 test('a particle is followed by the keyboard alone, and every step back is exact', async ({ page }) => {
@@ -24,21 +24,24 @@ test('a particle is followed by the keyboard alone, and every step back is exact
   await expect(page.getByRole('button', { name: 'Follow this particle' })).toBeVisible();
   await page.keyboard.press('Enter');
   await expect(range(page)).toBeFocused();
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level \d+, particle [\d,]+: taken from the queue$/);
+  await expect(range(page)).toHaveAttribute(
+    'aria-valuetext',
+    /^Level \d+ of \d+, particle [\d,]+: taken from the queue$/,
+  );
   await expect(page.getByRole('button', { name: 'Follow this particle' })).toBeHidden();
 
   const forwards = [];
   const events = Number(await range(page).getAttribute('max')) + 1;
   expect(events).toBeGreaterThan(20);
   for (let at = 0; at < events; at += 1) {
+    if (at > 0) await page.keyboard.press('ArrowRight');
     await expect(range(page)).toHaveValue(String(at));
     forwards.push(await shown(page));
-    await page.keyboard.press('ArrowRight');
   }
   await expect(range(page)).toHaveAttribute('aria-valuetext', /: done$/);
   for (let at = events - 1; at >= 0; at -= 1) {
     expect(await shown(page), `event ${at}`).toEqual(forwards[at]);
-    await page.keyboard.press('ArrowLeft');
+    if (at > 0) await page.keyboard.press('ArrowLeft');
   }
   await page.keyboard.press('End');
   await expect(range(page)).toHaveValue(String(events - 1));
@@ -59,7 +62,7 @@ test('a particle is followed by the keyboard alone, and every step back is exact
 test('the seed places six children; words, drawings, algorithm and transcript agree', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
   await followSeed(page);
-  await expect(range(page)).toHaveAttribute('aria-valuetext', 'Level 0, particle 0: taken from the queue');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0 of \d+, particle 0: taken from the queue$/);
   expect((await scan(page)).violations).toEqual([]);
   await page.keyboard.press('End');
   await expect(
@@ -69,7 +72,10 @@ test('the seed places six children; words, drawings, algorithm and transcript ag
   ).toHaveCount(6);
   await expect(panel(page).getByRole('img', { name: /^Tangent plane of particle 0: six slots/ })).toBeVisible();
   await page.keyboard.press('ArrowLeft');
-  await expect(range(page)).toHaveAttribute('aria-valuetext', 'Level 0, particle 0, child 5: added particle 6');
+  await expect(range(page)).toHaveAttribute(
+    'aria-valuetext',
+    /^Level 0 of \d+, particle 0, child 5: added particle 6$/,
+  );
   await expect(panel(page).locator('.algorithm [aria-current=step]')).toHaveText(
     'otherwise add it, and let it wait its turn',
   );
@@ -91,19 +97,83 @@ test('the seed places six children; words, drawings, algorithm and transcript ag
   await clean();
 });
 
+/** The view of the state. @param {Page} page */
+const view = async (page) => (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state)).view;
+
+test('one timeline goes along levels, particles and events', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  const grain = (/** @type {string} */ name) => page.getByRole('radio', { name, exact: true });
+  for (const key of ['<', '.', '.']) await page.keyboard.press(key);
+  await grain('Particle').check({ force: true });
+  // The first particle of level 2, as its children are placed.
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 2 of \d+, particle 7: /);
+  await expect(page.locator('.levels-now')).toHaveText(/^Particle 7 of [\d,]+$/);
+  expect(await view(page)).toMatchObject({ level: null, grain: 'particle', follow: [7, 0] });
+  await page.getByRole('button', { name: 'Particle forward' }).click();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 8: done$/);
+  await grain('Event').check({ force: true });
+  await page.getByRole('button', { name: 'Event forward' }).click();
+  // After the last event comes the next particle, and before its first the one before.
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 9: taken from the queue$/);
+  await range(page).focus();
+  await page.keyboard.press('PageUp');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 8: done$/);
+  await page.keyboard.press('Alt+ArrowRight');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 3 of \d+, particle 19: taken/);
+  await page.keyboard.press('Shift+ArrowLeft');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 2 of \d+, particle 18: taken/);
+  await grain('Level').check({ force: true });
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 2 of \d+: 12 particles, 19 so far$/);
+  await range(page).focus();
+  await page.keyboard.press('Escape');
+  await expect(panel(page)).toBeHidden();
+  expect(await view(page)).toMatchObject({ grain: 'level', follow: null });
+  await clean();
+});
+
+test('the place is part of the link, and one that is not there leads to the nearest', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 0: taken/);
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 1: taken/);
+  for (const key of ['ArrowRight', 'ArrowRight']) await page.keyboard.press(key);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, child 1: starts/);
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  expect(JSON.parse(Buffer.from(new URL(link).hash.split('.')[2], 'base64url').toString()).view).toMatchObject({
+    grain: 'event',
+    follow: [1, 2],
+  });
+  const undo = page.getByRole('button', { name: 'Undo' });
+  await expect(undo).toHaveAttribute('aria-disabled', 'true');
+  await page.goto('about:blank');
+  await open(page, { width: 1280, height: 800, hash: new URL(link).hash });
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, child 1: starts/);
+  await expect(page.getByRole('radio', { name: 'Event' })).toBeChecked();
+  const far = Buffer.from(JSON.stringify({ view: { grain: 'event', follow: [999999, 3] } })).toString('base64url');
+  await page.goto('about:blank');
+  await open(page, { width: 1280, height: 800, hash: `#v1.j.${far}` });
+  await expect(page.getByText('The link names particle 999,999. The last one is shown.')).toBeVisible();
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level \d+ of \d+, particle \d,\d+/);
+  await clean();
+});
+
 test('a surface that changes is told, and its particle at the same place is offered', async ({ page }) => {
   const { clean } = await open(page, { width: 1280, height: 800 });
   await followSeed(page);
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0, particle 0/);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0 of \d+, particle 0/);
   await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.setParameter('a', 1.3));
   await settled(page);
   await expect(panel(page).getByText('The surface has changed.')).toBeVisible();
   // What is open stays as it was.
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0, particle 0/);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 0 of \d+, particle 0/);
   await panel(page).getByRole('button', { name: 'Follow the particle at the same place' }).click();
   await expect(range(page)).toBeFocused();
   await expect(panel(page).getByText('The surface has changed.')).toBeHidden();
-  await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level \d+, particle [\d,]+: taken from the queue$/);
+  await expect(range(page)).toHaveAttribute(
+    'aria-valuetext',
+    /^Level \d+ of \d+, particle [\d,]+: taken from the queue$/,
+  );
   await clean();
 });
 

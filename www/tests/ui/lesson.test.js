@@ -3,7 +3,9 @@ import { inPlane, lensOf, slotPlace } from '../../src/figures/geometry.js';
 import { momentAt } from '../../src/figures/moment.js';
 import { ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
 import { setLocale } from '../../src/ui/format.js';
-import { nearest, standIn } from '../../src/ui/lesson/find.js';
+import { nearest, placedBefore, standIn } from '../../src/ui/lesson/find.js';
+import { alikeIn } from '../../src/ui/lesson/run.js';
+import { heightsOf, stretchesOf } from '../../src/ui/lesson/tracks.js';
 
 /** @typedef {import('../../src/engine/types.js').LessonEvent} LessonEvent */
 
@@ -70,7 +72,7 @@ const events = [
   { type: 'fate', parent: 47, slot: 2, fate: 'matched', particle: 31 },
   { type: 'done', particle: 47, evaluations: 1234 },
 ];
-const subject = { particle: 47, level: 3, parent: 20, radius: 0.1 };
+const subject = { particle: 47, level: 3, levels: 21, parent: 20, radius: 0.1 };
 const last = events.length - 1;
 /** @param {number} at */
 const told = (at) => tell(momentAt(events, at), subject);
@@ -107,11 +109,11 @@ describe('the moment of an event', () => {
 
 describe('the words', () => {
   test('name level, particle, child and what happens', () => {
-    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3, particle 47, child 2: matched particle 31');
-    expect(valueText(momentAt(events, 0), subject)).toBe('Level 3, particle 47: taken from the queue');
-    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3, particle 47, child 1: θ₁ = −0.72°');
-    expect(valueText(momentAt(events, 9), subject)).toBe('Level 3, particle 47: parent particle 20');
-    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3, particle 47, child 1: added as particle 74');
+    expect(valueText(momentAt(events, 14), subject)).toBe('Level 3 of 21, particle 47, child 2: matched particle 31');
+    expect(valueText(momentAt(events, 0), subject)).toBe('Level 3 of 21, particle 47: taken from the queue');
+    expect(valueText(momentAt(events, 4), subject)).toBe('Level 3 of 21, particle 47, child 1: θ₁ = −0.72°');
+    expect(valueText(momentAt(events, 9), subject)).toBe('Level 3 of 21, particle 47: parent particle 20');
+    expect(valueText(momentAt(events, 11), subject)).toBe('Level 3 of 21, particle 47, child 1: added as particle 74');
   });
 
   test('tell each event with its lengths in radii', () => {
@@ -193,5 +195,41 @@ describe('the particle that stands for another', () => {
   test('lies at the distance that is told', () => {
     expect(nearest(positions, 3, [2, 3, 4])).toEqual({ particle: 2, distance: 5 });
     expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
+  });
+});
+
+describe('the front at a particle', () => {
+  const none = 0xffffffff;
+
+  test('has the children of all particles before it, and its own are still to come', () => {
+    // A seed with two children; the first of them has two, the second none, the third one.
+    const parents = [none, 0, 0, 1, 1, 3];
+    expect([0, 1, 2, 3, 4, 5].map((p) => placedBefore(parents, p))).toEqual([1, 3, 5, 5, 6, 6]);
+  });
+
+  test('does not have the seeds that come later', () => {
+    const parents = [none, 0, none, 2, 2];
+    expect([0, 1, 2, 3].map((p) => placedBefore(parents, p))).toEqual([1, 2, 3, 5]);
+  });
+});
+
+describe('the tracks of the lesson', () => {
+  test('have a bar for each stretch of one level', () => {
+    expect(stretchesOf([0, 1, 1, 1, 2, 2, 0, 1])).toEqual([1, 3, 2, 1, 1]);
+    expect(stretchesOf([])).toEqual([]);
+  });
+
+  test('have a bar for each event, the ends and the fates higher than what leads to them', () => {
+    const heights = heightsOf(events);
+    expect(heights).toHaveLength(events.length);
+    expect(heights[0]).toBe(1);
+    expect(heights[3]).toBeLessThan(heights[12]);
+  });
+
+  test('know how many first particles of a run are those of the picture', () => {
+    const placed = Float32Array.of(0, 0, 0, 1, 0, 0, 5, 0, 0);
+    const run = /** @type {any} */ ({ positions: Float32Array.of(0, 0, 0, 1.01, 0, 0, 2, 0, 0, 3, 0, 0) });
+    expect(alikeIn({ placed, count: 3 }, run, 0.1)).toBe(2);
+    expect(alikeIn({ placed, count: 1 }, run, 0.1)).toBe(1);
   });
 });

@@ -7,10 +7,10 @@ import { open, scan, settled, state } from './helpers.js';
 /** @param {Page} page */
 const level = async (page) => (await state(page)).view.level;
 /** @param {Page} page */
-const slider = (page) => page.getByRole('slider', { name: 'Generation level' });
+const slider = (page) => page.getByRole('slider', { name: /^Timeline, by/ });
 /** @param {Page} page @param {string} name */
 const press = (page, name) =>
-  page.getByRole('group', { name: 'Step through the levels' }).getByRole('button', { name, exact: true }).click();
+  page.getByRole('group', { name: 'Step along the timeline' }).getByRole('button', { name, exact: true }).click();
 /** The levels of the particles, counted. @param {Page} page @returns {Promise<number[]>} */
 const fresh = (page) =>
   page.evaluate(() => {
@@ -37,6 +37,7 @@ test('buttons and keys go through the levels, and the caption says how each came
   await press(page, 'Level forward');
   await page.keyboard.press('.');
   expect(await level(page)).toBe(2);
+  await expect(page.getByText('These are the figures of all particles at the end of the run.')).toBeVisible();
   await expect(slider(page)).toHaveAttribute(
     'aria-valuetext',
     `Level 2 of ${last}: ${made[2]} particles, ${made[0] + made[1] + made[2]} so far`,
@@ -44,7 +45,7 @@ test('buttons and keys go through the levels, and the caption says how each came
   // On an ellipsoid the first levels are those of a plane: of 30 children of six particles 12 are new.
   await expect(page.locator('.caption')).toContainText('12 new (on a flat plane 12), 19 so far');
   await expect(page.locator('.caption')).toContainText(
-    'Level 1 proposed 30 children: 12 added, 18 met existing particles. Drawn after 10 relaxation steps.',
+    'Level 1 proposed 30 children: 12 added, 18 met existing particles. Drawn as placed, before relaxation.',
   );
   await page.keyboard.press(',');
   expect(await level(page)).toBe(1);
@@ -54,20 +55,27 @@ test('buttons and keys go through the levels, and the caption says how each came
   await page.keyboard.press('>');
   expect(await level(page)).toBe(null);
   await expect(page.locator('.caption')).not.toContainText('Level');
-  // Back from the whole picture is the last level; forward from that the whole picture again.
+  // Back from the whole picture lead the relaxation steps, then the last level.
   await page.keyboard.press(',');
-  expect(await level(page)).toBe(last);
+  expect(await state(page)).toMatchObject({ view: { level: null, step: 9 } });
+  await expect(page.locator('.caption')).toContainText('Relaxation step 9 of 10');
+  for (let k = 0; k < 9; k += 1) await page.keyboard.press(',');
+  expect(await state(page)).toMatchObject({ view: { level: last, step: null } });
   await page.keyboard.press('.');
-  expect(await level(page)).toBe(null);
+  expect(await state(page)).toMatchObject({ view: { level: null, step: 1 } });
+  await page.keyboard.press('>');
+  expect(await state(page)).toMatchObject({ view: { level: null, step: null } });
   await clean();
 });
 
 test('a press on a bar leads to its level, and the slider is moved by keys', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  const bars = (await fresh(page)).length;
+  // After the levels come ten relaxation steps.
+  const levels = (await fresh(page)).length;
+  const bars = levels + 10;
   const box = await slider(page).boundingBox();
   if (!box) throw new Error('the slider has no box');
-  for (const wanted of [0, 7, bars - 1]) {
+  for (const wanted of [0, 7, levels - 1]) {
     await page.mouse.click(box.x + ((wanted + 0.5) / bars) * box.width, box.y + box.height / 2);
     expect(await level(page)).toBe(wanted);
   }
@@ -87,7 +95,7 @@ test('a press on a bar leads to its level, and the slider is moved by keys', asy
 
 test('play goes on by itself, can be paused, and ends with all levels', async ({ page }) => {
   const { clean } = await open(page, { width: 1440, height: 900 });
-  await page.getByRole('combobox', { name: 'Levels per second' }).selectOption('25');
+  await page.getByRole('combobox', { name: 'Speed' }).selectOption('8');
   await press(page, 'Play');
   await expect.poll(() => level(page)).toBeGreaterThan(2);
   await page.keyboard.press('p');

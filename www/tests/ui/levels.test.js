@@ -1,7 +1,9 @@
 import { beforeAll, describe, expect, test } from 'vitest';
 import { Columns, FATE, NO_PARENT } from '../../src/engine/columns.js';
+import { facing } from '../../src/engine/view/facing.js';
 import { setLocale } from '../../src/ui/format.js';
-import { facing } from '../../src/ui/levels/facing.js';
+import { moveOf } from '../../src/ui/levels/keys.js';
+import { drawnAt, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
 
 beforeAll(() => setLocale('en-GB'));
@@ -94,6 +96,9 @@ describe('a level in words', () => {
       title: 'Level 0 of 2 · 1 new, 1 so far',
       text: 'The front starts at one point of the surface. Drawn after 10 relaxation steps.',
     });
+    expect(describeLevel(levelTable(front()), 0, null).text).toBe(
+      'The front starts at one point of the surface. Drawn as placed, before relaxation.',
+    );
     expect(describeLevel(levelTable(particles([{ level: 0 }, { level: 0 }])), 0, 0).text).toBe(
       '2 points of the surface, a front from each.',
     );
@@ -105,6 +110,53 @@ describe('a level in words', () => {
     expect(flatCount(levelTable(particles(made)), 0)).toBe(null);
     expect(flatCount(levelTable(particles(made, true)), 2)).toBe(null);
     expect(flatCount(levelTable(particles([...made, { level: 0 }])), 2)).toBe(null);
+  });
+});
+
+describe('the places of the timeline', () => {
+  test('are the levels, then the relaxation steps, then everything', () => {
+    const about = { last: 4, steps: 10 };
+    expect(drawnAt(0, about)).toEqual({ level: 0, step: null });
+    expect(drawnAt(4, about)).toEqual({ level: 4, step: null });
+    expect(drawnAt(5, about)).toEqual({ level: null, step: 1 });
+    expect(drawnAt(13, about)).toEqual({ level: null, step: 9 });
+    expect(drawnAt(14, about)).toEqual({ level: null, step: null });
+    for (let at = 0; at <= 14; at += 1) expect(placeOf(drawnAt(at, about), about)).toBe(at);
+  });
+
+  test('end with everything where nothing is known of the relaxation', () => {
+    const about = { last: 4, steps: stepsOf(0) };
+    expect(drawnAt(5, about)).toEqual({ level: null, step: null });
+    expect(placeOf({ level: 99, step: null }, about)).toBe(4);
+    expect(placeOf({ level: null, step: 3 }, about)).toBe(5);
+  });
+});
+
+describe('a key', () => {
+  const none = { shiftKey: false, altKey: false, ctrlKey: false, metaKey: false };
+  const panel = { onRange: false, isOpen: true };
+  const range = { onRange: true, isOpen: true };
+  test('moves by an event, with Shift by a particle, with Alt by a level', () => {
+    expect(moveOf({ ...none, key: 'ArrowRight' }, panel)).toEqual({ grain: 'event', to: 1 });
+    expect(moveOf({ ...none, key: 'ArrowLeft', shiftKey: true }, panel)).toEqual({ grain: 'particle', to: -1 });
+    expect(moveOf({ ...none, key: 'ArrowLeft', altKey: true }, range)).toEqual({ grain: 'level', to: -1 });
+  });
+
+  test('moves by what the range goes along where the range has the focus, or nothing is followed', () => {
+    expect(moveOf({ ...none, key: 'ArrowRight' }, range)).toEqual({ grain: 'chosen', to: 1 });
+    expect(moveOf({ ...none, key: 'ArrowDown' }, range)).toEqual({ grain: 'chosen', to: -1 });
+    expect(moveOf({ ...none, key: 'ArrowRight' }, { onRange: false, isOpen: false })).toEqual({
+      grain: 'chosen',
+      to: 1,
+    });
+    expect(moveOf({ ...none, key: 'ArrowDown' }, panel)).toBe(null);
+  });
+
+  test('of a clicker moves as the buttons do, and other keys mean nothing', () => {
+    expect(moveOf({ ...none, key: 'PageDown' }, panel)).toEqual({ grain: 'chosen', to: 1 });
+    expect(moveOf({ ...none, key: 'Home' }, panel)).toEqual({ grain: 'chosen', to: 'first' });
+    expect(moveOf({ ...none, key: 'ArrowRight', ctrlKey: true }, panel)).toBe(null);
+    expect(moveOf({ ...none, key: 'x' }, range)).toBe(null);
   });
 });
 

@@ -6,7 +6,7 @@
 import { validView } from '../share/state.js';
 import { change } from '../store.js';
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {ViewCommands} */
 export function viewCommands({ store, picture, look }) {
@@ -26,6 +26,10 @@ export function viewCommands({ store, picture, look }) {
       store.spot.value = place;
       if (place && turns) viewer.lookAt(place);
     },
+    showFirst(count) {
+      if (viewer.look.upto !== count) viewer.set({ upto: count });
+    },
+    turnTo: (normal) => viewer.turnTo(normal),
     zoom(factor) {
       viewer.camera.zoom(factor);
       viewer.moved();

@@ -279,6 +279,8 @@ export class SamplingClient {
         return this.presenter.progress(message.progress, current);
       case 'columns':
         return this.takeColumns(message, current);
+      case 'past':
+        return this.presenter.past(message, current);
       case 'done':
         return this.ended(message, current);
       case 'report':

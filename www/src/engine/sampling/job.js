@@ -7,7 +7,7 @@
  */
 import { nextBudget } from '../bundle/budget.js';
 import { join } from './joining.js';
-import { BEAT_MS, PROGRESS_MS } from './protocol.js';
+import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').Job} Job
@@ -152,6 +152,8 @@ class JobRun {
     /** @type {CoreProgress | null} */
     this.progress = null;
     this.predicted = 0;
+    /** Positions before each relaxation step. @type {Float32Array[]} */
+    this.past = [];
     /** Time of the last message that the supervisor counts as a sign of life. */
     this.beatMs = 0;
     /** The page has columns of `count` particles, and the final fates of all slots if `settled`. */
@@ -225,6 +227,7 @@ class JobRun {
       }
     } else {
       if (memory.held !== job.of) return this.end('lost');
+      this.past.push(core.positions(0));
       core.relax(job.steps);
       this.sent.count = core.count();
     }
@@ -266,6 +269,7 @@ class JobRun {
       budgets[phase] = nextBudget(budget, took);
       sent.stale ||= progress.moved;
       if (progress.phase === 'done') return progress;
+      this.remember(progress);
       // A refinement moves the particles while it hands a level on, the coarse one first, and then goes on below them.
       const isHanding = progress.phase === 'refinement' && progress.moved;
       if (job.kind === 'sample' && job.coarse && wasHanding && !isHanding) {
@@ -277,6 +281,18 @@ class JobRun {
       this.tell(progress);
       await env.pause();
     }
+  }
+
+  /** Keeps the positions before every relaxation step. @param {CoreProgress} progress */
+  remember(progress) {
+    const { core, job, past } = this;
+    if (job.live || progress.phase !== 'relaxation' || this.stepsOf(progress) !== past.length) return;
+    if (past.length === 0 || core.count() <= MOST_REMEMBERED) past.push(core.positions(0));
+  }
+
+  /** Returns the relaxation steps of this run so far. @param {CoreProgress} progress */
+  stepsOf({ relax_step, relax_steps }) {
+    return this.job.kind === 'relax' ? relax_step - (relax_steps - this.job.steps) : relax_step;
   }
 
   /** Sends columns if they are due, or else the progress from time to time. @param {CoreProgress} progress */
@@ -346,6 +362,14 @@ class JobRun {
     if (!sent.settled) {
       const slots = core.slots(0);
       env.post({ ...bare(core, job.id), slotsFrom: 0, slots, progress: last }, [slots.buffer]);
+    }
+    // What was kept last is where the particles are, unless another step has been made since.
+    const positions = this.past.slice(0, this.stepsOf(last));
+    if (positions.length > 0) {
+      env.post(
+        { type: 'past', id: job.id, positions },
+        positions.map(({ buffer }) => buffer),
+      );
     }
     this.sendCurvature();
     return true;

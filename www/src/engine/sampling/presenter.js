@@ -7,10 +7,12 @@ import { batch } from '@preact/signals-core';
 import { idleProgress } from '../store.js';
 import { refusalNotice } from './faults.js';
 import { timingOf, timingOfReport } from './pace.js';
+import { MOST_REMEMBERED } from './protocol.js';
 
 /**
  * @typedef {import('./protocol.js').ColumnsMessage} ColumnsMessage
  * @typedef {import('./protocol.js').DoneMessage} DoneMessage
+ * @typedef {import('./protocol.js').PastMessage} PastMessage
  * @typedef {import('./run-state.js').Run} Run
  * @typedef {import('./run-state.js').RunRequest} RunRequest
  * @typedef {import('../types.js').FieldAnswer} FieldAnswer
@@ -22,6 +24,7 @@ import { timingOf, timingOfReport } from './pace.js';
  *   new surface replaces the old one
  * @property {(first: number, last: number, onDrawn: () => void) => void} changed  columns of particles first … last are
  *   new
+ * @property {() => void} remembered  the columns have positions of earlier relaxation steps
  * @property {() => void} meshed  the columns have another mesh
  * @property {(from: number, last: number) => void} recolour  colours of particles first … last may have changed
  * @property {() => void} fit
@@ -133,6 +136,17 @@ export class Presenter {
     picture.recolour(message.slotsFrom, columns.count);
     if (message.progress) this.progress(message.progress, run);
     store.revision.value += 1;
+  }
+
+  /** Takes the positions before the relaxation steps of a run. @param {PastMessage} message @param {Run} run */
+  past({ positions }, { request }) {
+    const { columns } = this;
+    // Steps that are made afterwards go on from the earlier ones, if those were all kept.
+    const earlier = request.kind === 'relax' ? columns.past : [];
+    const isWhole = earlier.length === 0 || columns.count <= MOST_REMEMBERED;
+    columns.past = isWhole ? [...earlier, ...positions] : earlier;
+    this.picture.remembered();
+    this.store.revision.value += 1;
   }
 
   /**

@@ -85,6 +85,10 @@
  * @property {CoreProgress | null} progress  null for columns sent after the run
  */
 /**
+ * The positions before each relaxation step of the run, or before the first alone where there are many particles.
+ * @typedef {{type: 'past', id: number, positions: Float32Array[]}} PastMessage
+ */
+/**
  * @typedef {object} DoneMessage
  * @property {'done'} type
  * @property {number} id
@@ -114,13 +118,15 @@
  *   | {type: 'box', id: number, answer: import('../types.js').FieldOk}
  *   | {type: 'started', id: number, radius: number, predicted: number, warnings: string[]}
  *   | {type: 'progress', id: number, progress: CoreProgress}
- *   | ColumnsMessage | DoneMessage | ReportMessage
+ *   | ColumnsMessage | PastMessage | DoneMessage | ReportMessage
  *   | {type: 'file', request: number, bytes: Uint8Array<ArrayBuffer> | null}
  *   | {type: 'crashed', id: number, message: string, stack: string}} FromWorker
  */
 
 /** Interval between progress messages of a job that sends no columns. */
 export const PROGRESS_MS = 60;
+/** Largest number of particles of which the positions are kept at every relaxation step: 2.4 MB in ten steps. */
+export const MOST_REMEMBERED = 20_000;
 /** Largest interval between messages while the worker loads or measures. */
 export const BEAT_MS = 250;
 /** Time without a message after which a busy worker counts as hung. */

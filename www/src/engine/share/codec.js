@@ -64,6 +64,9 @@ export function difference(state, description) {
     'measured',
     'points',
     'level',
+    'step',
+    'grain',
+    'follow',
   ]))
     if (view[key] !== home.view[key]) look[key] = view[key];
   const { camera } = view;

@@ -21,7 +21,7 @@ import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 const MOST_PARAMETERS = 64;
 /** Largest number of a camera, which the graphics card reads in single precision. */
 const LARGEST_SINGLE = 3e38;
-/** Upper limit for generation levels in a state; no run reaches it. */
+/** Upper limit for generation levels, relaxation steps and events in a state; no run reaches it. */
 const LAST_LEVEL = 1e6;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
@@ -42,6 +42,7 @@ const CHOICES = /** @type {const} */ ([
   ['theme', 'theme', ['auto', 'light', 'dark']],
   ['draw', 'way of drawing', ['discs', 'mesh']],
   ['faces', 'faces of the mesh', ['smooth', 'flat']],
+  ['grain', 'grain of the timeline', ['level', 'particle', 'event']],
 ]);
 export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
@@ -61,6 +62,9 @@ const homeView = () => ({
   measured: null,
   points: true,
   level: null,
+  step: null,
+  grain: 'level',
+  follow: null,
   camera: homeCamera(),
 });
 
@@ -188,6 +192,13 @@ function validMeasured(v) {
   if (v === null) return null;
   if (!Array.isArray(v) || v.length > 2 || new Set(v).size !== v.length) return undefined;
   return v.every((index) => Number.isInteger(index) && index >= 0 && index <= LAST_PARTICLE) ? [...v] : undefined;
+}
+
+/** A particle and an event of it. @param {unknown} v @returns {[number, number] | null | undefined} */
+function validFollow(v) {
+  if (v === null) return null;
+  if (!Array.isArray(v) || v.length !== 2 || !v.every((n) => Number.isInteger(n) && n >= 0)) return undefined;
+  return [Math.min(v[0], LAST_PARTICLE), Math.min(v[1], LAST_LEVEL)];
 }
 
 /**
@@ -387,10 +398,19 @@ export function validView(raw, view, reset = []) {
     if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);
     else reset.push(name);
   }
-  if (raw.level !== undefined) {
-    const level = raw.level === null ? null : within(raw.level, 0, LAST_LEVEL);
-    if (level === undefined) reset.push('generation level');
-    else out.level = level === null ? null : Math.round(level);
+  for (const [key, name] of /** @type {const} */ ([
+    ['level', 'generation level'],
+    ['step', 'relaxation step'],
+  ])) {
+    if (raw[key] === undefined) continue;
+    const place = raw[key] === null ? null : within(raw[key], 0, LAST_LEVEL);
+    if (place === undefined) reset.push(name);
+    else out[key] = place === null ? null : Math.round(place);
+  }
+  if (raw.follow !== undefined) {
+    const follow = validFollow(raw.follow);
+    if (follow === undefined) reset.push('place on the timeline');
+    else out.follow = follow;
   }
   if (raw.measured !== undefined) {
     const measured = validMeasured(raw.measured);

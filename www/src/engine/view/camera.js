@@ -298,6 +298,28 @@ export class Camera {
   }
 
   /**
+   * Eases to where the whole ball is visible, and goes on with a turn under way.
+   * @param {{centre: Vec3, radius: number}} ball
+   */
+  glideTo({ centre, radius }) {
+    const goal = { target: centre, distance: Math.max(this.nearLimit, fitDistance(radius)) };
+    if (this.calm) this.state = { ...this.state, ...goal };
+    else this.glide = { ...this.glide, ...goal };
+  }
+
+  /** Eases to these angles, the shorter way around, and goes on with a fit under way. @param {Angles} to */
+  turnTo({ yaw, pitch }) {
+    const { state } = this;
+    const way = Math.atan2(Math.sin(yaw - state.yaw), Math.cos(yaw - state.yaw));
+    const goal = { yaw: state.yaw + way, pitch: clamp(pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD) };
+    this.yawPerS = 0;
+    this.pitchPerS = 0;
+    this.turn = null;
+    if (this.calm) this.state = { ...state, ...goal, yaw: goal.yaw % (2 * Math.PI) };
+    else this.glide = { target: state.target, distance: state.distance, ...this.glide, ...goal };
+  }
+
+  /**
    * Moves the camera so that a ball is seen along a normal, at most from as far as now, with an animation.
    * @param {{centre: Vec3, radius: number}} ball
    * @param {Vec3} normal  towards the camera

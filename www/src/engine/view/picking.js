@@ -27,10 +27,12 @@ const DENSE = 0.8;
  * @param {number} toleranceRad
  * @param {number} [lastLevel]  particles of later levels are hidden
  * @param {import('../types.js').CuttingPlane | null} [plane]  particles beyond it are hidden
+ * @param {number} [upto]  particles from this one on are hidden
  * @returns {number | null}
  */
-export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity, plane = null) {
-  const { positions, normals, radii, levels, count } = columns;
+export function pick(columns, eye, ray, discScale, toleranceRad, lastLevel = Infinity, plane = null, upto = Infinity) {
+  const { shown: positions, normals, radii, levels } = columns;
+  const count = Math.min(columns.count, upto);
   const [ex, ey, ez] = eye;
   const [dx, dy, dz] = ray;
   let hit = -1;
@@ -106,7 +108,7 @@ export const isBeyond = ({ normal, offset }, positions, at) =>
  * @param {number} i
  * @param {number} j
  */
-function near({ positions, radii }, i, j) {
+function near({ shown: positions, radii }, i, j) {
   const way = [0, 1, 2].map((k) => positions[3 * i + k] - positions[3 * j + k]);
   return Math.hypot(way[0], way[1], way[2]) <= 2 * (radii[i] + radii[j]);
 }

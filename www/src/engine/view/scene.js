@@ -51,13 +51,42 @@ export class Scene {
    * @param {Columns} columns
    * @param {boolean} boxDrawn  the ball encloses the clip box
    * @param {boolean} [axesDrawn]  the ball encloses the axes around the particles
+   * @param {(particle: number) => boolean} [isShown]  the particles that are drawn, if not all are
    */
-  fitBall(columns, boxDrawn, axesDrawn = false) {
+  fitBall(columns, boxDrawn, axesDrawn = false, isShown = undefined) {
+    const front = isShown && frontBall(columns, isShown);
+    if (front) return front;
     const bounds = columns.bounds();
     if (!bounds || (boxDrawn && !columns.stale)) return this.boxBall(boxDrawn);
     if (boxDrawn) return ballOf({ min: least(bounds.min, this.bounds.min), max: most(bounds.max, this.bounds.max) });
     return axesDrawn ? ballOf(bounds) : ballAround(columns, ballOf(bounds).centre);
   }
+}
+
+/** Least radius around a front that is shown, in radii of its first particle: a seed alone would fill the picture. */
+const LEAST_FRONT = 9;
+
+/**
+ * Returns the ball around the discs that are drawn; null without any.
+ * @param {Columns} columns @param {(particle: number) => boolean} isShown
+ */
+function frontBall({ placed, radii, count }, isShown) {
+  const [min, max] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
+  let first = -1;
+  for (let i = 0; i < count; i += 1) {
+    if (!isShown(i)) continue;
+    if (first < 0) first = i;
+    for (let k = 0; k < 3; k += 1) {
+      min[k] = Math.min(min[k], placed[3 * i + k] - radii[i]);
+      max[k] = Math.max(max[k], placed[3 * i + k] + radii[i]);
+    }
+  }
+  if (first < 0) return null;
+  const { centre, radius } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+  return { centre, radius: Math.max(radius, LEAST_FRONT * radii[first]) };
 }
 
 /**

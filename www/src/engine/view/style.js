@@ -28,6 +28,8 @@ const DIM_BACKFACES = 1;
  * @property {import('../types.js').CuttingPlane | null} plane  what it hides is neither drawn nor picked
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
  * @property {number | null} level  the newest visible generation level, null for all
+ * @property {number | null} step  the relaxation step after which discs are drawn, null for the last one
+ * @property {number | null} upto  number of particles drawn, null for all
  * @property {number} highlight  index of the particle with an outline, −1 for none
  * @property {import('./camera.js').Insets} insets
  */
@@ -47,6 +49,8 @@ export const firstLook = ({ colour, size, draw, faces, edges, marks, ghost }) =>
   plane: null,
   points: null,
   level: null,
+  step: null,
+  upto: null,
   highlight: -1,
   insets: { left: 0, right: 0, top: 0, bottom: 0 },
 });
@@ -57,6 +61,16 @@ export const firstLook = ({ colour, size, draw, faces, edges, marks, ghost }) =>
  * @param {number} lastLevel
  */
 export const shownLevel = ({ level }, lastLevel) => (level === null ? null : Math.min(level, lastLevel));
+
+/**
+ * Returns the number of the relaxation step after which the particles are drawn, null for the last one. Generation levels are drawn
+ * as they were placed. A mesh has one place only.
+ * @param {Look} look
+ */
+export function shownStep({ level, step, upto, draw }) {
+  if (draw === 'mesh') return null;
+  return level !== null || upto !== null ? 0 : step;
+}
 
 /**
  * Returns the renderers' style record.

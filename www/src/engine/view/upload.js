@@ -85,7 +85,7 @@ export class ParticleUpload {
     if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(nowS);
     const [first, last] = glide.active ? [0, count] : [dirty.first, Math.min(dirty.last, count)];
     if (first < last) {
-      const positions = glide.active ? glide.between(columns.positions, count, nowS) : columns.positions;
+      const positions = glide.active ? glide.between(columns.shown, count, nowS) : columns.shown;
       const colours = this.colours(look, first, last);
       for (const [from, end, birth] of reveal.runs(columns.levels, first, last, nowS)) {
         renderer.write(

@@ -8,12 +8,13 @@ import { legendOf } from './colouring.js';
 import { DeviceKeeper } from './device.js';
 import { Dimmer } from './dimmer.js';
 import { FaceUpload } from './faces.js';
+import { facing } from './facing.js';
 import { FrameLoop, nowS } from './frames.js';
 import { pick } from './picking.js';
 import { Reveal } from './reveal.js';
 import { Scene } from './scene.js';
 import { Screen } from './screen.js';
-import { FADE_S, firstLook, shownLevel, styleOf } from './style.js';
+import { FADE_S, firstLook, shownLevel, shownStep, styleOf } from './style.js';
 import { ParticleUpload } from './upload.js';
 
 /**
@@ -110,8 +111,19 @@ export class Viewer {
       this.endReveal();
     }
     this.upload.restart();
-    this.look = { ...this.look, highlight: -1 };
+    this.look = { ...this.look, highlight: -1, upto: null };
+    this.remembered();
     this.restyle();
+  }
+
+  /** Draws the particles after the relaxation step that is looked at, which a glide leads to. */
+  remembered() {
+    const { columns } = this;
+    const before = columns.shown;
+    columns.step = shownStep(this.look);
+    if (columns.shown === before) return;
+    this.upload.all();
+    this.frames.ask();
   }
 
   /** @param {number} first @param {number} last @param {() => void} onDrawn */
@@ -156,6 +168,8 @@ export class Viewer {
     const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.faces.recolour();
+    this.remembered();
+    if (level !== before.level || this.look.upto !== before.upto) this.frameFront();
     // A running reveal would continue behind the levels that are stepped through.
     if (level !== null && this.reveal.active) {
       this.endReveal();
@@ -204,10 +218,35 @@ export class Viewer {
    *   until then
    */
   fit(jump = false) {
-    const boxDrawn = this.look.box !== null;
-    const ball = jump ? this.scene.boxBall(boxDrawn) : this.scene.fitBall(this.columns, boxDrawn, this.look.axes);
+    const ball = jump ? this.scene.boxBall(this.look.box !== null) : this.fitBall();
     this.camera.fit(ball, jump);
     this.moved();
+  }
+
+  /** Turns to a side of the surface, unless it is seen already. @param {import('../types.js').Vec3} normal */
+  turnTo(normal) {
+    const to = facing(this.camera.state, normal);
+    if (!to) return;
+    this.camera.turnTo(to);
+    this.moved();
+  }
+
+  /** Frames the part of the front that is drawn, unless the hand has taken the camera. */
+  frameFront() {
+    const { camera, columns } = this;
+    if (!camera.state.fit || columns.count === 0 || columns.stale || this.reveal.active) return;
+    camera.glideTo(this.fitBall());
+    this.moved();
+  }
+
+  /** Returns the ball that a fit shows. */
+  fitBall() {
+    const { columns, look } = this;
+    const { upto } = look;
+    const newest = shownLevel(look, columns.lastLevel);
+    const isWhole = upto === null && (newest === null || newest >= columns.lastLevel);
+    const isShown = (/** @type {number} */ i) => i < (upto ?? Infinity) && columns.levels[i] <= (newest ?? Infinity);
+    return this.scene.fitBall(columns, look.box !== null, look.axes, isWhole ? undefined : isShown);
   }
 
   /** Brings a place before the camera, seen along its normal. @param {import('../types.js').Place} place */
@@ -239,7 +278,8 @@ export class Viewer {
     const view = this.currentView();
     const ray = rayThrough(view, x, y, cssWidth, cssHeight);
     const newest = shownLevel(look, columns.lastLevel) ?? Infinity;
-    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest, look.plane);
+    const upto = look.upto ?? Infinity;
+    return pick(columns, view.eye, ray, look.size, PICK_PX * view.worldPerPx, newest, look.plane, upto);
   }
 
   /** Returns where a place is in the picture, in CSS pixels of the host; null behind the eye. @param {ArrayLike<number>} place */
@@ -301,7 +341,8 @@ export class Viewer {
       renderer.resize(screen.width, screen.height);
       due.size = false;
     }
-    const count = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
+    const held = upload.write(renderer, look, { reveal, calm: this.calm.matches, nowS });
+    const count = Math.min(held, look.upto ?? Infinity);
     if (kind !== 'canvas2d') {
       // The ghost of a surface shows where it will grow.
       const drawn = look.draw === 'mesh' ? !reveal.active : look.ghost;
@@ -317,6 +358,7 @@ export class Viewer {
   /** @param {Device['renderer']} renderer @param {View} view @param {number} count  particles that the device holds */
   tellView(renderer, view, count) {
     renderer.set_view(view.packed);
+    if (this.look.upto !== null) return renderer.set_count(count);
     renderer.set_count(count + this.upload.writePoints(renderer, this.look, view, { count, ratio: this.screen.ratio }));
   }
 

@@ -1,4 +1,5 @@
 /** Finds the particle that stands for another one: of a run for one of the picture, and of a new picture for an old place. */
+import { NO_PARENT } from '../../engine/columns.js';
 
 /**
  * Returns the particle nearest to a place, and its distance; null if there is none.
@@ -33,8 +34,24 @@ export function standIn(positions, { index, place }, radius) {
 }
 
 /** @param {ArrayLike<number>} positions @param {number} i @param {ArrayLike<number>} place */
-function distanceSq(positions, i, place) {
+export function distanceSq(positions, i, place) {
   let sum = 0;
   for (let k = 0; k < 3; k += 1) sum += (positions[3 * i + k] - place[k]) ** 2;
   return sum;
+}
+
+/**
+ * Returns the number of particles that are there when a particle is taken from the queue: they come in the order of their parents,
+ * and a seed when the queue is empty.
+ * @param {ArrayLike<number>} parents @param {number} particle
+ */
+export function placedBefore(parents, particle) {
+  let [low, high] = [particle + 1, parents.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    const isLater = parents[middle] === NO_PARENT || parents[middle] >= particle;
+    if (isLater) high = middle;
+    else low = middle + 1;
+  }
+  return Math.min(low, parents.length);
 }

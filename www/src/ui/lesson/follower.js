@@ -3,18 +3,18 @@
  * the picture, and goes through its events.
  */
 import { batch, computed, signal } from '@preact/signals-core';
-import { NO_PARENT } from '../../engine/columns.js';
 import { momentAt } from '../../figures/moment.js';
-import { openParticle, RESIDUAL, triple } from '../../figures/particle.js';
+import { openParticle, triple } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { nearest, standIn } from './find.js';
+import { alikeIn, coarserThan, MOST_PARTICLES, SETTINGS, seedsOf, surfaceKey, surfaceWords } from './run.js';
 
 /**
  * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../engine/types.js').LessonEvent} LessonEvent
  * @typedef {import('../../engine/types.js').LessonClient} LessonClient
  * @typedef {import('../../engine/types.js').Vec3} Vec3
+ * @typedef {import('./run.js').Run} Run
  */
 /**
  * The particle that is open. `picture` is the one of the picture for which it stands, with its distance; null after a step to
@@ -27,59 +27,20 @@ import { nearest, standIn } from './find.js';
  *   | { kind: 'too_many', text: string, radius: number }
  *   | { kind: 'failed', text: string }} Status
  */
-/**
- * A run and the surface that it belongs to.
- * @typedef {object} Run
- * @property {string} surface  see {@link surfaceKey}
- * @property {string} words  the surface in words
- * @property {number} pictureRadius
- * @property {number} own  radius of the particle that was asked for, which the run has unless that would be too many
- * @property {number} radius
- * @property {boolean} adaptive  whether the picture's particles have different radii
- * @property {import('../../engine/types.js').LessonParticles} end  all its particles
- */
-
-/** The most particles whose events are followed, as the core has it. */
-const MOST_PARTICLES = 20_000;
-/** The particles that a coarser run aims at, and the least factor by which its radius grows. */
-const COARSER_PARTICLES = 16_000;
-const LEAST_COARSER = 1.25;
-/** Time for which an event is shown during playback: long enough to read its sentence. */
-const PLAY_MS = 1200;
-
-/** Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own front. */
-const SETTINGS = /** @type {const} */ ({
-  placing: 'one_by_one',
-  matched: 'stay',
-  gaps: 'leave',
-  relax_steps: 0,
-  residual: RESIDUAL,
-});
-
-/** Names the surface of the picture, so that a change can be told. @param {Engine} engine */
-function surfaceKey({ field }) {
-  const { kind, formula, parameters, bounds, surface, model } = field.value ?? {};
-  const values = parameters?.map(({ name, value }) => [name, value]);
-  return JSON.stringify([kind, formula, values, bounds, surface, model]);
-}
-
-/** The surface in words, for a transcript. @param {Engine} engine */
-function surfaceWords({ field }) {
-  const { kind, formula, parameters } = field.value ?? {};
-  if (kind !== 'formula') return 'a model from points';
-  return [formula, ...(parameters ?? []).map(({ name, value }) => `${name} = ${value}`)].join(', ');
-}
+/** A particle that is to be opened, and the event to begin with. @typedef {{ particle: number, at: number | 'last', picture: Opened['picture'] }} Wish */
 
 export class Follower {
-  /** @param {Engine} engine */
-  constructor(engine) {
+  /** @param {Engine} engine @param {(text: string) => void} say  tells what a link names and is not there */
+  constructor(engine, say) {
     this.engine = engine;
+    this.say = say;
     /** @type {import('@preact/signals-core').Signal<Status>} */
     this.status = signal({ kind: 'running', particles: 0 });
     this.opened = signal(/** @type {Opened | null} */ (null));
     /** Number of the event that is shown. */
     this.at = signal(0);
-    this.playing = signal(false);
+    /** The particle that is open, or is about to be. */
+    this.target = signal(0);
     this.run = signal(/** @type {Run | null} */ (null));
     this.moment = computed(() => {
       const opened = this.opened.value;
@@ -96,9 +57,18 @@ export class Follower {
     this.client = null;
     /** Number of the last order, so that the answers to earlier ones are dropped. */
     this.asked = 0;
-    this.timer = 0;
+    /** @type {Wish | null} */
+    this.wish = null;
+    this.isLoading = false;
     /** The particle of the picture that was followed last. @type {{ index: number, place: Vec3 } | null} */
     this.wanted = null;
+    /** Does once more what was asked for last. @type {(radius: number | null) => void} */
+    this.again = () => {};
+  }
+
+  /** Number of particles of the run. */
+  get count() {
+    return this.run.value?.end.radii.length ?? 0;
   }
 
   /**
@@ -106,31 +76,71 @@ export class Follower {
    * @param {number} index @param {number | null} [coarser]  radius of the run; null for that of the picture
    */
   async follow(index, coarser = null) {
+    const { columns } = this.engine;
+    if (index >= columns.count || columns.stale) return;
+    this.wanted = { index, place: triple(columns.placed, index) };
+    this.again = (radius) => void this.follow(index, radius);
+    const run = await this.runFor(index, coarser);
+    if (!run) return;
+    const found = standIn(run.end.positions, this.wanted, run.radius);
+    if (found) await this.open(found.particle, { picture: { index, distance: found.distance } });
+    else this.status.value = { kind: 'failed', text: 'The algorithm found no surface here.' };
+  }
+
+  /**
+   * Opens a particle of the run at an event, as a link names them; the nearest ones where there are fewer.
+   * @param {[number, number]} place @param {number | null} [coarser]
+   */
+  async goTo(place, coarser = null) {
+    const [particle, at] = place;
+    const { columns } = this.engine;
+    const opened = this.opened.peek();
+    if (opened && !this.stale.peek() && opened.subject.particle === particle) return this.seek(at);
+    if (columns.count === 0 || columns.stale) return;
+    this.again = (radius) => void this.goTo(place, radius);
+    const run = await this.runFor(0, coarser);
+    if (!run) return;
+    const last = run.end.radii.length - 1;
+    await this.open(Math.min(particle, last), { at });
+    const now = this.opened.peek();
+    if (!now) return;
+    this.wanted = { index: Math.min(now.subject.particle, columns.count - 1), place: now.place };
+    if (particle > last) this.say(`The link names particle ${formatCount(particle)}. The last one is shown.`);
+    else if (at > this.last)
+      this.say(
+        `The link names event ${formatCount(at + 1)} of particle ${formatCount(particle)}. The last one is shown.`,
+      );
+  }
+
+  /** Follows the particle of the present picture at the place of the one before. */
+  async anew() {
+    const { columns } = this.engine;
+    const found = this.wanted && nearest(columns.placed, columns.count, this.wanted.place);
+    if (found) await this.follow(found.particle);
+  }
+
+  /**
+   * Returns the run on the present surface, which is made unless it is there; null if it cannot be had.
+   * @param {number} index  of the particle of the picture whose radius it has @param {number | null} coarser  another radius
+   */
+  async runFor(index, coarser) {
     const { engine } = this;
     const { columns } = engine;
-    if (index >= columns.count || columns.stale) return;
-    this.pause();
-    this.wanted = { index, place: triple(columns.positions, index) };
     const pictureRadius = engine.progress.peek().radius;
     const own = columns.adaptive || !(pictureRadius > 0) ? columns.radii[index] : pictureRadius;
     const radius = coarser ?? own;
     const run = this.run.peek();
     const surface = surfaceKey(engine);
-    const isKnown = run && run.surface === surface && run.own === own && (coarser === null || run.radius === coarser);
-    if (isKnown) return this.stand(run);
-    if (coarser === null && !columns.adaptive && columns.count > MOST_PARTICLES) return this.tooMany(radius);
+    if (run && run.surface === surface && run.own === own && (coarser === null || run.radius === coarser)) return run;
+    if (coarser === null && !columns.adaptive && columns.count > MOST_PARTICLES) {
+      this.tooMany(radius);
+      return null;
+    }
     const { adaptive } = columns;
-    await this.begin({ surface, words: surfaceWords(engine), pictureRadius, own, radius, adaptive });
+    return this.begin({ surface, words: surfaceWords(engine), pictureRadius, own, radius, adaptive });
   }
 
-  /** Follows the particle of the present picture at the place of the one before. */
-  async again() {
-    const { columns } = this.engine;
-    const found = this.wanted && nearest(columns.positions, columns.count, this.wanted.place);
-    if (found) await this.follow(found.particle);
-  }
-
-  /** @param {Omit<Run, 'end'>} about */
+  /** @param {Omit<Run, 'end' | 'alike'>} about */
   async begin(about) {
     const { engine } = this;
     const mine = this.next();
@@ -142,57 +152,64 @@ export class Follower {
         ? { kind: 'running', particles: 0 }
         : { kind: 'failed', text: 'The surface is still being loaded.' };
     });
-    if (!surface) return;
+    if (!surface) return null;
     try {
       this.client ??= await engine.openLesson({
         onProgress: ({ particles }) => {
           if (this.status.peek().kind === 'running') this.status.value = { kind: 'running', particles };
         },
       });
-      if (mine !== this.asked) return;
+      if (mine !== this.asked) return null;
       await this.client.start(surface, { ...SETTINGS, radius: about.radius, seeds: seedsOf(engine) });
       const end = await this.client.ask('seek', { event: Infinity });
-      if (mine !== this.asked) return;
-      const run = { ...about, end };
-      this.run.value = run;
-      await this.stand(run);
+      if (mine !== this.asked) return null;
+      this.run.value = { ...about, end, alike: alikeIn(engine.columns, end, 0.5 * about.radius) };
+      return this.run.value;
     } catch (error) {
       if (mine === this.asked) this.fail(error, about.radius);
+      return null;
     }
   }
 
-  /** Opens the particle of the run that stands for the one that is wanted. @param {Run} run */
-  async stand(run) {
-    const found = this.wanted && standIn(run.end.positions, this.wanted, run.radius);
-    if (!found || !this.wanted) {
-      this.status.value = { kind: 'failed', text: 'The algorithm found no surface here.' };
-      return;
-    }
-    await this.open(found.particle, { index: this.wanted.index, distance: found.distance });
-  }
-
-  /** Opens a particle of the run. @param {number} particle @param {Opened['picture']} [picture] */
-  async open(particle, picture = null) {
-    const run = this.run.peek();
-    const { client } = this;
-    if (!run || !client || particle < 0 || particle >= run.end.radii.length) return;
-    this.pause();
-    const mine = this.next();
+  /**
+   * Opens a particle of the run. Of those that are asked for while one is being fetched, only the last is opened.
+   * @param {number} particle @param {Partial<Omit<Wish, 'particle'>>} [how]
+   */
+  async open(particle, { at = 0, picture = null } = {}) {
+    if (particle < 0 || particle >= this.count) return;
+    this.wish = { particle, at, picture };
+    this.target.value = particle;
+    if (this.isLoading) return;
+    this.isLoading = true;
+    const mine = this.asked;
     try {
-      const opened = await openParticle(client, run, particle);
-      if (mine !== this.asked) return;
-      batch(() => {
-        this.opened.value = { ...opened, picture };
-        this.at.value = 0;
-        this.status.value = { kind: 'ready' };
-      });
+      while (this.wish && mine === this.asked) await this.grant(this.wish);
     } catch (error) {
-      if (mine === this.asked) this.fail(error, run.radius);
+      if (mine === this.asked) this.fail(error, this.run.peek()?.radius ?? 0);
     }
+    if (mine === this.asked) this.isLoading = false;
+  }
+
+  /** @param {Wish} wish */
+  async grant({ particle, at, picture }) {
+    this.wish = null;
+    const run = this.run.peek();
+    const { client, asked } = this;
+    if (!run || !client) return;
+    const opened = await openParticle(client, run, particle);
+    if (asked !== this.asked) return;
+    const last = Math.max(0, opened.events.length - 1);
+    batch(() => {
+      this.opened.value = { ...opened, picture };
+      this.at.value = at === 'last' ? last : Math.min(at, last);
+      this.status.value = { kind: 'ready' };
+    });
   }
 
   next() {
     this.asked += 1;
+    this.wish = null;
+    this.isLoading = false;
     return this.asked;
   }
 
@@ -237,47 +254,13 @@ export class Follower {
     return Math.max(0, (this.opened.peek()?.events.length ?? 0) - 1);
   }
 
-  /** Shows an event at the user's request. @param {number} at */
+  /** @param {number} at */
   seek(at) {
-    this.pause();
     this.at.value = clamp(at, 0, this.last);
-  }
-
-  /** @param {number} by */
-  step(by) {
-    this.seek(this.at.peek() + by);
-  }
-
-  /** Opens the particle before or after. @param {1 | -1} by */
-  turn(by) {
-    const opened = this.opened.peek();
-    if (opened) void this.open(opened.subject.particle + by);
-  }
-
-  toggle() {
-    if (this.playing.peek()) return this.pause();
-    if (this.last === 0) return;
-    if (this.at.peek() >= this.last) this.at.value = 0;
-    this.playing.value = true;
-    const next = () => {
-      this.at.value = Math.min(this.last, this.at.peek() + 1);
-      if (this.at.peek() >= this.last) this.pause();
-      else wait();
-    };
-    const wait = () => {
-      this.timer = window.setTimeout(next, PLAY_MS);
-    };
-    wait();
-  }
-
-  pause() {
-    clearTimeout(this.timer);
-    this.playing.value = false;
   }
 
   /** Ends the worker and frees its memory. */
   close() {
-    this.pause();
     this.next();
     this.client?.close();
     this.client = null;
@@ -286,15 +269,4 @@ export class Follower {
       this.run.value = null;
     });
   }
-}
-
-/** A radius with which there are few enough particles. @param {number} radius @param {number} count  with that radius */
-const coarserThan = (radius, count) => radius * Math.max(LEAST_COARSER, Math.sqrt(count / COARSER_PARTICLES));
-
-/** The points of the picture at which fronts began. @param {Engine} engine @returns {Vec3[]} */
-function seedsOf({ columns }) {
-  const seeds = [];
-  for (let i = 0; i < columns.count; i += 1)
-    if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.positions, i));
-  return seeds;
 }

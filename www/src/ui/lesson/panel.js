@@ -2,7 +2,7 @@
  * The panel that follows one particle through the paper's algorithm, event by event. It takes the place of the report, and on a
  * phone that of the sheet; it is loaded when it is first asked for.
  */
-import { effect } from '@preact/signals-core';
+import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { momentAt } from '../../figures/moment.js';
 import { inRadii, transcript } from '../../figures/words.js';
 import { bindText, fill, h, uniqueId } from '../dom.js';
@@ -10,12 +10,17 @@ import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { icon } from '../icons.js';
 import { download } from '../share.js';
+import { placedBefore } from './find.js';
 import { Follower } from './follower.js';
 import sheet from './lesson.css?url';
-import { createStepper } from './stepper.js';
+import { createTold } from './told.js';
+import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
+
+/** Distance in radii up to which two particles are at one place, but for rounding. */
+const SAME_PLACE = 0.005;
 
 /** Loads the styles of the panel. @returns {Promise<void>} */
 function loadStyles() {
@@ -29,21 +34,25 @@ function loadStyles() {
   });
 }
 
-/** @param {HTMLElement} shell @param {Engine} engine */
-export async function mountFollow(shell, engine) {
+/**
+ * @param {HTMLElement} shell @param {Engine} engine
+ * @param {(text: string) => void} say  tells what a link names and is not there
+ * @returns {Promise<import('../track.js').Lesson>}
+ */
+export async function mountFollow(shell, engine, say) {
   await loadStyles();
-  const follower = new Follower(engine);
+  const follower = new Follower(engine, say);
+  const [particles, events] = [particleTrack(follower), eventTrack(follower)];
   const id = uniqueId('follow');
   const title = h('h2', { id }, 'Particle');
-  const stepper = createStepper(follower);
-  const ready = h('div', { class: 'follow-ready' }, createAbout(follower), stepper.element, createViews(follower));
+  const ready = h('div', { class: 'follow-ready' }, createAbout(follower), createTold(follower), createViews(follower));
   ready.append(createFoot(follower, engine));
   // What was pressed goes away with what it offered, so the panel itself takes the focus.
   const held = () => element.focus({ preventScroll: true });
   const element = h(
     'section',
     { class: 'panel panel-follow', 'aria-labelledby': id, tabindex: -1, hidden: true },
-    createHead(title, follower, () => close()),
+    createHead({ title, follower, particles, close: () => close() }),
     h('div', { class: 'panel-body' }, createStale(follower, engine, held), createStatus(follower, held), ready),
   );
   shell.append(element);
@@ -51,62 +60,119 @@ export async function mountFollow(shell, engine) {
     const opened = follower.opened.value;
     return opened ? `Particle ${formatCount(opened.subject.particle)}` : 'Particle';
   });
+  const open = signal(false);
   effect(() => {
     ready.hidden = follower.opened.value === null;
-    // The keys work at once: from the panel itself the focus goes to the range.
-    if (!ready.hidden && document.activeElement === element) stepper.focus();
+    element.hidden = !open.value;
   });
   element.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || !press(event)) return;
+    if (event.key !== 'Escape') return;
     event.preventDefault();
     event.stopPropagation();
+    close();
   });
+  keepPlace(follower, engine);
+  drawFront(follower, engine);
 
-  /** @param {KeyboardEvent} event @returns {boolean} whether the key means something here */
-  function press({ key, shiftKey }) {
-    if (key === 'Escape') close();
-    else if (key === 'ArrowLeft' && shiftKey) follower.turn(-1);
-    else if (key === 'ArrowRight' && shiftKey) follower.turn(1);
-    else if (key === 'ArrowLeft') follower.step(-1);
-    else if (key === 'ArrowRight') follower.step(1);
-    else if (key === 'Home') follower.seek(0);
-    else if (key === 'End') follower.seek(follower.last);
-    else return false;
-    return true;
+  /** Where the focus and the picture were before. @type {{ focus: HTMLElement | null, level: number | null, step: number | null }} */
+  let before = { focus: null, level: null, step: null };
+  function show() {
+    if (open.peek()) return;
+    const { level, step } = engine.state.peek().view;
+    before = { focus: document.activeElement instanceof HTMLElement ? document.activeElement : null, level, step };
+    open.value = true;
   }
-
-  /** Where the focus was before. @type {HTMLElement | null} */
-  let before = null;
   function close() {
+    open.value = false;
     follower.close();
-    element.hidden = true;
+    const { focus, ...place } = before;
+    engine.setView({ ...place, grain: 'level', follow: null });
     if (engine.spot.peek()) engine.pointOut(null);
-    (before?.isConnected && before.offsetParent ? before : document.getElementById('canvas-host'))?.focus();
+    (focus?.isConnected && focus.offsetParent ? focus : document.getElementById('canvas-host'))?.focus();
+  }
+  /** Goes from the level to the finer grains, where the picture shows the front as it was. */
+  function refine() {
+    const { grain } = engine.state.peek().view;
+    if (grain === 'level') engine.setView({ grain: 'event', level: null, step: null });
   }
 
   return {
-    /** @param {number} index  of a particle of the picture */
+    open,
+    level: computed(() => follower.opened.value?.subject.level ?? null),
+    place: placeOf(follower),
+    particles,
+    events,
     follow(index) {
-      if (element.hidden) before = document.activeElement instanceof HTMLElement ? document.activeElement : null;
-      element.hidden = false;
+      show();
+      refine();
       held();
       void follower.follow(index);
     },
+    goTo(place) {
+      show();
+      void follower.goTo(place);
+    },
+    goToLevel(level) {
+      const first = follower.run.peek()?.end.levels.indexOf(level) ?? -1;
+      if (first >= 0) void follower.open(first);
+    },
+    close,
+    onKey: (listener) => element.addEventListener('keydown', listener),
   };
 }
 
-/** @param {HTMLElement} title @param {Follower} follower @param {() => void} close */
-function createHead(title, follower, close) {
+/** @param {Follower} follower */
+const placeOf = ({ opened, at }) =>
+  computed(() => (opened.value ? /** @type {[number, number]} */ ([opened.value.subject.particle, at.value]) : null));
+
+/** Keeps the particle and its event in the state, and so in the link. @param {Follower} follower @param {Engine} engine */
+function keepPlace(follower, engine) {
+  const place = placeOf(follower);
+  effect(() => {
+    const follow = place.value;
+    if (follow) untracked(() => engine.setView({ follow }));
+  });
+}
+
+/**
+ * Draws the front as it was at the event, unless whole levels are looked at. It needs the particles of the picture to be those of
+ * the run.
+ * @param {Follower} follower @param {Engine} engine
+ */
+function drawFront({ opened, at, run, stale }, engine) {
+  const grain = computed(() => engine.state.value.view.grain);
+  const count = computed(() => {
+    if (grain.value === 'level' || stale.value || !opened.value || !run.value) return null;
+    const { subject, events } = opened.value;
+    const added = events.slice(0, at.value + 1).filter(({ type }) => type === 'added').length;
+    const there = placedBefore(run.value.end.parents, subject.particle) + added;
+    return there <= run.value.alike ? there : null;
+  });
+  effect(() => {
+    const there = count.value;
+    untracked(() => engine.showFirst(there));
+  });
+}
+
+/**
+ * @param {object} parts
+ * @param {HTMLElement} parts.title
+ * @param {Follower} parts.follower
+ * @param {import('../track.js').Track} parts.particles
+ * @param {() => void} parts.close
+ */
+function createHead({ title, follower, particles, close }) {
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'left' | 'right'} */ name) => {
+    const act = () => void follower.open(follower.target.peek() + by);
     const button = h(
       'button',
-      { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: () => follower.turn(by) } },
+      { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: act } },
       icon(name),
     );
     effect(() => {
-      const to = (follower.opened.value?.subject.particle ?? -Infinity) + by;
-      const count = follower.run.value?.end.radii.length ?? 0;
-      button.setAttribute('aria-disabled', String(!(to >= 0 && to < count)));
+      const to = particles.at.value + by;
+      const isThere = follower.opened.value !== null && to >= 0 && to <= particles.last.value;
+      button.setAttribute('aria-disabled', String(!isThere));
     });
     explain(button, () => ({ title: label, text: `Key Shift ${by < 0 ? '←' : '→'}` }));
     return button;
@@ -136,11 +202,12 @@ function createAbout(follower) {
     const words = [`Level ${formatCount(subject.level)}, ${from}.`];
     if (picture) {
       const number = `particle ${formatCount(picture.index)}`;
-      const far = `${inRadii(picture.distance, subject.radius, 2)} away`;
+      const isSame = picture.distance < SAME_PLACE * subject.radius;
+      const far = isSame ? '' : `, ${inRadii(picture.distance, subject.radius, 2)} away`;
       words.push(
         picture.index === subject.particle
-          ? `It is ${number} of the picture, too, ${far}.`
-          : `It is the nearest to ${number} of the picture, ${far}.`,
+          ? `It is ${number} of the picture, too${far}.`
+          : `It is the nearest to ${number} of the picture${far}.`,
       );
     }
     return words.join(' ');
@@ -156,7 +223,7 @@ function createStale(follower, engine, held) {
   const words = 'The surface has changed. This panel still shows the one before.';
   const again = () => {
     held();
-    void follower.again();
+    void follower.anew();
   };
   const button = h(
     'button',
@@ -191,7 +258,7 @@ function createStatus(follower, held) {
         on: {
           click: () => {
             held();
-            if (follower.wanted) void follower.follow(follower.wanted.index, radius);
+            follower.again(radius);
           },
         },
       },

@@ -64,14 +64,19 @@ export const shortOf = ({ last, fresh, total }, level) =>
 /**
  * Describes a level: its particles, and the fates of the children proposed.
  * @param {LevelTable} table @param {number} level
- * @param {number} relaxSteps  number of relaxation steps since
+ * @param {number | null} relaxSteps  number of relaxation steps since; null if it is drawn as it was placed, before them
  */
 export function describeLevel(table, level, relaxSteps) {
   const { last, fresh, total, seeds, fates } = table;
   const flat = flatCount(table, level);
   const plane = flat === null ? '' : ` (on a flat plane ${formatCount(flat)})`;
   const title = `Level ${formatCount(level)} of ${formatCount(last)} · ${formatCount(fresh[level])} new${plane}, ${formatCount(total[level])} so far`;
-  const moved = relaxSteps > 0 ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.` : '';
+  const moved =
+    relaxSteps === null
+      ? ' Drawn as placed, before relaxation.'
+      : relaxSteps > 0
+        ? ` Drawn after ${plural(relaxSteps, 'relaxation step')}.`
+        : '';
   if (level === 0) {
     return {
       title,

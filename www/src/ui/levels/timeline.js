@@ -1,189 +1,326 @@
 /**
- * The timeline of the generation levels: a bar per level for its new particles, a slider over the bars, and buttons.
+ * The timeline: what it goes along, one set of buttons, a range under bars, and the place in figures. Its grains finer than a level
+ * open the lesson.
  */
 import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
-import { formatCount, plural } from '../format.js';
+import { formatCount } from '../format.js';
 import { icon } from '../icons.js';
 import { clamp } from '../scale.js';
-import { Stepper } from './stepper.js';
-import { describeLevel, shortOf } from './table.js';
+import { createSegmented } from '../segmented.js';
+import { isMeant, moveOf } from './keys.js';
+import { createLevels } from './levels.js';
+import { Player } from './player.js';
+import { describeLevel } from './table.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @typedef {import('../../engine/types.js').Grain} Grain */
 /** @typedef {{ title: string, text: string }} Told */
 /** @typedef {ReturnType<typeof createTimeline>} Timeline */
 
-/** Levels per second. */
-const SPEEDS = [2, 5, 10, 25];
-const USUAL_SPEED = 10;
+/** Speeds of the playback; 1 is ten levels, two particles or an event a second. */
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
+const GRAINS = /** @type {const} */ ([
+  ['level', 'Level'],
+  ['particle', 'Particle'],
+  ['event', 'Event'],
+]);
 
 /**
  * @param {HTMLElement} body
  * @param {Engine} engine
- * @param {import('@preact/signals-core').Signal<Told | null>} told  the level in words, null while all are shown
+ * @param {object} page
+ * @param {import('@preact/signals-core').Signal<Told | null>} page.told  the level in words, null while all are shown
+ * @param {() => Promise<import('../track.js').Lesson | null>} page.lesson  loads the lesson
+ * @param {(text: string) => void} page.say  tells what a link names and is not there
  */
-export function createTimeline(body, engine, told) {
-  const speed = h(
-    'select',
-    { class: 'select speed', 'aria-label': 'Levels per second' },
-    SPEEDS.map((value) => h('option', { value, selected: value === USUAL_SPEED }, `${value}\u202f/\u202fs`)),
-  );
-  const stepper = new Stepper(engine, () => Number(speed.value));
-  const { table, chosen, some, at } = stepper;
+export function createTimeline(body, engine, { told, lesson, say }) {
+  const levels = createLevels(engine);
+  const player = new Player(engine, levels, lesson);
   effect(() => {
-    const one = chosen.value !== null && some.value;
-    told.value = one ? describeLevel(table.value, at.value, engine.progress.value.relax_step) : null;
+    told.value = describe(engine, levels, player);
   });
-  const commands = {
-    first: () => stepper.seek(0),
-    back: () => stepper.step(-1),
-    toggle: () => stepper.toggle(),
-    forward: () => stepper.step(1),
-    all: () => stepper.seek(null),
+  const range = rangeOf(player);
+  const track = trackOf(player, range);
+  const grains = createSegmented({
+    name: 'Steps of the timeline',
+    choices: GRAINS.map(([value, label]) => ({ value, label })),
+    change: (grain) => void player.choose(/** @type {Grain} */ (grain)).then(() => grains.set(player.grain.peek())),
+  });
+  effect(() => {
+    grains.set(player.grain.value);
+    for (const input of grains.element.querySelectorAll('input')) input.disabled = !levels.some.value;
+  });
+  fill(body, grains.element, buttonsOf(player), track, captionOf(player), speedOf(player));
+  explainParts(grains.element, track);
+  takeKeys(player, { body, range });
+  restore(engine, player, { levels, say });
+  effect(() => {
+    // The keys work at once: from the panel that has opened the focus goes to the range.
+    const isReady = player.isOpen.value && player.track.value.some.value;
+    if (isReady && document.activeElement?.matches('.panel-follow')) range.focus({ preventScroll: true });
+  });
+  const by = (/** @type {import('./keys.js').Move['to']} */ to) => () => player.move({ grain: 'level', to });
+  return {
+    first: by('first'),
+    back: by(-1),
+    forward: by(1),
+    all: by('last'),
+    toggle: () => player.toggle(),
+    follow: (/** @type {number} */ index) => player.follow(index),
   };
-  const track = trackOf(stepper);
-  fill(body, buttonsOf(stepper, commands), track, captionOf(stepper), speed);
-  const about = {
-    title: 'Generation levels',
-    text: 'New particles per level. Press or drag to see the front as far as that level.',
-  };
-  explain(track, () => about, { side: 'above' });
-  return commands;
 }
 
-/** Creates the bars and the slider over them. @param {Stepper} stepper */
-function trackOf(stepper) {
-  const { table, chosen, some, at } = stepper;
-  const range = sliderOf(stepper);
+/** What the caption says of the place; null where it says what it says of the whole. @param {Engine} engine @param {import('./levels.js').Levels} levels @param {Player} player @returns {Told | null} */
+function describe(engine, { table, newest, kept, some, whole, relaxed, text }, player) {
+  if (!some.value) return null;
+  if (player.grain.value !== 'level') return { title: player.track.value.text.value, text: '' };
+  if (whole.value) return null;
+  if (relaxed.value !== null) return { title: text.value, text: 'All particles, on their way to even distances.' };
+  const isMesh = engine.state.value.view.draw === 'mesh';
+  const asPlaced = kept.value > 0 && !isMesh;
+  return describeLevel(table.value, newest.value, asPlaced ? null : engine.progress.value.relax_step);
+}
+
+/** Creates the bars and the range over them. @param {Player} player @param {HTMLInputElement} range */
+function trackOf({ track }, range) {
   const chart = h('div', { class: 'levels-chart', 'aria-hidden': 'true' });
-  const track = h('div', { class: 'levels-track' }, chart, range);
+  const element = h('div', { class: 'levels-track' }, chart, range);
   effect(() => {
-    const { fresh, last } = table.value;
-    // The bars are drawn twice: pale in full, and coloured up to the present level.
-    fill(chart, bars(fresh), bars(fresh));
-    track.style.setProperty('--bars', String(last + 1));
-    range.max = String(last);
+    const { bars, last } = track.value;
+    // The bars are drawn twice: pale in full, and coloured up to the present place.
+    fill(chart, drawBars(bars.value, last.value + 1), drawBars(bars.value, last.value + 1));
+    element.style.setProperty('--bars', String(last.value + 1));
+    range.max = String(last.value);
   });
   effect(() => {
-    const { last, count } = table.value;
+    const { at, last, some, text, whole, name } = track.value;
     range.disabled = !some.value;
+    range.max = String(last.value);
     range.valueAsNumber = at.value;
-    const whole = `All ${plural(last + 1, 'level')}: ${plural(count, 'particle')}`;
-    const words = chosen.value === null ? whole : shortOf(table.value, at.value);
-    range.setAttribute('aria-valuetext', some.value ? words : 'No levels yet');
-    track.style.setProperty('--done', String((at.value + 1) / (last + 1)));
-    track.toggleAttribute('data-chosen', chosen.value !== null);
+    range.setAttribute('aria-label', `Timeline, by ${name}s`);
+    range.setAttribute('aria-valuetext', some.value ? text.value : 'Nothing to step through yet');
+    element.style.setProperty('--done', String((at.value + 1) / (last.value + 1)));
+    element.toggleAttribute('data-chosen', !whole.value);
   });
-  return track;
+  return element;
 }
 
-/** @param {Stepper} stepper */
-function sliderOf(stepper) {
-  const range = h('input', { type: 'range', class: 'levels-range', min: 0, step: 1, 'aria-label': 'Generation level' });
+/** @param {Player} player */
+function rangeOf(player) {
+  const range = h('input', { type: 'range', class: 'levels-range', min: 0, step: 1 });
   /** @param {PointerEvent} event */
-  const levelUnder = ({ clientX }) => {
+  const placeUnder = ({ clientX }) => {
     const { left, width } = range.getBoundingClientRect();
-    return clamp(Math.floor(((clientX - left) / Math.max(1, width)) * (stepper.last + 1)), 0, stepper.last);
+    const last = player.track.peek().last.peek();
+    return clamp(Math.floor(((clientX - left) / Math.max(1, width)) * (last + 1)), 0, last);
   };
   // The page handles the press itself, so that a press anywhere in a bar selects it on every system.
   range.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || range.disabled) return;
     range.setPointerCapture(event.pointerId);
-    stepper.seek(levelUnder(event));
+    player.seek(placeUnder(event));
   });
   range.addEventListener('pointermove', (event) => {
-    if (range.hasPointerCapture(event.pointerId)) stepper.seek(levelUnder(event));
+    if (range.hasPointerCapture(event.pointerId)) player.seek(placeUnder(event));
   });
   range.addEventListener('mousedown', (event) => {
     event.preventDefault();
     range.focus({ preventScroll: true });
   });
-  range.addEventListener('input', () => stepper.seek(range.valueAsNumber));
-  range.addEventListener('dblclick', () => stepper.seek(null));
+  range.addEventListener('input', () => player.seek(range.valueAsNumber));
+  range.addEventListener('dblclick', () => {
+    if (player.grain.peek() === 'level') player.seek(player.levels.last.peek());
+  });
   return range;
 }
 
-/** Creates the caption with the present level. @param {Stepper} stepper */
-function captionOf({ table, chosen, some, at }) {
-  const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
-  const unit = (/** @type {string} */ text) => h('span', { class: 'unit' }, text);
+/**
+ * Takes the keys that are meant for the timeline.
+ * @param {Player} player @param {{ body: HTMLElement, range: HTMLInputElement }} parts
+ */
+function takeKeys(player, { body, range }) {
+  // Before the page's own Escape, which stops the run.
+  body.addEventListener('keydown', (event) => {
+    if (event.key !== 'Escape' || !player.isOpen.peek()) return;
+    event.preventDefault();
+    player.lesson.peek()?.close();
+  });
+  addEventListener('keydown', (event) => {
+    if (!isMeant(event)) return;
+    const { target, key } = event;
+    if (key === ' ' && !event.ctrlKey && !event.metaKey && !event.altKey) player.toggle();
+    else {
+      const move = moveOf(event, { onRange: target === range, isOpen: player.isOpen.peek() });
+      if (!move) return;
+      player.move(move);
+    }
+    event.preventDefault();
+  });
+}
+
+/**
+ * Opens the particle that a link names, once the surface is there, and says what a link names and is not there.
+ * @param {Engine} engine @param {Player} player
+ * @param {{ levels: import('./levels.js').Levels, say: (text: string) => void }} parts
+ */
+function restore(engine, player, { levels, say }) {
+  let isNew = true;
+  let seen = 'null';
+  addEventListener('hashchange', () => {
+    isNew = true;
+  });
+  const rests = computed(() => {
+    const { phase, particles } = engine.progress.value;
+    return !engine.busy.value && engine.loading.value === null && phase === 'done' && particles > 0;
+  });
+  const named = computed(() => JSON.stringify(engine.state.value.view.follow));
   effect(() => {
-    const last = formatCount(table.value.last);
-    if (!some.value) fill(now);
-    else if (chosen.value === null) fill(now, 'All levels ', unit(`0 to ${last}`));
-    else fill(now, `Level ${formatCount(at.value)} `, unit(`of ${last}`));
+    void named.value;
+    // A link that is read begins a run at once.
+    if (rests.value && levels.table.value.count > 0) queueMicrotask(() => rests.peek() && go());
+  });
+
+  function go() {
+    const { level, follow } = engine.state.peek().view;
+    const { last } = levels.table.peek();
+    if (isNew && level !== null && level > last)
+      say(`The link names level ${formatCount(level)}. The last one, ${formatCount(last)}, is shown.`);
+    const isOther =
+      named.peek() !== seen && named.peek() !== JSON.stringify(player.lesson.peek()?.place.peek() ?? null);
+    if (follow && (isNew || isOther)) void player.prepare().then((lesson) => lesson?.goTo(follow));
+    isNew = false;
+    seen = named.peek();
+  }
+}
+
+/** Creates the caption with the present place. @param {Player} player */
+function captionOf({ track }) {
+  const now = h('p', { class: 'levels-now', 'aria-hidden': 'true' });
+  effect(() => {
+    const { some, short } = track.value;
+    const [place, of] = short.value;
+    if (some.value) fill(now, `${place} `, h('span', { class: 'unit' }, of));
+    else fill(now);
   });
   return now;
 }
 
-/** @param {Stepper} stepper @param {Record<'first' | 'back' | 'toggle' | 'forward' | 'all', () => void>} commands */
-function buttonsOf({ chosen, some, playing }, commands) {
-  const notFirst = computed(() => some.value && chosen.value !== 0);
-  const notAll = computed(() => some.value && chosen.value !== null);
-  const toggle = button('play', 'Play', 'Shows one level after another.', 'P', commands.toggle, some);
+/** @param {Player} player */
+function speedOf(player) {
+  const select = h(
+    'select',
+    { class: 'select speed', 'aria-label': 'Speed' },
+    SPEEDS.map((value) => h('option', { value, selected: value === 1 }, `${value}\u202f×`)),
+  );
+  select.addEventListener('change', () => {
+    player.speed = Number(select.value);
+  });
+  return select;
+}
+
+/** @param {HTMLElement} grains @param {HTMLElement} track */
+function explainParts(grains, track) {
+  const about = {
+    level: {
+      title: 'Generation levels',
+      text: 'New particles per level, then the relaxation. Press or drag to see the front as far as that level.',
+    },
+    grains: {
+      title: 'What a step is',
+      text: 'A whole generation level; one particle with its children; or one event of it. Arrow keys step by events, with Shift by particles, with Alt by levels.',
+    },
+  };
+  explain(track, () => about.level, { side: 'above', focus: false });
+  explain(grains, () => about.grains, { side: 'above' });
+}
+
+/** @param {Player} player */
+function buttonsOf(player) {
+  const { track, playing } = player;
+  const notFirst = computed(() => track.value.some.value && (track.value.at.value > 0 || track.value.name === 'event'));
+  const notLast = computed(
+    () => track.value.some.value && (track.value.at.value < track.value.last.value || track.value.name === 'event'),
+  );
+  const name = () => track.value.name;
+  const move = (/** @type {import('./keys.js').Move['to']} */ to) => () => player.move({ grain: 'chosen', to });
+  const some = computed(() => track.value.some.value);
+  const toggle = button({
+    shape: 'play',
+    label: () => 'Play',
+    key: 'Space',
+    act: () => player.toggle(),
+    enabled: some,
+  });
   effect(() => {
     toggle.setAttribute('aria-label', playing.value ? 'Pause' : 'Play');
     toggle.replaceChildren(icon(playing.value ? 'pause' : 'play'));
   });
+  const last = () => (name() === 'level' ? 'All levels' : `Last ${name()}`);
   return h(
     'div',
-    { class: 'levels-buttons', role: 'group', 'aria-label': 'Step through the levels' },
-    button('first', 'First level', 'The seed.', '<', commands.first, notFirst),
-    button('back', 'Level back', 'One generation level less.', ',', commands.back, notFirst),
+    { class: 'levels-buttons', role: 'group', 'aria-label': 'Step along the timeline' },
+    button({ shape: 'first', label: () => `First ${name()}`, key: 'Home', act: move('first'), enabled: notFirst }),
+    button({ shape: 'back', label: () => `${named(name())} back`, key: 'Page up', act: move(-1), enabled: notFirst }),
     toggle,
-    button('forward', 'Level forward', 'One generation level more.', '.', commands.forward, notAll),
-    button('last', 'All levels', 'Every particle, all alike.', '>', commands.all, notAll),
+    button({
+      shape: 'forward',
+      label: () => `${named(name())} forward`,
+      key: 'Page down',
+      act: move(1),
+      enabled: notLast,
+    }),
+    button({ shape: 'last', label: last, key: 'End', act: move('last'), enabled: notLast }),
   );
 }
 
+/** @param {string} name */
+const named = (name) => name[0].toUpperCase() + name.slice(1);
+
 /**
- * @param {import('../icons.js').IconName} name
- * @param {string} label
- * @param {string} text
- * @param {string} key
- * @param {() => void} act
- * @param {import('@preact/signals-core').ReadonlySignal<boolean>} enabled
+ * @param {object} options
+ * @param {import('../icons.js').IconName} options.shape
+ * @param {() => string} options.label
+ * @param {string} options.key
+ * @param {() => void} options.act
+ * @param {import('@preact/signals-core').ReadonlySignal<boolean>} options.enabled
  */
-function button(name, label, text, key, act, enabled) {
-  const element = h(
-    'button',
-    {
-      type: 'button',
-      class: 'button plain square',
-      'aria-label': label,
-      on: {
-        click: () => {
-          if (enabled.peek()) act();
-        },
-      },
-    },
-    icon(name),
-  );
+function button({ shape, label, key, act, enabled }) {
+  const press = () => {
+    if (enabled.peek()) act();
+  };
+  const element = h('button', { type: 'button', class: 'button plain square', on: { click: press } }, icon(shape));
+  effect(() => element.setAttribute('aria-label', label()));
   effect(() => element.setAttribute('aria-disabled', String(!enabled.value)));
-  explain(element, () => ({ title: element.getAttribute('aria-label') ?? label, text: `${text} Key ${key}` }), {
-    side: 'above',
-  });
+  explain(element, () => ({ title: element.getAttribute('aria-label') ?? '', text: `Key ${key}` }), { side: 'above' });
   return element;
 }
 
-/** Draws a bar per level as one path, which is stretched to the available width. @param {Uint32Array} fresh */
-function bars(fresh) {
+/** Gap on each side of a bar, as a share of its width, and the minimum height of a bar. */
+const GAP = 0.1;
+const LEAST = 0.06;
+
+/**
+ * Draws the bars as one path, which is stretched to the available width.
+ * @param {import('../track.js').Bars} bars @param {number} places
+ */
+function drawBars({ heights, widths }, places) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
-  const most = fresh.reduce((a, b) => Math.max(a, b), 1);
-  svg.setAttribute('viewBox', `0 0 ${fresh.length} 1`);
+  const all = Array.from(heights);
+  const most = all.reduce((a, b) => Math.max(a, b), 1e-9);
+  svg.setAttribute('viewBox', `0 0 ${places} 1`);
   svg.setAttribute('preserveAspectRatio', 'none');
-  // A minimum height keeps a level with few particles visible.
-  path.setAttribute(
-    'd',
-    Array.from(fresh, (n, k) => `M${k + GAP} 1V${(1 - Math.max(n / most, LEAST)).toFixed(3)}h${1 - 2 * GAP}V1z`).join(
-      '',
-    ),
-  );
+  let left = 0;
+  const bars = all.map((height, k) => {
+    const width = widths?.[k] ?? 1;
+    const x = left + GAP * width;
+    left += width;
+    // A minimum height keeps a level with few particles visible.
+    return `M${+x.toFixed(3)} 1V${(1 - Math.max(height / most, LEAST)).toFixed(3)}h${+((1 - 2 * GAP) * width).toFixed(3)}V1z`;
+  });
+  path.setAttribute('d', bars.join(''));
   svg.append(path);
   return svg;
 }
-/** Gap on each side of a bar, as a share of a level's width, and the minimum height of a bar. */
-const GAP = 0.1;
-const LEAST = 0.06;

@@ -43,6 +43,11 @@ export function mountReport(body, engine, description) {
       list.map((text) => h('li', null, withCounts(text))),
     );
   });
+  const whose = h('p', { class: 'quiet whose' });
+  bindText(whose, () => whoseFigures(engine));
+  effect(() => {
+    whose.hidden = report.value === null || whoseFigures(engine) === '';
+  });
   const waiting = h('p', { class: 'quiet waiting' });
   bindText(waiting, () =>
     engine.empty.value
@@ -63,6 +68,7 @@ export function mountReport(body, engine, description) {
   fill(
     body,
     waiting,
+    whose,
     warnings,
     createTable(report, description.report, { counted, show: createShow(engine, said) }),
     said,
@@ -70,6 +76,14 @@ export function mountReport(body, engine, description) {
     createHistogram(report, engine),
     backend,
   );
+}
+
+/** Says that the figures are those of all particles, where the picture shows fewer or earlier ones. @param {Engine} engine */
+function whoseFigures(engine) {
+  const { level, step, grain, follow } = engine.state.value.view;
+  const isWhole = level === null && step === null && (grain === 'level' || follow === null);
+  if (isWhole) return '';
+  return 'These are the figures of all particles at the end of the run. The picture shows an earlier moment of it.';
 }
 
 /**

@@ -1,5 +1,11 @@
-/** Computes the camera angles from which a point of the surface is visible. */
-import { clamp } from '../scale.js';
+/**
+ * Computes the camera angles from which a point of the surface is visible.
+ *
+ * @module
+ */
+
+/** @param {number} v @param {number} low @param {number} high */
+const clamp = (v, low, high) => Math.min(high, Math.max(low, v));
 
 /** Cosine of the angle to the normal below which a point counts as hidden. */
 const FACING = 0.3;

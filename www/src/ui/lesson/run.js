@@ -1,0 +1,74 @@
+/** A run of the paper's algorithm on the surface of the picture: what it is asked for, and how it relates to the picture. */
+import { NO_PARENT } from '../../engine/columns.js';
+import { RESIDUAL, triple } from '../../figures/particle.js';
+import { distanceSq } from './find.js';
+
+/**
+ * @typedef {import('../../engine/types.js').Engine} Engine
+ * @typedef {import('../../engine/types.js').LessonParticles} LessonParticles
+ * @typedef {import('../../engine/types.js').Vec3} Vec3
+ */
+/**
+ * A run and the surface that it belongs to.
+ * @typedef {object} Run
+ * @property {string} surface  see {@link surfaceKey}
+ * @property {string} words  the surface in words
+ * @property {number} pictureRadius
+ * @property {number} own  radius of the particle that was asked for, which the run has unless that would be too many
+ * @property {number} radius
+ * @property {boolean} adaptive  whether the picture's particles have different radii
+ * @property {LessonParticles} end  all its particles
+ * @property {number} alike  how many of its first particles are those of the picture
+ */
+
+/** The most particles whose events are followed, as the core has it. */
+export const MOST_PARTICLES = 20_000;
+/** The particles that a coarser run aims at, and the least factor by which its radius grows. */
+const COARSER_PARTICLES = 16_000;
+const LEAST_COARSER = 1.25;
+
+/** Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own front. */
+export const SETTINGS = /** @type {const} */ ({
+  placing: 'one_by_one',
+  matched: 'stay',
+  gaps: 'leave',
+  relax_steps: 0,
+  residual: RESIDUAL,
+});
+
+/** Names the surface of the picture, so that a change can be told. @param {Engine} engine */
+export function surfaceKey({ field }) {
+  const { kind, formula, parameters, bounds, surface, model } = field.value ?? {};
+  const values = parameters?.map(({ name, value }) => [name, value]);
+  return JSON.stringify([kind, formula, values, bounds, surface, model]);
+}
+
+/** The surface in words, for a transcript. @param {Engine} engine */
+export function surfaceWords({ field }) {
+  const { kind, formula, parameters } = field.value ?? {};
+  if (kind !== 'formula') return 'a model from points';
+  return [formula, ...(parameters ?? []).map(({ name, value }) => `${name} = ${value}`)].join(', ');
+}
+
+/** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */
+export function seedsOf({ columns }) {
+  const seeds = [];
+  for (let i = 0; i < columns.count; i += 1)
+    if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.placed, i));
+  return seeds;
+}
+
+/** A radius with which there are few enough particles. @param {number} radius @param {number} count  with that radius */
+export const coarserThan = (radius, count) => radius * Math.max(LEAST_COARSER, Math.sqrt(count / COARSER_PARTICLES));
+
+/**
+ * Counts the first particles of a run that are those of the picture: at the same place, up to rounding.
+ * @param {{ placed: ArrayLike<number>, count: number }} picture @param {LessonParticles} end @param {number} radius
+ */
+export function alikeIn({ placed, count }, { positions }, radius) {
+  const most = Math.min(count, positions.length / 3);
+  let i = 0;
+  while (i < most && distanceSq(positions, i, [placed[3 * i], placed[3 * i + 1], placed[3 * i + 2]]) < radius ** 2)
+    i += 1;
+  return i;
+}

@@ -1,0 +1,120 @@
+/**
+ * The coarsest grain of the timeline: the generation levels, then the relaxation steps, then the particles as they are. The place
+ * is part of the state; the viewer draws it.
+ */
+import { computed, effect, signal } from '@preact/signals-core';
+import { formatCount, plural } from '../format.js';
+import { levelTable, shortOf } from './table.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+
+/** Height of the bar of a relaxation step whose moves are not known, as a share of the highest level. */
+const STEP_HEIGHT = 0.12;
+
+/**
+ * Returns the number of relaxation steps that can be looked at, and at least 1: the place behind the levels.
+ * @param {number} kept  positions that were kept, the first as placed
+ */
+export const stepsOf = (kept) => Math.max(1, kept);
+
+/**
+ * Returns what is drawn at a place: a level, a relaxation step, or everything.
+ * @param {number} at @param {{ last: number, steps: number }} about  the last level, and the relaxation steps
+ * @returns {{ level: number | null, step: number | null }}
+ */
+export function drawnAt(at, { last, steps }) {
+  if (at <= last) return { level: Math.max(0, at), step: null };
+  const step = at - last;
+  return { level: null, step: step < steps ? step : null };
+}
+
+/**
+ * Returns the place of what is drawn.
+ * @param {{ level: number | null, step: number | null }} drawn @param {{ last: number, steps: number }} about
+ */
+export function placeOf({ level, step }, { last, steps }) {
+  if (level !== null) return Math.min(level, last);
+  return step !== null && step < steps ? last + Math.max(1, step) : last + steps;
+}
+
+/** @param {Engine} engine */
+export function createLevels(engine) {
+  const table = signal(levelTable(engine.columns));
+  /** Positions kept of the relaxation. */
+  const kept = signal(engine.columns.past.length);
+  watch(engine, () => {
+    table.value = levelTable(engine.columns);
+    kept.value = engine.columns.past.length;
+  });
+  const view = computed(() => engine.state.value.view);
+  const level = computed(() => view.value.level);
+  const step = computed(() => view.value.step);
+  const about = computed(() => ({ last: table.value.last, steps: stepsOf(kept.value) }));
+  const at = computed(() => placeOf({ level: level.value, step: step.value }, about.value));
+  const last = computed(() => about.value.last + about.value.steps);
+  const whole = computed(() => at.value === last.value);
+  /** The newest level that is drawn. */
+  const newest = computed(() => Math.min(level.value ?? Infinity, table.value.last));
+  /** The relaxation step that is drawn, null where it is none in particular. */
+  const relaxed = computed(() => (whole.value || level.value !== null ? null : at.value - about.value.last));
+
+  /** @param {number} place */
+  function show(place) {
+    if (!some.peek() || place === at.peek()) return;
+    const to = drawnAt(place, about.peek());
+    const [x, y, z] = engine.columns.normals;
+    if (whole.peek() && to.level !== null) engine.turnTo([x, y, z]);
+    engine.setView(to);
+  }
+  const some = computed(() => table.value.count > 0 && !engine.empty.value);
+  /** @type {import('../track.js').Track} */
+  const track = {
+    name: 'level',
+    perSecond: 10,
+    some,
+    at,
+    last,
+    whole,
+    text: computed(() => {
+      const { last: end, steps } = about.value;
+      if (whole.value) return `All ${plural(end + 1, 'level')}: ${plural(table.value.count, 'particle')}`;
+      if (relaxed.value !== null) return `Relaxation step ${formatCount(relaxed.value)} of ${formatCount(steps)}`;
+      return shortOf(table.value, newest.value);
+    }),
+    short: computed(() => {
+      const { last: end, steps } = about.value;
+      if (whole.value) return ['All levels', `0 to ${formatCount(end)}`];
+      if (relaxed.value !== null) return [`Relaxation ${formatCount(relaxed.value)}`, `of ${formatCount(steps)}`];
+      return [`Level ${formatCount(newest.value)}`, `of ${formatCount(end)}`];
+    }),
+    bars: computed(() => {
+      const { fresh } = table.value;
+      const most = fresh.reduce((a, b) => Math.max(a, b), 1);
+      return { heights: [...fresh, ...new Array(about.value.steps).fill(STEP_HEIGHT * most)] };
+    }),
+    show,
+    step(by) {
+      const to = at.peek() + by;
+      if (to < 0 || to > last.peek()) return false;
+      show(to);
+      return true;
+    },
+  };
+  return { ...track, table, kept, level, newest, relaxed };
+}
+
+/** Calls `act` at most once per frame, however many column messages a run sends. @param {Engine} engine @param {() => void} act */
+function watch(engine, act) {
+  let asked = false;
+  effect(() => {
+    void engine.revision.value;
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      act();
+    });
+  });
+}
+
+/** @typedef {ReturnType<typeof createLevels>} Levels */

@@ -1,0 +1,153 @@
+/**
+ * Moves along the timeline: by levels, by particles or by events, manually and by playback. Where it stands is part of the state.
+ */
+import { computed, effect, signal } from '@preact/signals-core';
+
+/**
+ * @typedef {import('../../engine/types.js').Engine} Engine
+ * @typedef {import('../../engine/types.js').Grain} Grain
+ * @typedef {import('../track.js').Lesson} Lesson
+ * @typedef {import('../track.js').Track} Track
+ */
+
+export class Player {
+  /**
+   * @param {Engine} engine
+   * @param {import('./levels.js').Levels} levels
+   * @param {() => Promise<Lesson | null>} load  the lesson; null if it cannot be had
+   */
+  constructor(engine, levels, load) {
+    this.engine = engine;
+    this.levels = levels;
+    this.load = load;
+    this.lesson = signal(/** @type {Lesson | null} */ (null));
+    this.isOpen = computed(() => this.lesson.value?.open.value ?? false);
+    /** @type {import('@preact/signals-core').ReadonlySignal<Grain>} */
+    this.grain = computed(() => (this.isOpen.value ? engine.state.value.view.grain : 'level'));
+    this.track = computed(() => this.trackOf(this.grain.value));
+    this.playing = signal(false);
+    this.speed = 1;
+    this.timer = 0;
+    // Another grain, or another run, is not played on by itself.
+    effect(() => {
+      void this.grain.value;
+      void engine.busy.value;
+      this.pause();
+    });
+  }
+
+  /** @param {Grain} grain @returns {Track} */
+  trackOf(grain) {
+    const lesson = this.lesson.value;
+    if (!lesson || grain === 'level') return this.levels;
+    return grain === 'particle' ? lesson.particles : lesson.events;
+  }
+
+  /** Loads the lesson, which is then part of the timeline. */
+  async prepare() {
+    this.lesson.value ??= await this.load();
+    return this.lesson.value;
+  }
+
+  /** Chooses a grain. The finer ones open a particle: the first of the level that is shown. @param {Grain} grain */
+  async choose(grain) {
+    if (grain === this.grain.peek()) return;
+    this.pause();
+    const { engine, levels } = this;
+    if (grain === 'level') {
+      const level = this.lesson.peek()?.level.peek() ?? null;
+      return engine.setView({ grain, level, step: null });
+    }
+    const lesson = await this.prepare();
+    if (!lesson) return;
+    const first = firstOf(engine, levels.level.peek());
+    if (!lesson.open.peek()) lesson.follow(first);
+    else if (this.grain.peek() === 'level' && levels.level.peek() !== null) lesson.goToLevel(levels.newest.peek());
+    engine.setView({ grain, level: null, step: null });
+  }
+
+  /** Follows a particle of the picture. @param {number} index */
+  async follow(index) {
+    this.pause();
+    (await this.prepare())?.follow(index);
+  }
+
+  /** Shows a place of the chosen grain at the user's request. @param {number} at */
+  seek(at) {
+    this.pause();
+    this.show(this.track.peek(), at);
+  }
+
+  /** @param {Track} track @param {number} at */
+  show(track, at) {
+    if (!track.some.peek()) return;
+    track.show(at);
+    if (track === this.levels) this.followLevel();
+  }
+
+  /** A particle that is followed goes along with the levels. */
+  followLevel() {
+    const { newest, level } = this.levels;
+    if (this.isOpen.peek() && level.peek() !== null) this.lesson.peek()?.goToLevel(newest.peek());
+  }
+
+  /** @param {import('./keys.js').Move} move */
+  move({ grain: named, to }) {
+    this.pause();
+    const chosen = this.grain.peek();
+    const grain = named === 'chosen' ? chosen : named;
+    if (grain !== 'level' && !this.isOpen.peek()) return void this.choose(grain);
+    const lesson = this.lesson.peek();
+    if (grain === 'level' && chosen !== 'level' && lesson) {
+      // Between the events a level begins with its first particle.
+      const level = lesson.level.peek();
+      if (level !== null && typeof to === 'number') lesson.goToLevel(level + to);
+      return;
+    }
+    const track = this.trackOf(grain);
+    if (to === 'first' || to === 'last') return this.show(track, to === 'first' ? 0 : track.last.peek());
+    this.step(track, to);
+  }
+
+  /** @param {Track} track @param {1 | -1} by @returns {boolean} whether there was a place to go to */
+  step(track, by) {
+    const stepped = track.some.peek() && track.step(by);
+    if (stepped && track === this.levels) this.followLevel();
+    return stepped;
+  }
+
+  toggle() {
+    if (this.playing.peek()) this.pause();
+    else this.play();
+  }
+
+  play() {
+    const track = this.track.peek();
+    if (!track.some.peek()) return;
+    if (track === this.levels && track.at.peek() >= track.last.peek()) this.show(track, 0);
+    this.playing.value = true;
+    this.wait();
+  }
+
+  pause() {
+    clearTimeout(this.timer);
+    this.playing.value = false;
+  }
+
+  wait() {
+    const track = this.track.peek();
+    const next = () => {
+      const goesOn = this.step(track, 1) && !(track === this.levels && track.at.peek() >= track.last.peek());
+      if (goesOn) this.wait();
+      else this.pause();
+    };
+    this.timer = window.setTimeout(next, 1000 / (track.perSecond * this.speed));
+  }
+}
+
+/** The first particle of a level in the picture, the seed if none is named. @param {Engine} engine @param {number | null} level */
+function firstOf({ columns }, level) {
+  const first =
+    level === null ? 0 : columns.levels.subarray(0, columns.count).indexOf(Math.min(level, columns.lastLevel));
+  return Math.max(0, first);
+}
