@@ -8,13 +8,18 @@ import { atRest, coarse, counts, link, open, picture } from './browser.js';
 const show = (page, level) =>
   page.evaluate((k) => /** @type {any} */ (window).marchingParticles.engine.setView({ level: k }), level);
 
-/** Faces the seed, so that the first levels are in front. @param {Page} page */
+/** Faces the seed, so that the first levels are in front, and holds the camera, which would frame them. @param {Page} page */
 const faceSeed = (page) =>
   page.evaluate(() => {
     const p = /** @type {any} */ (window).marchingParticles;
     const [x, y, z] = p.particles().normals;
     p.engine.setView({
-      camera: { ...p.state.view.camera, yaw: Math.atan2(y, x), pitch: Math.asin(Math.max(-1, Math.min(1, z))) },
+      camera: {
+        ...p.state.view.camera,
+        yaw: Math.atan2(y, x),
+        pitch: Math.asin(Math.max(-1, Math.min(1, z))),
+        fit: false,
+      },
     });
   });
 
@@ -63,6 +68,25 @@ export const suite = () => {
     expect(after.uploads).toBe(before.uploads);
   });
 
+  test('a front that grows is framed as it is, until a hand takes the camera', async ({ page }) => {
+    await open(page);
+    const distance = () =>
+      page.evaluate(() => /** @type {any} */ (window).marchingParticles.state.view.camera.distance);
+    const distances = [];
+    for (const level of [2, 6, 10, null]) {
+      await show(page, level);
+      await atRest(page);
+      distances.push(await distance());
+    }
+    for (let k = 1; k < distances.length; k += 1) expect(distances[k]).toBeGreaterThan(distances[k - 1]);
+    await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.zoom(1.25));
+    await atRest(page);
+    const held = await distance();
+    await show(page, 2);
+    await atRest(page);
+    expect(await distance()).toBe(held);
+  });
+
   test('what is hidden is not picked', async ({ page }) => {
     await open(page);
     const outcome = await page.evaluate(async () => {
@@ -90,7 +114,8 @@ export const suite = () => {
   });
 
   test('a link with a level shows it, also after the device was lost', async ({ page }) => {
-    await open(page, `./${link({ ...coarse, view: { level: 4 } })}`);
+    const camera = { target: [0, 0, 0], distance: 5, yaw: 0.62, pitch: 0.42, fit: false };
+    await open(page, `./${link({ ...coarse, view: { level: 4, camera } })}`);
     const before = await picture(page);
     await show(page, null);
     expect((await picture(page)).drawn).toBeGreaterThan(2 * before.drawn);

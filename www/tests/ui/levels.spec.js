@@ -162,6 +162,35 @@ test('without a surface there is nothing to step through', async ({ page }) => {
   expect(await level(page)).toBe(null);
 });
 
+test('the charts are places of the timeline, with tables as their twins', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  const last = (await fresh(page)).length - 1;
+  await page.getByRole('button', { name: 'Charts' }).click();
+  const chart = page.getByRole('img', { name: /^New particles in each of/ });
+  const box = await chart.boundingBox();
+  if (!box) throw new Error('the chart has no box');
+  await page.mouse.click(box.x + (7.5 / (last + 1)) * box.width, box.y + box.height / 2);
+  expect(await level(page)).toBe(7);
+  const energy = await page.getByRole('img', { name: /^Energy per particle over 10 relaxation steps/ }).boundingBox();
+  if (!energy) throw new Error('the chart has no box');
+  await page.mouse.click(energy.x + (4.5 / 11) * energy.width, energy.y + 5);
+  expect((await state(page)).view).toMatchObject({ level: null, step: 4 });
+  // A drag goes on to where nothing of the relaxation has happened: the last level as it was placed.
+  await page.mouse.move(energy.x + energy.width / 2, energy.y + 5);
+  await page.mouse.down();
+  await page.mouse.move(energy.x + 1, energy.y + 5, { steps: 4 });
+  await page.mouse.up();
+  expect((await state(page)).view).toMatchObject({ level: last, step: null });
+  await expect(page.getByRole('img', { name: /^Largest move in each of 10 relaxation steps/ })).toBeVisible();
+  await page.getByText('As tables').click();
+  await expect(page.getByRole('table', { name: 'Levels' }).getByRole('row')).toHaveCount(last + 2);
+  await expect(page.getByRole('table', { name: 'Relaxation' }).getByRole('row')).toHaveCount(12);
+  expect((await scan(page)).violations).toEqual([]);
+  await page.getByRole('button', { name: 'Charts' }).click();
+  await expect(chart).toBeHidden();
+  await clean();
+});
+
 test('the start of the front is turned to the eye', async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await open(page);

@@ -2,6 +2,7 @@ import { beforeAll, describe, expect, test } from 'vitest';
 import { Columns, FATE, NO_PARENT } from '../../src/engine/columns.js';
 import { facing } from '../../src/engine/view/facing.js';
 import { setLocale } from '../../src/ui/format.js';
+import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
 import { drawnAt, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
@@ -129,6 +130,26 @@ describe('the places of the timeline', () => {
     expect(drawnAt(5, about)).toEqual({ level: null, step: null });
     expect(placeOf({ level: 99, step: null }, about)).toBe(4);
     expect(placeOf({ level: null, step: 3 }, about)).toBe(5);
+  });
+});
+
+describe('the figures of the charts', () => {
+  test('are the fates that occur, by the level for which the children were proposed', () => {
+    const rows = fatesOf(levelTable(front()));
+    expect(rows.map(({ fate, counts }) => [fate, counts])).toEqual([
+      ['added', [0, 3, 1]],
+      ['matched', [0, 0, 5]],
+      ['outside', [0, 2, 0]],
+      ['notConverged', [0, 1, 0]],
+      ['undefined', [0, 0, 1]],
+      ['capped', [0, 0, 1]],
+    ]);
+  });
+
+  test('are the longest move of each relaxation step, in radii', () => {
+    const past = [Float32Array.of(0, 0, 0, 1, 0, 0), Float32Array.of(0.5, 0, 0, 1, 0, 0)];
+    expect(movesOf(past, Float32Array.of(0.5, 0, 0, 1, 0, 1), Float32Array.of(1, 2))).toEqual([0.5, 0.5]);
+    expect(movesOf([], new Float32Array(0), new Float32Array(0))).toEqual([]);
   });
 });
 

@@ -85,19 +85,22 @@ function frontBall({ placed, radii, count }, isShown) {
     }
   }
   if (first < 0) return null;
-  const { centre, radius } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+  const { centre } = ballOf({ min: /** @type {Vec3} */ (min), max: /** @type {Vec3} */ (max) });
+  const { radius } = ballAround({ positions: placed, radii, count }, centre, isShown);
   return { centre, radius: Math.max(radius, LEAST_FRONT * radii[first]) };
 }
 
 /**
- * Returns the smallest ball around this centre that encloses the discs of all particles.
- * @param {Columns} columns
+ * Returns the smallest ball around this centre that encloses the discs of all particles, or of some.
+ * @param {{positions: ArrayLike<number>, radii: ArrayLike<number>, count: number}} columns
  * @param {Vec3} centre
+ * @param {(particle: number) => boolean} [isShown]
  */
-function ballAround({ positions, radii, count }, centre) {
+function ballAround({ positions, radii, count }, centre, isShown = () => true) {
   // Above 0 without particles, and below the particles of the smallest box.
   let radius = 1e-30;
   for (let i = 0; i < count; i += 1) {
+    if (!isShown(i)) continue;
     const [x, y, z] = [0, 1, 2].map((k) => positions[3 * i + k] - centre[k]);
     radius = Math.max(radius, Math.hypot(x, y, z) + radii[i]);
   }

@@ -85,6 +85,13 @@ export class Player {
     if (track === this.levels) this.followLevel();
   }
 
+  /** Shows a level or a relaxation step, whatever the timeline goes along. @param {number} at  a place of the levels */
+  seekLevel(at) {
+    this.pause();
+    if (this.grain.peek() !== 'level') this.engine.setView({ grain: 'level', level: null, step: null });
+    this.show(this.levels, at);
+  }
+
   /** A particle that is followed goes along with the levels. */
   followLevel() {
     const { newest, level } = this.levels;

@@ -52,7 +52,15 @@ export function createTimeline(body, engine, { told, lesson, say }) {
     grains.set(player.grain.value);
     for (const input of grains.element.querySelectorAll('input')) input.disabled = !levels.some.value;
   });
-  fill(body, grains.element, buttonsOf(player), track, captionOf(player), speedOf(player));
+  fill(
+    body,
+    grains.element,
+    buttonsOf(player),
+    track,
+    captionOf(player),
+    speedOf(player),
+    chartsOf(body, engine, player, say),
+  );
   explainParts(grains.element, track);
   takeKeys(player, { body, range });
   restore(engine, player, { levels, say });
@@ -218,6 +226,39 @@ function speedOf(player) {
     player.speed = Number(select.value);
   });
   return select;
+}
+
+/**
+ * Creates the button that shows the charts above the timeline, which are loaded when they are first asked for.
+ * @param {HTMLElement} body @param {Engine} engine @param {Player} player @param {(text: string) => void} say
+ */
+function chartsOf(body, engine, player, say) {
+  /** @type {HTMLElement | null} */
+  let charts = null;
+  const toggle = async () => {
+    try {
+      charts ??= (await import('./charts.js')).createCharts(engine, player);
+    } catch {
+      return say('The charts did not load. The timeline is not affected.');
+    }
+    if (!charts.isConnected) body.before(charts);
+    else charts.remove();
+    button.setAttribute('aria-expanded', String(charts.isConnected));
+  };
+  const button = h(
+    'button',
+    {
+      type: 'button',
+      class: 'button plain square charts-toggle',
+      'aria-label': 'Charts',
+      'aria-expanded': 'false',
+      on: { click: () => void toggle() },
+    },
+    icon('charts'),
+  );
+  const text = 'New particles and fates per level, energy and largest move per relaxation step.';
+  explain(button, () => ({ title: 'Charts', text }), { side: 'above' });
+  return button;
 }
 
 /** @param {HTMLElement} grains @param {HTMLElement} track */

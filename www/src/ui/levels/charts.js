@@ -1,0 +1,285 @@
+/** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
+import { computed, effect } from '@preact/signals-core';
+import { fill, h } from '../dom.js';
+import { formatCount, formatFixed, formatSignificant, MISSING, plural } from '../format.js';
+import { clamp } from '../scale.js';
+import { fatesOf, movesOf } from './figures.js';
+
+/** @typedef {import('../../engine/types.js').Engine} Engine */
+/** @typedef {import('./player.js').Player} Player */
+/**
+ * What a chart shows: stacked bars from 0 up, or a line. `first` is the number of the first place.
+ * @typedef {object} Chart
+ * @property {string} title
+ * @property {'bars' | 'line'} kind
+ * @property {{ fate: string, name: string, counts: number[] }[]} rows
+ * @property {number} first
+ * @property {number | null} at  the place that is shown, null for none of these
+ * @property {string} value  of that place, or of all
+ * @property {string} label  the chart in words
+ * @property {(value: number) => string} format
+ */
+
+/** @param {Engine} engine @param {Player} player */
+export function createCharts(engine, player) {
+  const { levels } = player;
+  const { table, kept, level, newest, relaxed, whole } = levels;
+  const moves = computed(() => {
+    const { past, positions, radii } = engine.columns;
+    // Of many particles only the first positions are kept, and the way from those to the last is no step.
+    const steps = engine.report.value?.energy?.length ?? 0;
+    return kept.value > 1 || steps === 2 ? movesOf(past, positions, radii) : [];
+  });
+  const energy = computed(() => engine.report.value?.energy ?? []);
+  const followed = computed(() => (player.grain.value === 'level' ? null : (player.lesson.value?.level.value ?? null)));
+  const atLevel = computed(() => followed.value ?? (level.value === null ? null : newest.value));
+  const atStep = computed(() => {
+    if (followed.value !== null || (level.value !== null && newest.value < table.value.last)) return null;
+    if (level.value !== null) return 0;
+    return whole.value ? Math.max(0, energy.value.length - 1) : (relaxed.value ?? null);
+  });
+  /** @param {number} step */
+  const seekStep = (step) => player.seekLevel(step === 0 ? table.peek().last : table.peek().last + step);
+  const charts = [
+    chartOf(
+      () => freshChart(table.value, atLevel.value),
+      (k) => player.seekLevel(k),
+    ),
+    chartOf(
+      () => fateChart(table.value, atLevel.value),
+      (k) => player.seekLevel(k),
+    ),
+    chartOf(() => energyChart(energy.value, atStep.value), seekStep),
+    chartOf(() => moveChart(moves.value, atStep.value), seekStep),
+  ];
+  const twin = h('div', { class: 'charts-tables' });
+  const details = h('details', { class: 'charts-twin' }, h('summary', null, 'As tables'), twin);
+  const write = () => details.open && fill(twin, ...tables(table.value, energy.value, moves.value));
+  details.addEventListener('toggle', write);
+  effect(() => {
+    void table.value;
+    void energy.value;
+    void moves.value;
+    write();
+  });
+  return h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, details);
+}
+
+/** @param {import('./table.js').LevelTable} table @param {number | null} at @returns {Chart} */
+function freshChart({ fresh, last }, at) {
+  const counts = [...fresh];
+  const most = Math.max(...counts);
+  return {
+    title: 'New particles per level',
+    kind: 'bars',
+    rows: [{ fate: 'new', name: 'new', counts }],
+    first: 0,
+    at,
+    value: at === null ? `${formatCount(most)} at most` : formatCount(counts[at]),
+    label: `New particles in each of ${plural(last + 1, 'level')}, ${formatCount(most)} at most`,
+    format: formatCount,
+  };
+}
+
+/** @param {import('./table.js').LevelTable} table @param {number | null} at @returns {Chart} */
+function fateChart(table, at) {
+  const rows = fatesOf(table);
+  const words = rows.map(({ name, counts }) => {
+    const count = at === null ? counts.reduce((a, b) => a + b, 0) : counts[at];
+    return `${formatCount(count)} ${name}`;
+  });
+  return {
+    title: 'Fates of the children per level',
+    kind: 'bars',
+    rows,
+    first: 0,
+    at,
+    value: '',
+    label: `Fates of the proposed children: ${words.join(', ')}`,
+    format: formatCount,
+  };
+}
+
+/** @param {readonly number[]} energy @param {number | null} at @returns {Chart} */
+function energyChart(energy, at) {
+  const [from, to] = [energy[0], energy.at(-1)];
+  const of = energy.length > 1 ? `from ${formatSignificant(from, 3)} to ${formatSignificant(to, 3)}` : '';
+  return {
+    title: 'Energy per particle',
+    kind: 'line',
+    rows: [{ fate: 'energy', name: 'energy', counts: [...energy] }],
+    first: 0,
+    at,
+    value: at === null || energy[at] === undefined ? '' : formatSignificant(energy[at], 3),
+    label: `Energy per particle over ${plural(Math.max(0, energy.length - 1), 'relaxation step')}, ${of}`,
+    format: (value) => formatSignificant(value, 3),
+  };
+}
+
+/** @param {readonly number[]} moves @param {number | null} at @returns {Chart} */
+function moveChart(moves, at) {
+  const value = at === null || at === 0 ? undefined : moves[at - 1];
+  return {
+    title: 'Largest move per step',
+    kind: 'bars',
+    rows: [{ fate: 'new', name: 'largest move', counts: [...moves] }],
+    first: 1,
+    at: at === 0 ? null : at,
+    value: value === undefined ? '' : inR(value),
+    label: `Largest move in each of ${plural(moves.length, 'relaxation step')}, in radii: ${moves.map(inR).join(', ')}`,
+    format: inR,
+  };
+}
+
+/** @param {number} value */
+const inR = (value) => `${formatFixed(value, 3)}\u00a0r`;
+
+const NOTHING =
+  'Not known. The positions of each step are kept of up to 20,000 particles, once a relaxation has ended.';
+
+/** @param {() => Chart} read @param {(place: number) => void} seek */
+function chartOf(read, seek) {
+  const title = h('span');
+  const value = h('span', { class: 'unit' });
+  const plot = h('div', { class: 'chart-plot', role: 'img' });
+  const foot = h('div', { class: 'chart-foot', 'aria-hidden': 'true' });
+  const element = h('figure', { class: 'chart' }, h('figcaption', null, title, ' ', value), plot, foot);
+  let [first, places] = [0, 0];
+  effect(() => {
+    const chart = read();
+    places = chart.rows[0]?.counts.length ?? 0;
+    first = chart.first;
+    title.textContent = chart.title;
+    value.textContent = chart.value;
+    plot.setAttribute('aria-label', places > 0 ? chart.label : `${chart.title}: not known`);
+    if (places > 0) {
+      fill(plot, draw(chart, places), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)));
+      fill(foot, ...footOf(chart, places));
+    } else {
+      fill(plot, h('p', { class: 'quiet' }, NOTHING));
+      fill(foot);
+    }
+  });
+  /** @param {PointerEvent} event */
+  const at = ({ clientX }) => {
+    const { left, width } = plot.getBoundingClientRect();
+    return first + clamp(Math.floor(((clientX - left) / Math.max(1, width)) * places), 0, places - 1);
+  };
+  plot.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || places === 0) return;
+    plot.setPointerCapture(event.pointerId);
+    seek(at(event));
+  });
+  plot.addEventListener('pointermove', (event) => {
+    if (plot.hasPointerCapture(event.pointerId)) seek(at(event));
+  });
+  return element;
+}
+
+/** Sums of a stack at each place. @param {Chart['rows']} rows @param {number} places */
+const sums = (rows, places) =>
+  Array.from({ length: places }, (_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
+
+/** Ends of the scale. @param {Chart} chart @returns {[number, number]} */
+function endsOf({ kind, rows }) {
+  const values = sums(rows, rows[0].counts.length);
+  const most = Math.max(...values, 1e-12);
+  if (kind === 'bars') return [0, most];
+  const least = Math.min(...values);
+  // A line that does not change lies in the middle.
+  return most > least ? [least, most] : [0, 2 * most];
+}
+
+/** @param {Chart} chart */
+const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
+
+/** What stands below: the first and last place, and the fates where there are several. @param {Chart} chart @param {number} places */
+function footOf({ rows, first }, places) {
+  const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + places - 1))];
+  if (rows.length < 2) return ends;
+  const key = rows.map(({ fate, name }) => h('span', null, h('i', { class: `swatch fate-${fate}` }), name));
+  return [ends[0], h('span', { class: 'chart-key' }, key), ends[1]];
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+/** @param {string} tag @param {Record<string, string | number>} attributes */
+function s(tag, attributes) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  return element;
+}
+
+/** @param {Chart} chart @param {number} places */
+function draw(chart, places) {
+  const { kind, rows, first, at } = chart;
+  const [low, high] = endsOf(chart);
+  const y = (/** @type {number} */ value) => +(1 - 0.94 * ((value - low) / (high - low))).toFixed(4);
+  const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
+  if (at !== null && at >= first && at < first + places)
+    svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));
+  if (kind === 'line') {
+    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${(0.06 + 0.9 * y(value)).toFixed(4)}`);
+    svg.append(s('path', { class: 'chart-line', d: `M${points.join('L')}` }));
+    svg.append(s('path', { class: 'chart-dots', d: points.map((point) => `M${point}h0`).join('') }));
+    return svg;
+  }
+  const below = new Array(places).fill(0);
+  for (const { fate, counts } of rows) {
+    const d = counts.map((count, k) => {
+      const from = below[k];
+      below[k] += count;
+      return count > 0 ? `M${k + 0.1} ${y(from)}V${y(below[k])}h.8V${y(from)}z` : '';
+    });
+    svg.append(s('path', { class: `fate-${fate}`, d: d.join('') }));
+  }
+  return svg;
+}
+
+/** The charts as tables. @param {import('./table.js').LevelTable} table @param {readonly number[]} energy @param {readonly number[]} moves */
+function tables(table, energy, moves) {
+  const fates = fatesOf(table);
+  const levels = [...table.fresh].map((fresh, k) => [
+    formatCount(k),
+    formatCount(fresh),
+    ...fates.map(({ counts }) => formatCount(counts[k])),
+  ]);
+  const steps = Array.from({ length: Math.max(energy.length, moves.length > 0 ? moves.length + 1 : 0) }, (_, k) => [
+    formatCount(k),
+    energy[k] === undefined ? MISSING : formatSignificant(energy[k], 4),
+    k === 0 || moves[k - 1] === undefined ? MISSING : inR(moves[k - 1]),
+  ]);
+  return [
+    tableOf('Levels', ['Level', 'New', ...fates.map(({ name }) => name)], levels),
+    ...(steps.length > 0 ? [tableOf('Relaxation', ['Step', 'Energy per particle', 'Largest move'], steps)] : []),
+  ];
+}
+
+/** @param {string} caption @param {string[]} head @param {string[][]} rows */
+const tableOf = (caption, head, rows) =>
+  h(
+    'table',
+    null,
+    h('caption', null, caption),
+    h(
+      'thead',
+      null,
+      h(
+        'tr',
+        null,
+        head.map((name) => h('th', { scope: 'col' }, name)),
+      ),
+    ),
+    h(
+      'tbody',
+      null,
+      rows.map(([name, ...cells]) =>
+        h(
+          'tr',
+          null,
+          h('th', { scope: 'row' }, name),
+          cells.map((cell) => h('td', null, cell)),
+        ),
+      ),
+    ),
+  );
