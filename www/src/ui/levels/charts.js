@@ -52,7 +52,7 @@ export function createCharts(engine, player) {
     chartOf(() => energyChart(energy.value, atStep.value), seekStep),
     chartOf(() => moveChart(moves.value, atStep.value), seekStep),
   ];
-  const twin = h('div', { class: 'charts-tables' });
+  const twin = h('div', { class: 'charts-tables', role: 'region', 'aria-label': 'Tables of the charts', tabindex: 0 });
   const details = h('details', { class: 'charts-twin' }, h('summary', null, 'As tables'), twin);
   const write = () => details.open && fill(twin, ...tables(table.value, energy.value, moves.value));
   details.addEventListener('toggle', write);
