@@ -29,7 +29,10 @@ import { RESIDUAL } from '../figures/particle.js';
 /** Particles that the figures have: many enough for rings, few enough to tell them apart. */
 export const PARTICLES = 1500;
 /** Particles where single ones are looked at, and the surface bends much within 2r. */
-export const COARSE_PARTICLES = 180;
+const COARSE_PARTICLES = 180;
+/** Seeds that are tried for one with six children. */
+const SEED_TRIALS = 6;
+const SLOTS = 6;
 /** The radius of the first trial is this share of the box's diagonal. */
 const TRIAL = 1 / 30;
 /** A count this close to the wanted one is taken. */
@@ -109,6 +112,20 @@ export class Lab {
     this.runs.set(key, made);
     made.catch(() => this.runs.delete(key));
     return made;
+  }
+
+  /**
+   * Returns a run with few and large particles, before any relaxation, whose seed has six children if there is such a seed: where
+   * the surface ends beside it, it has fewer.
+   * @returns {Promise<Run>}
+   */
+  async coarse() {
+    let run = null;
+    for (let seed = 0; seed < SEED_TRIALS; seed += 1) {
+      run = await this.run({ relax_steps: 0, seed }, { particles: COARSE_PARTICLES, keep: true });
+      if (run.chapters[0]?.fates.added === SLOTS) return run;
+    }
+    return /** @type {Run} */ (run);
   }
 
   /** @param {Partial<LessonSettings>} settings @param {number} radius @param {boolean} keep @returns {Promise<Run>} */

@@ -7,7 +7,7 @@ import { adaptiveRun } from './adaptive.js';
 import { openBend } from './chapters/circle.js';
 import { costOf } from './chapters/cost.js';
 import { widestHole } from './chapters/rest.js';
-import { COARSE_PARTICLES, NoSurface } from './lab.js';
+import { NoSurface } from './lab.js';
 import { asFineEverywhere, distance, energiesOf, ringsOf, stepOfRest } from './measure.js';
 
 /** @typedef {import('./predict.js').Prediction} Prediction */
@@ -53,7 +53,7 @@ const children = {
   label: 'New children, 0 to 6',
   most: 6,
   async answer(lab) {
-    const run = await lab.run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+    const run = await lab.coarse();
     const { events } = await openParticle(run.client, run, 1);
     if (events.length === 0) throw new NoSurface('On this surface the seed has no children.');
     const fates = momentAt(events, events.length - 1).children;
@@ -98,7 +98,7 @@ const average = {
     { value: '6', label: 'Nearly all six' },
   ],
   async answer(lab) {
-    const run = await lab.run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+    const run = await lab.coarse();
     const count = run.end.radii.length;
     const added = run.chapters.reduce((sum, { fates }) => sum + fates.added, 0);
     const mean = added / count;
@@ -172,6 +172,8 @@ const rest = {
 
 /** Where the answers to the last question begin. */
 const FACTORS = [1.3, 2, 4];
+/** Below this factor all sizes are called alike. */
+const EVEN = 1.05;
 /** @type {Prediction} */
 const sizes = {
   kind: 'choice',
@@ -186,6 +188,12 @@ const sizes = {
     const [count, wanted] = [end.radii.length, asFineEverywhere(end.radii)];
     const factor = wanted / count;
     const at = FACTORS.findIndex((limit) => factor < limit);
+    if (factor < EVEN)
+      return {
+        right: '0',
+        words:
+          'On this surface the stronger curvature is nearly the same everywhere, and so are the radii. Nothing is saved here.',
+      };
     const words = `Here ${plural(count, 'particle')} follow the curvature. All as small as the smallest of them, they would be about ${formatCount(wanted)}, ${formatSignificant(factor, 2)} times as many.`;
     return { right: String(at < 0 ? FACTORS.length : at), words };
   },

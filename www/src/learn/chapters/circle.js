@@ -6,7 +6,7 @@ import { openParticle } from '../../figures/particle.js';
 import { inRadii, tell } from '../../figures/words.js';
 import { fill, h } from '../../ui/dom.js';
 import { formatCount, MISSING } from '../../ui/format.js';
-import { COARSE_PARTICLES, NoSurface } from '../lab.js';
+import { NoSurface } from '../lab.js';
 import { sharpestBend } from '../measure.js';
 import { createRange, facts } from '../parts.js';
 
@@ -17,7 +17,7 @@ import { createRange, facts } from '../parts.js';
  * @param {import('../lab.js').Lab} lab
  */
 export async function openBend(lab) {
-  const run = await lab.run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+  const run = await lab.coarse();
   const bend = sharpestBend(run.placed);
   if (!bend) throw new NoSurface('The surface holds one particle only, which has no children.');
   const opened = await openParticle(run.client, run, bend.parent);

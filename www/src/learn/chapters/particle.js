@@ -8,7 +8,6 @@ import { FATES, tell } from '../../figures/words.js';
 import { fill, h } from '../../ui/dom.js';
 import { formatCount, plural } from '../../ui/format.js';
 import { icon } from '../../ui/icons.js';
-import { COARSE_PARTICLES } from '../lab.js';
 import { createRange } from '../parts.js';
 
 /**
@@ -16,17 +15,22 @@ import { createRange } from '../parts.js';
  * @typedef {import('../../figures/particle.js').Opened} Opened
  */
 
-/** The shapes of fates in words. @param {readonly string[]} fates */
-const keyOf = (fates) =>
-  h(
+/** The fates that are explained in any case. */
+const USUAL_FATES = ['parent', 'added', 'matched'];
+
+/** The shapes of fates in words. @param {Opened} opened */
+function keyOf({ events }) {
+  const met = events.flatMap((event) => (event.type === 'fate' ? [event.fate] : []));
+  return h(
     'ul',
     { class: 'key' },
-    fates.map((fate) => {
+    [...new Set([...USUAL_FATES, ...met])].map((fate) => {
       const svg = s('svg', { class: 'shape', viewBox: '-1.4 -1.4 2.8 2.8', 'aria-hidden': 'true' });
       svg.append(fateShape(fate, [0, 0], 1));
       return h('li', null, svg, FATES[fate]);
     }),
   );
+}
 
 /** Steps through the events of a particle. @param {Opened} opened @param {number} at  the event that is shown first */
 function stepThrough(opened, at) {
@@ -70,7 +74,7 @@ function stepThrough(opened, at) {
 
 /** The seed, and once its prediction is out, its first child. @param {Context} context */
 export async function sixChildren({ lab, stops }) {
-  const run = await (await lab).run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+  const run = await (await lab).coarse();
   const chosen = signal(0);
   const place = h('div', { class: 'two' });
   const names = ['The seed', 'Its first child', 'A child of that'];
@@ -91,7 +95,7 @@ export async function sixChildren({ lab, stops }) {
     const opened = await openParticle(run.client, run, subjects[k]);
     chosen.value = k;
     const { drawing, told, controls } = stepThrough(opened, -1);
-    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(['parent', 'added', 'matched'])));
+    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
   }
   await choose(0);
   return [h('div', { class: 'controls choices', role: 'group', 'aria-label': 'Particle' }, buttons), place];
@@ -123,7 +127,7 @@ function fateChart(run) {
 
 /** A particle amid the front, and the fates of all children. @param {Context} context */
 export async function whoWasFirst({ lab, stops }) {
-  const run = await (await lab).run({ relax_steps: 0 }, { particles: COARSE_PARTICLES, keep: true });
+  const run = await (await lab).coarse();
   const place = h('div', { class: 'two' });
   const count = run.end.radii.length;
   let particle = Math.floor(count / 2);
@@ -132,7 +136,7 @@ export async function whoWasFirst({ lab, stops }) {
     // It begins where the first child is compared, which is what the chapter is about.
     const first = opened.events.findIndex(({ type }) => type === 'compared');
     const { drawing, told, controls } = stepThrough(opened, first);
-    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(['parent', 'added', 'matched'])));
+    fill(place, drawing, h('div', { class: 'side' }, told, controls, keyOf(opened)));
   }
   await show();
   const another = h(
