@@ -316,6 +316,12 @@ impl Sampler {
         warnings
     }
 
+    /// Whether the search for components was left open in a box where f is beyond double precision in places.
+    pub(crate) fn is_open_by_overflow(&self, field: &mut dyn Field) -> bool {
+        self.undecided_cells().is_some_and(|cells| cells > 0)
+            && precision::overflows_double(field, &self.bounds)
+    }
+
     /// Refuses runs that need more than about `bytes` from now on.
     pub fn limit_memory(&mut self, bytes: usize) {
         self.memory_limit = bytes;

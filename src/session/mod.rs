@@ -592,7 +592,11 @@ impl Session {
             (self.front, self.front_figures) = (None, front);
         }
         self.measured = now;
-        Some(self.reported(facing))
+        let mut report = self.reported(facing);
+        if self.sampler.is_open_by_overflow(self.source.field()) {
+            report.warnings.push(warnings::OVERFLOW.into());
+        }
+        Some(report)
     }
 
     /// [`Session::measure`] to its end.

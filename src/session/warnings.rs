@@ -10,6 +10,10 @@ use crate::spatial::tree::Tree;
 const CLOSE_SHARE: f64 = 0.005;
 const CLOSE_COUNT: usize = 8;
 
+/// What is said where the search was left open beside places where f is beyond double precision.
+pub(super) const OVERFLOW: &str = "f is too large for double precision in a part of the box, where components may be missed: enter it \
+     in a form with smaller numbers, each factor by its logarithm for example, or make the box smaller.";
+
 /// What is said where another equation is sampled in the place of the formula.
 pub(super) fn about_powers(equation: String) -> String {
     format!(

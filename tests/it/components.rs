@@ -455,3 +455,33 @@ fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
         }
     }
 }
+
+#[test]
+fn sheets_within_the_probe_of_a_survey_are_not_taken_for_one_that_f_touches() {
+    let says_so = |formula: &str, sampling: Sampling| {
+        let settings = Settings { sampling, radius_share: 0.02, relax_steps: 0, ..Settings::default() };
+        let (_, report) = session(formula, Bounds::cube(1.0), &settings);
+        report.warnings.iter().any(|warning| warning.contains("without changing its sign"))
+    };
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        assert!(!says_so("z*(z-0.001)*(z-0.002)", sampling), "{sampling:?}");
+        assert!(!says_so("z*(z-0.0005)", sampling), "{sampling:?}");
+        assert!(says_so("1 - cos(x+y+z)", sampling), "{sampling:?}");
+    }
+}
+
+#[test]
+fn where_the_search_is_open_because_f_is_beyond_double_precision_the_report_says_so() {
+    let product = |k: f64| {
+        let ball = |centre: f64| format!("(exp({k}*((x-({centre}))^2+y^2+z^2))-exp({k}))");
+        format!("{}*{}", ball(0.0), ball(2.5))
+    };
+    let says_so =
+        |report: &Report| report.warnings.iter().any(|warning| warning.contains("double precision"));
+    // Beyond single precision alone.
+    let (_, report) = sampled(&product(5.0), 3.6, 0.02);
+    assert!(!says_so(&report) && report.components == 2, "{} {:?}", report.components, report.warnings);
+    let (_, report) = sampled(&product(100.0), 3.6, 0.02);
+    let is_whole = report.search == Search::Proven && report.components == 2;
+    assert!(is_whole || says_so(&report), "{} {:?}", report.components, report.warnings);
+}

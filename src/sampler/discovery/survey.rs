@@ -479,13 +479,24 @@ impl Survey {
     }
 }
 
-/// Whether f has the same sign on both sides of most of a selection of the points, at `distance`.
+/// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there may
+/// be another sheet.
 fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, distance: f32) -> bool {
     let stride = survey.position.len().div_ceil(RESOLUTION_SAMPLES).max(1);
     let (mut same, mut seen) = (0, 0);
     for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
-        let (value, _) = projector.evaluate_batch(field, &[p + n * distance, p - n * distance]);
-        same += usize::from(value[0] * value[1] > 0.0);
+        let mut is_same_at = |d: f32| {
+            let (value, _) = projector.evaluate_batch(field, &[p + n * d, p - n * d]);
+            value[0] * value[1] > 0.0
+        };
+        let mut d = distance;
+        let mut is_same = is_same_at(d);
+        // Nearer than some resolutions the sign is that of rounding.
+        while is_same && 0.5 * d > NOISE * survey.resolution {
+            d *= 0.5;
+            is_same = is_same_at(d);
+        }
+        same += usize::from(is_same);
         seen += 1;
     }
     2 * same > seen
