@@ -57,7 +57,7 @@ fn show(command: &mut Command) -> Result<()> {
 }
 
 /// Processor, compiler and commit, as far as they can be found out.
-fn machine(project: &Project) -> String {
+pub(crate) fn machine(project: &Project) -> String {
     let answer = |program: &str, arguments: &[&str]| {
         let mut command = Command::new(program);
         step::capture(command.args(arguments).current_dir(&project.root), "")

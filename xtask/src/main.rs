@@ -1,4 +1,4 @@
-//! Project tasks: serve, test, build, bench.
+//! Project tasks: serve, test, build, bench, paper.
 
 mod bench;
 mod bundle;
@@ -9,6 +9,7 @@ mod deny;
 mod engines;
 mod fingerprint;
 mod node;
+mod paper;
 mod project;
 mod rust_source;
 mod serve;
@@ -58,6 +59,8 @@ enum Task {
     Build,
     /// Run the benches.
     Bench(bench::Options),
+    /// Run the paper's jobs and write docs/paper.md with its tables and figures.
+    Paper(paper::Options),
     /// Build the WebAssembly bundles into www/src/wasm (serve, test and build do this by themselves).
     Wasm {
         /// The bundles to build; all of them if none is named.
@@ -87,6 +90,7 @@ fn perform(task: Task) -> Result<()> {
             site::report_sizes(&project)
         }
         Task::Bench(options) => bench::bench(&project, &options),
+        Task::Paper(options) => paper::paper(&project, &options),
         Task::Wasm { bundles } => {
             let bundles = if bundles.is_empty() { Bundle::ALL.to_vec() } else { bundles };
             node::prepare(&project)?;

@@ -1,0 +1,532 @@
+//! The paper's jobs and figures, made again: `cargo xtask paper` runs this and writes what it says to `docs/paper.md`.
+//!
+//! `--threads N` runs so many jobs at a time, each in a thread of its own. `--limit S` cuts runs of the particle systems off after so many seconds of processor time, `--pictures FOLDER` says where the
+//! figures go, `--machine TEXT` names machine and commit, and `--quick` takes a twentieth of the particles, to try it out.
+#![allow(clippy::disallowed_methods, reason = "a bench measures time")]
+
+mod draw;
+mod printed;
+mod runs;
+mod steps;
+
+use draw::{Colour, View, draw, write_row};
+use glam::Vec3;
+use marching_particles::quality;
+use marching_particles::reference::{self, MAX_PARTICLES, Method, Reference};
+use marching_particles::sampler::{LawKind, Sampling};
+use printed::{Line, Printed, TABLE_1, TABLE_2};
+use runs::{End, Job, Outcome, Set, Surface};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{env, fs, thread};
+use steps::Treated;
+
+/// Side of a square of the figures, in pixels.
+const SIDE: usize = 420;
+
+struct Plan {
+    limit_s: f64,
+    pictures: PathBuf,
+    machine: String,
+    /// Particles over those of the paper.
+    share: f64,
+    /// Jobs at a time.
+    threads: usize,
+}
+
+impl Plan {
+    fn of(mut arguments: impl Iterator<Item = String>) -> Self {
+        let mut plan = Self {
+            limit_s: 30.0,
+            pictures: env::temp_dir().join("paper"),
+            machine: "a machine that was not named".to_owned(),
+            share: 1.0,
+            threads: 1,
+        };
+        while let Some(argument) = arguments.next() {
+            let mut text = || arguments.next().unwrap_or_else(|| panic!("{argument} takes a value"));
+            match argument.as_str() {
+                "--limit" => plan.limit_s = text().parse().expect("--limit takes seconds"),
+                "--pictures" => plan.pictures = text().into(),
+                "--machine" => plan.machine = text(),
+                "--threads" => plan.threads = text().parse().expect("--threads takes a number"),
+                "--quick" => plan.share = 0.05,
+                // From cargo.
+                "--bench" => {}
+                other => panic!("{other} is no option"),
+            }
+        }
+        plan
+    }
+
+    fn count(&self, printed: u32) -> u32 {
+        (f64::from(printed) * self.share).round() as u32
+    }
+
+    /// What a function makes of every item, some at a time.
+    fn each<T: Sync, R: Send>(&self, items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+        let next = AtomicUsize::new(0);
+        let results = Mutex::new(Vec::new());
+        thread::scope(|scope| {
+            for _ in 0..self.threads.clamp(1, items.len()) {
+                scope.spawn(|| {
+                    while let Some((k, item)) =
+                        Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|k| Some((k, items.get(k)?)))
+                    {
+                        let result = work(item);
+                        results.lock().expect("no thread has panicked").push((k, result));
+                    }
+                });
+            }
+        });
+        let mut results = results.into_inner().expect("no thread has panicked");
+        results.sort_by_key(|(k, _)| *k);
+        results.into_iter().map(|(_, result)| result).collect()
+    }
+}
+
+fn main() -> io::Result<()> {
+    let plan = Plan::of(env::args().skip(1));
+    fs::create_dir_all(&plan.pictures)?;
+    let out = &mut io::stdout().lock();
+    head(out, &plan)?;
+    let mut shown = Shown::default();
+    table_1(out, &plan, &mut shown)?;
+    notes(out)?;
+    table_2(out, &plan)?;
+    figures(out, &plan, &shown)
+}
+
+fn head(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    writeln!(
+        out,
+        "\
+# The paper, reproduced
+
+The jobs and figures of *MarchingParticles: Fast Generation of Particles for the Sampling of Implicit Surfaces* (2007), made again
+by this program. `cargo xtask paper` has written this page and drawn its pictures, on {}; times are seconds of processor time of
+one thread.
+
+- **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
+  same column, and ratios.
+- **Faithful** is `src/reference`: the paper's algorithms as they are written, one particle after the other, in double precision, without
+  regard for speed. It follows at most {} particles; where a job has more, its cell is empty (–).
+- **Fast** is the sampler of the page and the command line, with its default settings, and for the other methods `src/baseline`: the same
+  methods with batches, neighbour lists and single precision.
+- All methods of a table have the same surface and the same radius, or law of the radius: that with which the fast sampler places the
+  printed number of particles.
+- The ellipsoid has the semi-axes 1, 0.7 and 0.5; the paper names none. The bunny is the Stanford bunny through 200 points, of which none
+  lies between the ears, as in the paper; which points the paper has is not known. In adaptive sampling the radius follows κ₁ + κ₂, as
+  in the paper; its limits, which the paper does not name, are 0.4 and 2 radii of as many particles of one size.
+- *Last step* is that of the last relaxation step or iteration; of the fast methods the mean of the last ten.
+- A run of a particle system that takes longer than {} s is **cut off**, as in the paper, and its figures are those of what was there.
+
+Hole and pair are the radius of the largest hole and the distance of the closest pair, in units of a perfect lattice: of as many particles,
+or in adaptive sampling of the particles' own radii.
+",
+        plan.machine,
+        grouped(MAX_PARTICLES as usize),
+        plan.limit_s
+    )
+}
+
+/// Sets that the figures show again.
+#[derive(Default)]
+struct Shown {
+    bunny_uniform: Option<Set>,
+    bunny_adaptive: Option<Set>,
+}
+
+/// The four runs of a line of Table 1: of the paper's method and the other one, each faithful and fast.
+struct Runs {
+    ours: [Option<Outcome>; 2],
+    other: [Option<Outcome>; 2],
+}
+
+fn run_line(line: &Line, plan: &Plan) -> Runs {
+    let job = Job::new(line.id, line.sampling, plan.count(line.count));
+    let method = other_method(line).1;
+    let settings = job.faithful();
+    let system = reference::Settings { method, ..settings.clone() };
+    let runs = Runs {
+        ours: [job.run_reference(&settings, f64::INFINITY), Some(job.run_fast())],
+        other: [job.run_reference(&system, plan.limit_s), Some(job.run_baseline(plan.limit_s))],
+    };
+    eprintln!("{} {:?} {}", line.model, line.sampling, line.count);
+    runs
+}
+
+/// Name of the method that the paper compares with.
+fn other_method(line: &Line) -> (&'static str, Method) {
+    match line.sampling {
+        Sampling::Uniform => ("Witkin–Heckbert", Method::WitkinHeckbert),
+        Sampling::Adaptive => ("Forces", Method::Forces),
+    }
+}
+
+fn table_1(out: &mut dyn Write, plan: &Plan, shown: &mut Shown) -> io::Result<()> {
+    writeln!(out, "## Table 1")?;
+    let all = plan.each(&TABLE_1, |line| run_line(line, plan));
+    for (line, Runs { ours, other }) in TABLE_1.iter().zip(all) {
+        if let Some(faithful) = &ours[0]
+            && line.id == "bunny-joined"
+        {
+            let set = Some(faithful.set.clone());
+            match line.sampling {
+                Sampling::Uniform => shown.bunny_uniform = set,
+                Sampling::Adaptive => shown.bunny_adaptive = set,
+            }
+        }
+        write_line(out, line, ours.each_ref().map(Option::as_ref), other.each_ref().map(Option::as_ref))?;
+    }
+    Ok(())
+}
+
+/// A line of Table 1 as a table of its own: what was measured in rows, who in columns.
+fn write_line(
+    out: &mut dyn Write,
+    line: &Line,
+    ours: [Option<&Outcome>; 2],
+    other: [Option<&Outcome>; 2],
+) -> io::Result<()> {
+    let name = other_method(line).0;
+    let kind = match line.sampling {
+        Sampling::Uniform => "uniform",
+        Sampling::Adaptive => "non-uniform",
+    };
+    writeln!(out, "\n### {}, {kind}, {} particles\n", line.model, grouped(line.count as usize))?;
+    writeln!(
+        out,
+        "| | Marching, printed | faithful | fast | {name}, printed | faithful | fast |\n|---|---:|---:|---:|---:|---:|---:|"
+    )?;
+    let cell = |outcome: Option<&Outcome>, of: &dyn Fn(&Outcome) -> String| outcome.map_or("–".into(), of);
+    let mut row =
+        |label: &str, printed: [&dyn Fn(&Printed) -> String; 2], of: &dyn Fn(&Outcome) -> String| {
+            let [a, b] = ours.map(|outcome| cell(outcome, of));
+            let [c, d] = other.map(|outcome| cell(outcome, of));
+            writeln!(
+                out,
+                "| {label} | {} | {a} | {b} | {} | {c} | {d} |",
+                printed[0](&line.ours),
+                printed[1](&line.other)
+            )
+        };
+    let none = |_: &Printed| String::new();
+    let wanted = |printed: &Printed| {
+        let last = grouped(printed.last_particles as usize);
+        if printed.particles == last { last } else { format!("{last} of {}, cut off", printed.particles) }
+    };
+    row("Particles", [&wanted, &wanted], &|outcome| match outcome.end {
+        End::Done => grouped(outcome.count()),
+        End::CutOff => format!("{}, cut off", grouped(outcome.count())),
+    })?;
+    let steps = |printed: &Printed| grouped(printed.steps as usize);
+    row("Steps", [&steps, &steps], &|outcome| grouped(outcome.steps as usize))?;
+    let last = |printed: &Printed| format!("{:.2} s", printed.last_step);
+    row("Last step", [&last, &last], &|outcome| seconds(outcome.last_step))?;
+    let total = |printed: &Printed| format!("{:.2} s", printed.total);
+    row("Total time", [&total, &total], &|outcome| seconds(outcome.total()))?;
+    row("Evaluations", [&none, &none], &|outcome| grouped(outcome.evaluations as usize))?;
+    row("Six neighbours", [&none, &none], &|outcome| format!("{:.1} %", 100.0 * outcome.figures.six))?;
+    row("Mean smallest angle", [&none, &none], &|outcome| format!("{:.1}°", outcome.figures.ang_min_mean))?;
+    let is_uniform = line.sampling == Sampling::Uniform;
+    row("Largest hole", [&none, &none], &|outcome| {
+        let figures = &outcome.figures;
+        format!("{:.2}", if is_uniform { figures.cover } else { figures.cover_local })
+    })?;
+    row("Closest pair", [&none, &none], &|outcome| {
+        let figures = &outcome.figures;
+        format!("{:.2}", if is_uniform { figures.rho } else { figures.overlap_min })
+    })?;
+    let times = |k: usize| match (ours[k], other[k]) {
+        (Some(ours), Some(other)) => {
+            let sign = if other.end == End::CutOff { "> " } else { "" };
+            format!("{sign}{:.1}", other.total() / ours.total())
+        }
+        _ => "–".to_owned(),
+    };
+    writeln!(
+        out,
+        "\n{name} takes {:.1} times as long in the paper; {} times as long by the faithful pair, {} times by the fast one.",
+        line.other.total / line.ours.total,
+        times(0),
+        times(1)
+    )
+}
+
+fn notes(out: &mut dyn Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "
+### What differs
+
+- Witkin and Heckbert's system does better here than in the paper: a lone particle grows to half of the surface's diameter before it first
+  divides, so the first particles spread over all of the surface, and their number grows by about a fifth with every iteration from then on.
+  What it lacks is order: its particles stay in the disorder in which they came to be.
+- The forces come to triangles as good as ours, with fewer particles and wider holes. Both systems cover only the component that their
+  one particle sits on; the bunny and the ellipsoid have one.
+- κ₁ + κ₂ vanishes on saddles, so that on the bunny the radius goes from its smallest to its largest over short ways. The faithful methods
+  take it as it is. The fast ones limit how steeply it changes, and place more particles between.
+- Both particle systems also follow a surface that changes, which a front does not."
+    )
+}
+
+fn table_2(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    writeln!(
+        out,
+        "\n## Table 2\n\nThe analytic ellipsoid. Seconds of the generation and of the ten relaxation steps.\n\n\
+         | Particles, printed | faithful | fast | Generation, printed | faithful | fast | Relaxation, printed | faithful | fast |\n\
+         |---:|---:|---:|---:|---:|---:|---:|---:|---:|"
+    )?;
+    let all = plan.each(&TABLE_2, |&(count, _)| {
+        let job = Job::new("ellipsoid", Sampling::Uniform, plan.count(count));
+        (job.run_reference(&job.faithful(), f64::INFINITY), job.run_fast())
+    });
+    for ((count, [generation, relaxation, _]), (slow, fast)) in TABLE_2.iter().zip(all) {
+        let faithful = |of: &dyn Fn(&Outcome) -> String| slow.as_ref().map_or("–".to_owned(), of);
+        writeln!(
+            out,
+            "| {} | {} | {} | {generation:.2} | {} | {} | {relaxation:.2} | {} | {} |",
+            grouped(*count as usize),
+            faithful(&|outcome| grouped(outcome.count())),
+            grouped(fast.count()),
+            faithful(&|outcome| seconds(outcome.generation)),
+            seconds(fast.generation),
+            faithful(&|outcome| seconds(outcome.relaxation)),
+            seconds(fast.relaxation)
+        )?;
+    }
+    writeln!(
+        out,
+        "\nIn the paper the relaxation takes most of the time and grows faster than the number of particles, for which it names its space \
+         partitioning. Here both grow in proportion."
+    )
+}
+
+/// Writes a figure and its caption.
+struct Album<'a> {
+    out: &'a mut dyn Write,
+    folder: &'a Path,
+}
+
+impl Album<'_> {
+    fn squares(&mut self, number: u32, squares: &[Vec<u8>], caption: &str) -> io::Result<()> {
+        write_row(&self.folder.join(format!("fig-{number}.rgba")), squares, SIDE)?;
+        self.caption(number, "webp", caption)
+    }
+
+    fn drawing(&mut self, number: u32, text: &str, caption: &str) -> io::Result<()> {
+        fs::write(self.folder.join(format!("fig-{number}.svg")), text)?;
+        self.caption(number, "svg", caption)
+    }
+
+    fn caption(&mut self, number: u32, extension: &str, caption: &str) -> io::Result<()> {
+        let plain = caption.replace('*', "");
+        writeln!(self.out, "\n### Fig. {number}\n\n![{plain}](paper/fig-{number}.{extension})\n\n{caption}")
+    }
+}
+
+/// Where the eye is: in front, to the right and above.
+const EYE: Vec3 = Vec3::new(0.72, -0.55, 0.42);
+const BUNNY_EYE: Vec3 = Vec3::new(0.35, -0.85, 0.4);
+
+fn all_of(set: &Set, up: Vec3, back: Vec3, colour: Colour) -> Vec<u8> {
+    draw(set, &View::of(set, back, up), colour, SIDE)
+}
+
+/// A bunny, from where its ears and the gap between them can be seen.
+fn bunny(set: &Set, colour: Colour) -> Vec<u8> {
+    all_of(set, Vec3::Z, BUNNY_EYE, colour)
+}
+
+fn figures(out: &mut dyn Write, plan: &Plan, shown: &Shown) -> io::Result<()> {
+    writeln!(
+        out,
+        "\n## Figures\n\nDrawn from the particles of the runs, discs of their repulsion radius. Unless said otherwise they are the faithful \
+         method's."
+    )?;
+    let album = &mut Album { out, folder: &plan.pictures };
+    let particles = |set: &Set| grouped(set.position.len());
+    if let (Some(uniform), Some(adaptive)) = (&shown.bunny_uniform, &shown.bunny_adaptive) {
+        let squares = [bunny(uniform, Colour::Plain), bunny(adaptive, Colour::Radius)];
+        let words = format!(
+            "The bunny: *left* {} uniform particles, *right* {} non-uniform ones, coloured by radius.",
+            particles(uniform),
+            particles(adaptive)
+        );
+        album.squares(1, &squares, &words)?;
+    }
+    figure_5(album, plan)?;
+    figures_7_and_8(album)?;
+    figure_9(album, plan)?;
+    figure_10(album, plan)?;
+    figure_11(album)?;
+    figure_12(album, plan)
+}
+
+fn faithful(job: &Job, change: impl FnOnce(&mut reference::Settings)) -> Set {
+    let mut settings = job.faithful();
+    change(&mut settings);
+    let outcome = job.run_reference(&settings, f64::INFINITY);
+    outcome.map(|outcome| outcome.set).unwrap_or_default()
+}
+
+fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
+    let job = Job::new("bunny-joined", Sampling::Uniform, plan.count(6_000));
+    let before = faithful(&job, |settings| settings.relax_steps = 0);
+    let after = faithful(&job, |_| {});
+    let surface = &job.surface;
+    let options = quality::Options::default();
+    let report = quality::measure(
+        &before.position,
+        &before.normal,
+        &mut *surface.field(),
+        Some(&surface.bounds),
+        &options,
+    );
+    let Some(hole) = report.places.holes.first() else { return Ok(()) };
+    let target = Vec3::from_array(hole.position);
+    let nearest = (0..before.position.len())
+        .min_by(|&a, &b| before.position[a].distance(target).total_cmp(&before.position[b].distance(target)))
+        .unwrap_or_default();
+    let view = View { target, back: before.normal[nearest], up: Vec3::Z, half: 11.0 * job.radius as f32 };
+    let squares = [&before, &after].map(|set| draw(set, &view, Colour::Plain, SIDE));
+    album.squares(
+        5,
+        &squares,
+        &format!(
+            "The widest hole that the fronts leave on the bunny, {:.2} times that of a lattice: *left* after the generation, *right* after ten \
+             relaxation steps.",
+            hole.ratio
+        ),
+    )
+}
+
+fn figures_7_and_8(album: &mut Album) -> io::Result<()> {
+    let surface = Surface::of("ellipsoid");
+    let settings = reference::Settings {
+        sampling: Sampling::Adaptive,
+        law: LawKind::SumOfCurvatures,
+        law_scale: 0.2,
+        radius_min: 0.03,
+        radius_max: 0.15,
+        relax_steps: 0,
+        ..reference::Settings::default()
+    };
+    let mut run = Reference::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
+    while !run.step(1_000).is_done {}
+    let events = run.events(0, u32::MAX);
+    run.seek(u32::MAX);
+    let treated = Treated::all(&events, run.particles());
+    album.drawing(
+        7,
+        &steps::first_two(&treated[0]),
+        "The first two children of the seed on the ellipsoid, in its tangent plane, from the event log of the run.",
+    )?;
+    if let Some(telling) = treated.iter().find(|treated| treated.is_telling()) {
+        album.drawing(
+            8,
+            &steps::among_neighbours(telling),
+            "A particle of the same run among its neighbours (red) and its father (green): each child that it tries (orange), and the \
+             result: added (blue), without room (violet).",
+        )?;
+    }
+    Ok(())
+}
+
+fn figure_9(album: &mut Album, plan: &Plan) -> io::Result<()> {
+    let job = Job::new("bunny-joined", Sampling::Uniform, plan.count(10_000));
+    let ours = faithful(&job, |_| {});
+    let theirs = faithful(&job, |settings| settings.method = Method::WitkinHeckbert);
+    let words = format!(
+        "The bunny with the same wanted radius: *left* {} particles of the paper's method, *right* {} of Witkin and Heckbert's.",
+        grouped(ours.position.len()),
+        grouped(theirs.position.len())
+    );
+    album.squares(9, &[&ours, &theirs].map(|set| bunny(set, Colour::Plain)), &words)
+}
+
+fn figure_10(album: &mut Album, plan: &Plan) -> io::Result<()> {
+    let coarse = faithful(&Job::new("rabbit", Sampling::Uniform, plan.count(2_449)), |_| {});
+    let fine = Job::new("rabbit", Sampling::Uniform, plan.count(25_702)).run_fast().set;
+    let words = format!(
+        "A rabbit of our own, which stands in for the paper's: *left* with {} particles, *right* with {} (by the fast sampler, since the \
+         faithful method follows fewer).",
+        grouped(coarse.position.len()),
+        grouped(fine.position.len())
+    );
+    album.squares(10, &[&coarse, &fine].map(|set| rabbit(set, Colour::Plain)), &words)
+}
+
+fn rabbit(set: &Set, colour: Colour) -> Vec<u8> {
+    all_of(set, Vec3::Z, EYE, colour)
+}
+
+fn figure_11(album: &mut Album) -> io::Result<()> {
+    let surface = Surface::of("sphere");
+    let seed = EYE.normalize_or(Vec3::Z).as_dvec3().to_array();
+    let of = |order| {
+        let settings = reference::Settings {
+            radius: 0.035,
+            order,
+            seeds: vec![seed],
+            relax_steps: 0,
+            ..reference::Settings::default()
+        };
+        let mut run = Reference::new(surface.field(), &surface.bounds, &settings).expect("valid settings");
+        while !run.step(1_000).is_done {}
+        run.seek(u32::MAX);
+        Set::of_reference(run.particles())
+    };
+    let squares = [of(reference::Order::Queue), of(reference::Order::Stack)]
+        .map(|set| all_of(&set, Vec3::Z, EYE, Colour::Level));
+    album.squares(
+        11,
+        &squares,
+        "The sphere, each generation level in another colour. *Left* with a queue, whose levels are the rings of the paper's figure; *right* \
+         with a stack, as the paper's text says, whose levels are not.",
+    )
+}
+
+fn figure_12(album: &mut Album, plan: &Plan) -> io::Result<()> {
+    let mut squares = Vec::new();
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        let colour = if sampling == Sampling::Uniform { Colour::Plain } else { Colour::Radius };
+        let of = |id| faithful(&Job::new(id, sampling, plan.count(6_000)), |_| {});
+        squares.push(rabbit(&of("sack-and-hat"), colour));
+        if sampling == Sampling::Adaptive {
+            squares.push(rabbit(&of("rabbit"), colour));
+        }
+    }
+    album.squares(
+        12,
+        &squares,
+        "More examples with about 6,000 particles: a figure with sack and hat, which stands in for the paper's Santa, uniform and non-uniform; \
+         and the rabbit, non-uniform.",
+    )
+}
+
+/// A number with commas between thousands.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A time with three digits.
+fn seconds(time: f64) -> String {
+    match time {
+        t if t >= 10.0 => format!("{t:.1} s"),
+        t if t >= 1.0 => format!("{t:.2} s"),
+        t if t >= 0.01 => format!("{:.0} ms", 1e3 * t),
+        t => format!("{:.1} ms", 1e3 * t),
+    }
+}
