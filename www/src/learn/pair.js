@@ -1,6 +1,6 @@
 /** Two runs side by side, seen by one camera. */
 import { fill, h } from '../ui/dom.js';
-import { formatCount, formatFixed, formatSignificant, MISSING } from '../ui/format.js';
+import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
 import { reasonOf } from './figure.js';
 import { nearestDistances, parentDistances, spread } from './measure.js';
 import { createScale } from './parts.js';
@@ -55,13 +55,18 @@ const around = ({ mean, deviation }) =>
 export function figuresOf(run) {
   const { particles, evaluations } = run.progress;
   const nearest = spread(nearestDistances(run.end));
-  const parents = run.settings.sampling === 'adaptive' ? null : spread(parentDistances(run.placed, run.radius));
+  const isEven = run.settings.sampling !== 'adaptive';
+  const unit = isEven ? 'in 2r' : 'over the sum of both radii';
   return [
     ['Particles', formatCount(particles)],
     ['Evaluations of f for each', formatSignificant(evaluations / Math.max(1, particles), 3)],
-    ['Nearest neighbour, in 2r', around(nearest)],
-    ['Closest pair, in 2r', formatFixed(nearest.least, 3)],
-    ['Distance to the parent, in 2r', parents ? around(parents) : MISSING],
+    [`Nearest neighbour, ${unit}`, around(nearest)],
+    [`Closest pair, ${unit}`, formatFixed(nearest.least, 3)],
+    ...(isEven
+      ? /** @type {[string, string][]} */ ([
+          ['Distance to the parent, in 2r', around(spread(parentDistances(run.placed, run.radius)))],
+        ])
+      : []),
   ];
 }
 

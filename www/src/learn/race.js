@@ -1,5 +1,6 @@
 /** The race: the front against the method that the paper compares it with, side by side under one camera. */
 import { opponentOf, Race } from '../engine/lesson/race.js';
+import { s } from '../figures/svg.js';
 import { fill, h } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
 import { adaptiveRun } from './adaptive.js';
@@ -21,6 +22,21 @@ const PARTICLES = 1500;
 const PICTURE_MS = 250;
 /** Distances over the ideal one span this range of colours. */
 const [NEAR, FAR] = [0.7, 1.15];
+
+/** How many times as long as the front the other method took in Table 1 of the paper, for each pair of its ellipsoids. @type {Record<string, readonly { ratio: number, words: string }[]>} */
+const OF_THE_PAPER = {
+  uniform: [
+    { ratio: 219.63 / 19.8, words: '13,923 particles against 10,633' },
+    { ratio: 4344.01 / 613.54, words: '55,748 against 33,343, stopped before its end' },
+  ],
+  adaptive: [
+    { ratio: 717.53 / 75.32, words: '15,296 particles against 12,475' },
+    { ratio: 4535.15 / 252.19, words: '27,314 against 27,151' },
+  ],
+};
+/** The axis of these ratios is logarithmic and ends here. */
+const MOST_RATIO = 30;
+const TICKS = [1, 2, 5, 10, 20];
 
 const KINDS = [
   { value: 'uniform', label: 'One size: the front and Witkin and Heckbert’s system' },
@@ -143,7 +159,7 @@ export function mountRace(host, lab) {
       await own.start(lab.surface, [settings, opponentOf(settings)]);
       const ends = [await own.particles(0), await own.particles(1)];
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
-      fill(result, tableOf(names, own.lanes, ends));
+      fill(result, tableOf(names, own.lanes, ends), marksOf(kind, own.lanes[1].workMs / own.lanes[0].workMs));
       stop();
     } catch (error) {
       if (/** @type {any} */ (error)?.kind === 'given_up') return;
@@ -199,6 +215,37 @@ function tableOf(names, lanes, ends) {
           values.map((value) => h('td', null, value)),
         ),
       ),
+    ),
+  );
+}
+
+/** Where a ratio stands on the axis, 0 to 1. @param {number} ratio */
+const placeOf = (ratio) => Math.min(1, Math.max(0, Math.log(ratio * 2) / Math.log(MOST_RATIO * 2)));
+
+/** This race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
+function marksOf(kind, ratio) {
+  const paper = OF_THE_PAPER[kind];
+  const told = [
+    `Here the other method worked ${formatSignificant(ratio, 2)} times as long as the front.`,
+    ...paper.map((row) => `In the paper ${formatSignificant(row.ratio, 2)} times: ${row.words}.`),
+  ];
+  const svg = s('svg', { class: 'ratios', viewBox: '0 0 100 9', role: 'img', 'aria-label': told.join(' ') });
+  const x = (/** @type {number} */ value) => 2 + 96 * placeOf(value);
+  svg.append(s('line', { x1: 2, x2: 98, y1: 5, y2: 5 }));
+  for (const tick of TICKS) {
+    svg.append(s('line', { x1: x(tick), x2: x(tick), y1: 4.5, y2: 5.5 }));
+    svg.append(s('text', { x: x(tick), y: 8.4 }, `${tick}×`));
+  }
+  for (const row of paper) svg.append(s('circle', { class: 'of-paper', cx: x(row.ratio), cy: 5, r: 0.9 }));
+  svg.append(s('circle', { class: 'of-here', cx: x(ratio), cy: 5, r: 1.1 }));
+  return h(
+    'figure',
+    { class: 'ratio-figure' },
+    svg,
+    h(
+      'figcaption',
+      null,
+      `How many times as long as the front the other method worked: filled here, open in Table 1. ${told.join(' ')}`,
     ),
   );
 }

@@ -137,7 +137,7 @@ export const WHAT_IFS = [
   {
     id: 'placing',
     name: 'Child by child or level by level',
-    look: 'Placing a whole level at once gives nearly the same particles and can compare children before it projects them.',
+    look: 'Placing a whole level at once gives nearly the same particles. It compares children before it projects them, and so needs far fewer evaluations.',
     colouring: 'level',
     values: values([
       ['one_by_one', 'Child by child'],
@@ -156,7 +156,7 @@ export const WHAT_IFS = [
   {
     id: 'fit',
     name: 'Room for an adaptive child',
-    look: 'A child is added if enough of the angle that it takes is free. Asking for all of it leaves holes, since on a lattice the two angles are equal and rounding decides.',
+    look: 'A child is added if enough of the angle that it takes is free. Asking for all of it places fewer particles, which keep their distance, and leaves wider gaps for the relaxation.',
     colouring: 'nearest',
     values: values([
       ['0.5', 'Half of it'],

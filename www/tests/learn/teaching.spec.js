@@ -111,6 +111,7 @@ for (const [kind, other] of [
     expect(rounds[0]).toBe('10');
     expect(Number(rounds[1].replace(/\D/g, ''))).toBeGreaterThan(50);
     await expect(race.locator('.picture[data-drawn]')).toHaveCount(2);
+    await expect(race.getByRole('img', { name: /times as long as the front/ })).toBeVisible();
     await expect(page.getByRole('cell', { name: '373' })).toBeVisible();
     clean();
   });
