@@ -41,6 +41,7 @@
 /** What a mesh adds up to. @typedef {import('./core-types.js').MeshAnswer} MeshAnswer */
 /** @typedef {import('./core-types.js').LessonEvent} LessonEvent */
 /** @typedef {import('./core-types.js').LessonIterate} LessonIterate */
+/** @typedef {import('./core-types.js').LessonSettings} LessonSettings */
 /** @typedef {import('./lesson/client.js').LessonClient} LessonClient */
 /** @typedef {import('./lesson/protocol.js').Particles} LessonParticles */
 /** A mesh over all particles on the page, three indices a triangle. @typedef {{triangles: Uint32Array, about: MeshAnswer}} Mesh */

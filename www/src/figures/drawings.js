@@ -40,10 +40,10 @@ export function tangentPlane(opened, moment) {
       svg.append(ring(other ? 'disc other' : 'disc', at(particle), 1));
     }
     svg.append(ring('circle', [0, 0], 2));
-    for (const child of children) svg.append(...slotMarks(child, child.slot === slot && isNow));
+    for (const child of children) svg.append(slotGroup(child, slotMarks(child, child.slot === slot && isNow)));
     for (const { particle } of gathered?.neighbours ?? [])
       svg.append(label('number', clear(at(particle)), formatCount(particle)));
-    for (const child of children) svg.append(...childMarks(child, plane, at));
+    for (const child of children) svg.append(slotGroup(child, childMarks(child, plane, at)));
     const now = slot === null ? null : children[slot];
     if (now?.compared && moment.event.type === 'compared')
       svg.append(ring('tolerance', inPlane(plane, now.compared.position), now.compared.limit / subject.radius));
@@ -51,6 +51,9 @@ export function tangentPlane(opened, moment) {
   svg.append(ring('self', [0, 0], 1), label('number strong', [0, 0], formatCount(subject.particle)));
   return svg;
 }
+
+/** Marks of a slot, which is found by its number. @param {Child} child @param {Element[]} marks */
+export const slotGroup = ({ slot }, marks) => s('g', { 'data-slot': slot }, ...marks);
 
 /** Where the number of a particle stands: outwards, clear of the shape of a fate and of the slot's number. @param {Point} at @returns {Point} */
 const clear = ([x, y]) => [x, y > 0.5 ? y + 0.58 : y - 0.58];
@@ -70,7 +73,7 @@ function slotMarks({ slot }, isNow) {
  * Draws where a child is, with the shape of its fate, and a line to the particle that it met.
  * @param {Child} child @param {import('./geometry.js').Plane} plane @param {(particle: number) => Point} at
  */
-function childMarks({ fate, landed, start, particle, iterates }, plane, at) {
+export function childMarks({ fate, landed, start, particle, iterates }, plane, at) {
   if (fate === 'parent') return particle === null ? [] : [fateShape(fate, at(particle), SHAPE)];
   const where = landed?.position ?? iterates.at(-1)?.position ?? start?.place;
   if (!where) return [];
@@ -115,7 +118,7 @@ export function profileOf(opened, profile, child) {
     ]),
     label('name', [0.28, 0.9], 'N'),
     label('name', [2.72, -0.34], 'V'),
-    ring('circle', [0, 0], 2),
+    ring('circle', [0, 0], profile.reach / radius),
     segments('curve', profile.section, 1 / radius),
   );
   svg.append(...searchMarks(child, profile, (where) => inPlane(plane, where), { size: 0.14, distance: true }));
@@ -173,9 +176,10 @@ export function lens({ subject, place }, profile, child) {
   /** @param {Point} point in radii @returns {Point} */
   const enlarged = ([x, y]) => [(x - centre[0]) / half, (y - centre[1]) / half];
   const middle = Math.atan2(centre[1], centre[0]);
+  const reach = profile.reach / subject.radius;
   const arc = Array.from({ length: ARC_PARTS + 1 }, (_, k) => {
     const angle = middle + (k / ARC_PARTS - 0.5) * ARC * half;
-    return enlarged([2 * Math.cos(angle), 2 * Math.sin(angle)]);
+    return enlarged([reach * Math.cos(angle), reach * Math.sin(angle)]);
   });
   return s(
     'svg',

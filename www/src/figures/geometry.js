@@ -41,3 +41,36 @@ export function lensOf(points) {
   if (!(span > LEAST_SPAN) || !Number.isFinite(span)) return null;
   return { centre: [(x0 + x1) / 2, (y0 + y1) / 2], half: (0.5 + MARGIN) * span };
 }
+
+/** Distance of the corners of an arc, in radians. */
+const CORNER_RAD = Math.PI / 48;
+
+/**
+ * Returns where a place is in the plane, at its true distance from the particle, as the algorithm measures it.
+ * @param {Plane} plane @param {ArrayLike<number>} place @returns {Point}
+ */
+export function unrolled(plane, place) {
+  const [x, y] = inPlane(plane, place);
+  const flat = Math.hypot(x, y);
+  const way = [0, 1, 2].map((k) => place[k] - plane.centre[k]);
+  const scale = flat > 0 ? Math.hypot(way[0], way[1], way[2]) / plane.radius / flat : 1;
+  return [scale * x, scale * y];
+}
+
+/**
+ * Returns points of an arc, counter-clockwise.
+ * @param {number} from  in radians @param {number} width @param {number} at  its radius @returns {Point[]}
+ */
+export function arcOf(from, width, at) {
+  const corners = Math.max(2, Math.ceil(Math.abs(width) / CORNER_RAD));
+  return Array.from({ length: corners + 1 }, (_, k) => {
+    const angle = from + (width * k) / corners;
+    return [at * Math.cos(angle), at * Math.sin(angle)];
+  });
+}
+
+/** The width of a free space. @param {readonly [number, number]} angles */
+export function widthOf([from, to]) {
+  const width = to - from;
+  return width > 0 ? width : width + 2 * Math.PI;
+}

@@ -19,6 +19,8 @@
  * @property {Of<'iterate'>[]} iterates
  * @property {Of<'landed'> | null} landed
  * @property {Of<'compared'> | null} compared
+ * @property {(Of<'start'> | Of<'push'> | Of<'push_on_circle'>)[]} pushes  the way of an adaptive child in the tangent plane
+ * @property {Of<'room'> | null} room  the angle that an adaptive child takes, and the free one
  * @property {Of<'fate'>['fate']} fate
  * @property {number | null} particle
  */
@@ -27,13 +29,20 @@
  * @property {LessonEvent} event  the one that is shown
  * @property {Of<'frame'> | null} frame
  * @property {Of<'gathered'> | null} gathered
- * @property {Child[]} children  by slot, six
+ * @property {Of<'arc'> | null} arc  the free space that an adaptive child is placed in
+ * @property {Child[]} children  by slot: six, and up to ten of an adaptive particle
  * @property {number | null} slot  the slot that was spoken of last; null before the first
  * @property {boolean} isNow  whether the event itself speaks of that slot
  * @property {number} evaluations  of f for this particle so far
  */
 
 const SLOTS = 6;
+
+/** Number of slots that events speak of. @param {readonly LessonEvent[]} events */
+const slotsOf = (events) => events.reduce((most, event) => Math.max(most, (slotOf(event) ?? 0) + 1), 1);
+
+/** Whether a particle is treated as §5 of the paper says. @param {readonly LessonEvent[]} events */
+export const isAdaptive = (events) => events.some(({ type }) => type === 'arc');
 
 /** @param {readonly LessonEvent[]} events  of one particle, from `taken` to `done` @param {number} at  @returns {Moment} */
 export function momentAt(events, at) {
@@ -42,12 +51,15 @@ export function momentAt(events, at) {
     event: events[at],
     frame: null,
     gathered: null,
-    children: Array.from({ length: SLOTS }, (_, slot) => ({
+    arc: null,
+    children: Array.from({ length: isAdaptive(events) ? slotsOf(events) : SLOTS }, (_, slot) => ({
       slot,
       start: null,
       iterates: [],
       landed: null,
       compared: null,
+      pushes: [],
+      room: null,
       fate: 'open',
       particle: null,
     })),
@@ -73,7 +85,20 @@ function include(moment, event) {
     case 'slot':
       moment.children[event.slot].start = event;
       break;
+    case 'arc':
+      moment.arc = event;
+      moment.slot = null;
+      break;
+    case 'start':
+    case 'push':
+    case 'push_on_circle':
+      moment.children[event.slot].pushes.push(event);
+      break;
+    case 'room':
+      moment.children[event.slot].room = event;
+      break;
     case 'iterate':
+      begin(moment.children[event.slot], event);
       moment.children[event.slot].iterates.push(event);
       moment.evaluations += 1;
       break;
@@ -97,5 +122,16 @@ function include(moment, event) {
   }
 }
 
+/**
+ * The search for an adaptive child begins where it was pushed to: on the circle of that radius around its parent.
+ * @param {Child} child @param {Of<'iterate'>} iterate  the first one
+ */
+function begin(child, { parent, slot, position }) {
+  if (child.start || child.pushes.length === 0) return;
+  child.start = { type: 'slot', parent, slot, direction: [0, 0, 0], theta_rad: 0, place: position };
+}
+
 /** The slot of which an event speaks, or null. @param {LessonEvent} event */
-export const slotOf = (event) => ('slot' in event ? event.slot : null);
+export function slotOf(event) {
+  return 'slot' in event ? event.slot : null;
+}

@@ -19,6 +19,7 @@ import { momentAt } from './moment.js';
  * @typedef {object} Profile
  * @property {Vec3} normal
  * @property {Vec3} direction
+ * @property {number} reach  radius of the circle on which the child is looked for
  * @property {Float32Array} section
  * @property {LessonIterate[]} newton
  * @property {number | null} newtonDistance
@@ -32,6 +33,7 @@ import { momentAt } from './moment.js';
  * @property {Vec3} normal
  * @property {Float32Array} positions  of all particles of the run
  * @property {Float32Array} normals
+ * @property {Float32Array} radii
  * @property {LessonEvent[]} events  from `taken` to `done`; none if it still waited at the end of the run
  * @property {(Profile | null)[]} profiles  by slot
  */
@@ -42,6 +44,12 @@ export const RESIDUAL = 1e-4;
 const SECTION_HALF = 3.2;
 const SECTION_CELLS = 64;
 const LENS_CELLS = 24;
+
+/** @param {readonly number[]} v @returns {Vec3} */
+const unit = (v) => {
+  const length = Math.hypot(...v) || 1;
+  return [v[0] / length, v[1] / length, v[2] / length];
+};
 
 /** @param {Float32Array} column @param {number} i */
 export const triple = (column, i) => /** @type {Vec3} */ ([...column.subarray(3 * i, 3 * i + 3)]);
@@ -71,20 +79,22 @@ export async function openParticle(client, { end, radius }, particle) {
     parent: parent === NO_PARENT ? null : parent,
     radius,
   };
-  return { subject, place, normal, positions: end.positions, normals: end.normals, events, profiles };
+  const { positions, normals, radii } = end;
+  return { subject, place, normal, positions, normals, radii, events, profiles };
 }
 
 /**
  * @param {LessonClient} client @param {{ place: Vec3, normal: Vec3, radius: number }} about
  * @param {Child} child  at the end  @returns {Promise<Profile | null>}
  */
-async function profile(client, { place, normal, radius }, { start, iterates, landed }) {
+async function profile(client, { place, normal, radius }, { start, iterates, landed, pushes }) {
   if (!start) return null;
-  const { direction } = start;
+  const direction = pushes.length > 0 ? unit(start.place.map((v, k) => v - place[k])) : start.direction;
+  const reach = pushes.length > 0 ? between(start.place, place) : 2 * radius;
   const plane = { right: direction, up: normal };
   const [section, newton] = await Promise.all([
     client.ask('section', { ...plane, centre: place, half: SECTION_HALF * radius, cells: SECTION_CELLS }),
-    client.ask('newton', { start: start.place, reach: 2 * radius }),
+    client.ask('newton', { start: start.place, reach }),
   ]);
   const last = newton.at(-1);
   const lands = last !== undefined && Math.abs(last.value) <= RESIDUAL * radius * last.slope;
@@ -102,6 +112,7 @@ async function profile(client, { place, normal, radius }, { start, iterates, lan
   return {
     normal,
     direction,
+    reach,
     section,
     newton,
     newtonDistance: last && lands ? between(last.position, place) : null,

@@ -53,10 +53,30 @@ export const ALGORITHM = [
   { depth: 1, text: 'Mark p as done', of: ['done'] },
 ];
 
-/** Index of the line of Algorithm 2 that an event belongs to; −1 for none. @param {LessonEvent} event */
-export function lineOf(event) {
+/** The same for particles of many sizes (§5), whose children are pushed into the free spaces around them. @type {typeof ALGORITHM} */
+export const ADAPTIVE = [
+  { depth: 0, text: 'While particles wait: take the next one, p', of: ['taken'] },
+  { depth: 1, text: 'Gather the particles around p (Fig. 8a)', of: ['gathered'] },
+  { depth: 1, text: 'Lay the tangent frame of p', of: ['frame', 'fate:parent'] },
+  { depth: 1, text: 'For each free space between two that touch p:', of: ['arc'] },
+  { depth: 2, text: 'start a child on the circle of p, beside the last one (Figs 7a, 7c)', of: ['start'] },
+  { depth: 2, text: 'push it away from p, until the two do not overlap (Figs 7b, 7e)', of: ['push'] },
+  { depth: 2, text: 'push it along the circle, until it overlaps the others least (Fig. 7f)', of: ['push_on_circle'] },
+  { depth: 2, text: 'compare the angle φ that it takes with the free one, τ (Figs 7g, 8c, 8e)', of: ['room'] },
+  { depth: 2, text: 'if there is room, bring it onto the surface', of: ['slot', 'iterate', 'landed', 'compared'] },
+  { depth: 2, text: 'add it, and go on behind it', of: ['added', 'fate:added'] },
+  {
+    depth: 2,
+    text: 'otherwise the space is done (Fig. 8f)',
+    of: ['fate:matched', 'fate:not_converged', 'fate:outside', 'fate:undefined', 'fate:capped'],
+  },
+  { depth: 1, text: 'Mark p as done', of: ['done'] },
+];
+
+/** Index of the line of an algorithm that an event belongs to; −1 for none. @param {LessonEvent} event @param {typeof ALGORITHM} [lines] */
+export function lineOf(event, lines = ALGORITHM) {
   const name = event.type === 'fate' ? `fate:${event.fate}` : event.type;
-  return ALGORITHM.findIndex(({ of }) => of.includes(name));
+  return lines.findIndex(({ of }) => of.includes(name));
 }
 
 /** @param {number} particle */
@@ -93,6 +113,12 @@ export function tell({ event, slot, children, evaluations }, subject) {
       return `A new particle, number ${formatCount(event.particle)}, is added where child ${slot} landed. It waits its turn.`;
     case 'fate':
       return tellFate(event);
+    case 'arc':
+    case 'start':
+    case 'push':
+    case 'push_on_circle':
+    case 'room':
+      return tellPush(event, radius);
     case 'done': {
       const placed = children.filter(({ fate }) => fate === 'added').length;
       const met = children.filter(({ fate }) => fate === 'matched').length;
@@ -122,6 +148,37 @@ function tellComparison({ slot, against, distance, limit, corresponds }, radius)
     : `${far} That is more than ${bound}: the place is free.`;
 }
 
+/**
+ * @param {Extract<LessonEvent, {type: 'arc' | 'start' | 'push' | 'push_on_circle' | 'room'}>} event @param {number} radius
+ */
+function tellPush(event, radius) {
+  switch (event.type) {
+    case 'arc': {
+      const { before, behind, angles_rad: angles } = event;
+      if (before === null || behind === null)
+        return 'Nothing touches the particle yet: the whole circle around it is free.';
+      const width = (angles[1] - angles[0] + 2 * Math.PI) % (2 * Math.PI) || 2 * Math.PI;
+      return before === behind
+        ? `Only ${particleOf(before)} touches it: the space behind that one goes once around.`
+        : `The space between ${particleOf(before)} and ${particleOf(behind)} is next: ${inDegrees(width, 1)} of the circle.`;
+    }
+    case 'start':
+      return event.tangent === null
+        ? `Child ${event.slot} starts on the circle of its parent. There its radius would be ${inRadii(event.radius, radius)}.`
+        : `Child ${event.slot} starts beside the last one, towards the point I on that one’s circle. There its radius would be ${inRadii(event.radius, radius)}.`;
+    case 'push':
+      return `Child ${event.slot} is pushed away from its parent, to where its radius is ${inRadii(event.radius, radius)}.`;
+    case 'push_on_circle':
+      return event.overlap > 0
+        ? `Child ${event.slot} is pushed along the circle. It still overlaps another by ${formatFixed(100 * event.overlap, 1)} %.`
+        : `Child ${event.slot} is pushed along the circle. It overlaps none any more.`;
+    case 'room': {
+      const angles = `Child ${event.slot} takes φ = ${inDegrees(event.phi_rad, 1)}; τ = ${inDegrees(event.tau_rad, 1)} are free.`;
+      return event.fits ? `${angles} There is room.` : `${angles} There is no room: this space is done.`;
+    }
+  }
+}
+
 /** @param {Extract<LessonEvent, {type: 'fate'}>} event */
 function tellFate({ slot, fate, particle }) {
   const other = particle === null ? '' : particleOf(particle);
@@ -131,7 +188,9 @@ function tellFate({ slot, fate, particle }) {
     case 'added':
       return `Child ${slot} became ${other}.`;
     case 'matched':
-      return `Child ${slot} matched ${other}, so nothing is added.`;
+      return particle === null
+        ? `Child ${slot} has no room and is not added.`
+        : `Child ${slot} matched ${other}, so nothing is added.`;
     case 'outside':
       return `Child ${slot} lies outside the box and is left out.`;
     case 'not_converged':
@@ -168,6 +227,16 @@ function brief(event) {
       return 'fronts meet';
     case 'added':
       return `added as ${particleOf(event.particle)}`;
+    case 'arc':
+      return event.before === null ? 'all around is free' : 'the next free space';
+    case 'start':
+      return 'starts on the circle of its parent';
+    case 'push':
+      return 'pushed away';
+    case 'push_on_circle':
+      return 'pushed along the circle';
+    case 'room':
+      return event.fits ? 'there is room' : 'there is no room';
     case 'fate':
       return event.particle === null ? FATES[event.fate] : `${FATES[event.fate]} ${particleOf(event.particle)}`;
     case 'done':

@@ -85,7 +85,7 @@ export function mountInterface(engine) {
     untracked(layout.measure);
   });
   linkLesson(engine);
-  const lesson = lessonOf(engine, shell, toast);
+  const lesson = lessonOf(engine, { shell, stage }, toast);
   mountHover(stage, engine, { view, follow: (index) => void timeline?.follow(index) });
   byId('tabs').append(goButton(engine));
 
@@ -142,13 +142,16 @@ function nameTab(engine) {
 
 /**
  * Returns what loads the panel that follows particles, when it is first asked for; its promise is null if that fails.
- * @param {Engine} engine @param {HTMLElement} shell @param {import('./toasts.js').Toast} toast
+ * @param {Engine} engine @param {{ shell: HTMLElement, stage: HTMLElement }} parts @param {import('./toasts.js').Toast} toast
  */
-function lessonOf(engine, shell, toast) {
+function lessonOf(engine, { shell, stage }, toast) {
   return async (/** @type {(text: string) => void} */ say) => {
     try {
-      const { mountFollow } = await import('./lesson/panel.js');
-      return await mountFollow(shell, engine, say);
+      const [{ mountFollow }, { mountMarks }] = await Promise.all([
+        import('./lesson/panel.js'),
+        import('./view/marks/layer.js'),
+      ]);
+      return await mountFollow(shell, engine, { say, mount: (mark) => void mountMarks(stage, engine, [mark]) });
     } catch {
       const text = 'The panel that follows particles did not load. The picture is not affected.';
       toast({ id: 'follow', kind: 'error', text });

@@ -158,6 +158,51 @@ test('the place is part of the link, and one that is not there leads to the near
   await clean();
 });
 
+test('a child that is pointed at stands out in every view and in the picture', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 0: taken/);
+  await page.keyboard.press('End');
+  // The circle of the last slot, and six children in place.
+  await expect(page.locator('.marks .child-added')).toHaveCount(6);
+  await expect(page.locator('.marks .child-circle')).toHaveCount(1);
+  await panel(page).locator('.slots [data-slot="2"]').hover();
+  await expect(panel(page).locator('.drawing [data-slot="2"].hot').first()).toBeAttached();
+  await expect(panel(page).getByText('Slot 2 from the side')).toBeVisible();
+  await expect(page.locator('.marks .child.now')).toHaveCount(1);
+  await expect(page.locator('.marks text.strong', { hasText: /^2$/ })).toBeVisible();
+  await panel(page).locator('.drawing [data-slot="4"] .slot').hover({ force: true });
+  await expect(panel(page).getByText('Slot 4 from the side')).toBeVisible();
+  await expect(panel(page).locator('.slots .hot')).toHaveAttribute('data-slot', '4');
+  await clean();
+});
+
+test('of an adaptive particle every push and every free angle is an event', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await page.evaluate(() => {
+    const { engine } = /** @type {any} */ (window).marchingParticles;
+    engine.setSetting('chord_error', 0.0004);
+    engine.setSetting('sampling', 'adaptive');
+  });
+  await settled(page);
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 0: taken/);
+  await page.keyboard.press('Shift+ArrowRight');
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 1: taken/);
+  const told = panel(page).locator('.follow-told');
+  for (let k = 0; k < 80 && !/are free/.test((await told.textContent()) ?? ''); k += 1)
+    await page.keyboard.press('ArrowRight');
+  await expect(told).toHaveText(/^Child 1 takes φ = [\d.]+°; τ = [\d.]+° are free\. There is/);
+  await expect(panel(page).locator('.drawing .taken')).toBeVisible();
+  await expect(panel(page).locator('.drawing .free')).toBeVisible();
+  expect(await panel(page).locator('.drawing .step').count()).toBeGreaterThan(2);
+  await expect(panel(page).getByRole('img', { name: /child 1 pushed \d+ times; it takes φ/ })).toBeVisible();
+  await expect(panel(page).locator('.algorithm [aria-current=step]')).toContainText('compare the angle φ');
+  await expect(panel(page).getByText(/^§5 of the paper on this surface/)).toBeVisible();
+  expect((await scan(page)).violations).toEqual([]);
+  await clean();
+});
+
 test('a surface that changes is told, and its particle at the same place is offered', async ({ page }) => {
   const { clean } = await open(page, { width: 1280, height: 800 });
   await followSeed(page);

@@ -1,9 +1,10 @@
 import { beforeAll, describe, expect, test } from 'vitest';
-import { inPlane, lensOf, slotPlace } from '../../src/figures/geometry.js';
-import { momentAt } from '../../src/figures/moment.js';
-import { ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
+import { arcOf, inPlane, lensOf, slotPlace, unrolled, widthOf } from '../../src/figures/geometry.js';
+import { isAdaptive, momentAt } from '../../src/figures/moment.js';
+import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
 import { setLocale } from '../../src/ui/format.js';
 import { nearest, placedBefore, standIn } from '../../src/ui/lesson/find.js';
+import { circleAround, tangentsOf } from '../../src/ui/lesson/mark.js';
 import { alikeIn } from '../../src/ui/lesson/run.js';
 import { heightsOf, stretchesOf } from '../../src/ui/lesson/tracks.js';
 
@@ -195,6 +196,90 @@ describe('the particle that stands for another', () => {
   test('lies at the distance that is told', () => {
     expect(nearest(positions, 3, [2, 3, 4])).toEqual({ particle: 2, distance: 5 });
     expect(nearest(positions, 0, [2, 3, 4])).toBe(null);
+  });
+});
+
+/** An adaptive particle with two children: one is pushed into place and added, for the other there is no room. @type {LessonEvent[]} */
+const sized = [
+  { type: 'taken', particle: 5 },
+  { type: 'gathered', particle: 5, reach: 0.37, neighbours: [{ particle: 2, distance: 0.2 }] },
+  { type: 'frame', particle: 5, normal: [0, 0, 1], u: [1, 0, 0], w: [0, 1, 0], form: null },
+  { type: 'fate', parent: 5, slot: 0, fate: 'parent', particle: 2 },
+  { type: 'arc', parent: 5, before: 2, behind: 2, angles_rad: [0, 0] },
+  { type: 'start', parent: 5, slot: 1, tangent: [0.2, 0.1, 0], position: [0.09, 0.045, 0], radius: 0.12 },
+  { type: 'push', parent: 5, slot: 1, position: [0.18, 0.09, 0], radius: 0.1 },
+  { type: 'push_on_circle', parent: 5, slot: 1, position: [0.1, 0.173, 0], radius: 0.1, overlap: -0.01 },
+  { type: 'room', parent: 5, slot: 1, phi_rad: Math.PI / 3, tau_rad: Math.PI, fits: true },
+  {
+    type: 'iterate',
+    parent: 5,
+    slot: 1,
+    step: 0,
+    theta_rad: 0,
+    position: [0.1, 0.173, 0],
+    value: 1e-7,
+    slope: 2,
+    bracket_rad: null,
+  },
+  { type: 'landed', parent: 5, slot: 1, position: [0.1, 0.173, 0], normal: [0, 0, 1], distance: 0.2 },
+  { type: 'fate', parent: 5, slot: 1, fate: 'added', particle: 9 },
+  { type: 'start', parent: 5, slot: 2, tangent: null, position: [-0.1, 0, 0], radius: 0.1 },
+  { type: 'room', parent: 5, slot: 2, phi_rad: 1, tau_rad: 0.4, fits: false },
+  { type: 'fate', parent: 5, slot: 2, fate: 'matched', particle: null },
+  { type: 'done', particle: 5, evaluations: 300 },
+];
+
+describe('an adaptive particle', () => {
+  const parent = { particle: 5, level: 1, parent: 2, radius: 0.1 };
+  test('has as many slots as it tries, each with its way and its angles', () => {
+    expect(isAdaptive(sized)).toBe(true);
+    expect(isAdaptive(events)).toBe(false);
+    const { children, arc } = momentAt(sized, sized.length - 1);
+    expect(children.map(({ fate }) => fate)).toEqual(['parent', 'added', 'matched']);
+    expect(children[1].pushes.map(({ type }) => type)).toEqual(['start', 'push', 'push_on_circle']);
+    expect(children[1].start?.place).toEqual([0.1, 0.173, 0]);
+    expect(children[2].room?.fits).toBe(false);
+    expect(arc?.before).toBe(2);
+    // Nothing is known before its event.
+    expect(momentAt(sized, 6).children[1].pushes).toHaveLength(2);
+    expect(momentAt(sized, 6).children[1].room).toBe(null);
+  });
+
+  test('is told event by event, with a line of the algorithm for each', () => {
+    for (const [at, event] of sized.entries()) {
+      const words = tell(momentAt(sized, at), parent);
+      expect(words, event.type).toMatch(/^[A-Z\d].*\.$/);
+      expect(lineOf(event, ADAPTIVE), event.type).toBeGreaterThanOrEqual(0);
+    }
+    const say = (/** @type {number} */ at) => tell(momentAt(sized, at), parent);
+    expect(say(8)).toBe('Child 1 takes φ = 60.0°; τ = 180.0° are free. There is room.');
+    expect(say(7)).toContain('It overlaps none any more.');
+    expect(say(13)).toContain('There is no room');
+    expect(say(14)).toBe('Child 2 has no room and is not added.');
+  });
+
+  test('has discs at their true distances, and arcs of their width', () => {
+    const plane = { centre: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], radius: 0.1 };
+    const [x, y] = unrolled(plane, [0.16, 0, 0.12]);
+    expect(x).toBeCloseTo(2);
+    expect(y).toBeCloseTo(0);
+    expect(widthOf([6, 1])).toBeCloseTo(2 * Math.PI - 5);
+    expect(widthOf([2, 2])).toBeCloseTo(2 * Math.PI);
+    const arc = arcOf(Math.PI / 2, Math.PI, 2);
+    expect(arc[0][1]).toBeCloseTo(2);
+    expect(arc.at(-1)?.[1]).toBeCloseTo(-2);
+  });
+});
+
+describe('what is drawn in the picture', () => {
+  test('are circles around a place, in their plane', () => {
+    const normal = [0, 0.6, 0.8];
+    const [a, b] = tangentsOf(normal);
+    for (const place of circleAround([1, 2, 3], a, b, 0.5, 12)) {
+      const way = place.map((v, k) => v - [1, 2, 3][k]);
+      expect(Math.hypot(...way)).toBeCloseTo(0.5);
+      expect(way.reduce((sum, v, k) => sum + v * normal[k], 0)).toBeCloseTo(0);
+    }
   });
 });
 

@@ -8,7 +8,7 @@ import { openParticle, triple } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { nearest, standIn } from './find.js';
-import { alikeIn, coarserThan, MOST_PARTICLES, SETTINGS, seedsOf, surfaceKey, surfaceWords } from './run.js';
+import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey, surfaceWords } from './run.js';
 
 /**
  * @typedef {import('../../engine/types.js').Engine} Engine
@@ -46,6 +46,9 @@ export class Follower {
       const opened = this.opened.value;
       return opened && opened.events.length > 0 ? momentAt(opened.events, this.at.value) : null;
     });
+    /** The slot under the pointer, in a view or in the picture; every view then shows it. @type {import('@preact/signals-core').Signal<number | null>} */
+    this.pointed = signal(null);
+    this.hot = computed(() => this.pointed.value ?? this.slotInPicture());
     /** Whether the picture shows another surface, or one with another radius, than the run. */
     this.stale = computed(() => {
       const run = this.run.value;
@@ -66,6 +69,14 @@ export class Follower {
     this.again = () => {};
   }
 
+  /** The slot whose particle is under the pointer in the picture. */
+  slotInPicture() {
+    const hover = this.engine.hover.value;
+    const { moment, run } = this;
+    if (!hover || !moment.value || !run.value || hover.index >= run.value.alike) return null;
+    return moment.value.children.find(({ particle }) => particle === hover.index)?.slot ?? null;
+  }
+
   /** Number of particles of the run. */
   get count() {
     return this.run.value?.end.radii.length ?? 0;
@@ -80,9 +91,9 @@ export class Follower {
     if (index >= columns.count || columns.stale) return;
     this.wanted = { index, place: triple(columns.placed, index) };
     this.again = (radius) => void this.follow(index, radius);
-    const run = await this.runFor(index, coarser);
+    const run = await this.runFor(coarser);
     if (!run) return;
-    const found = standIn(run.end.positions, this.wanted, run.radius);
+    const found = standIn(run.end.positions, this.wanted, run.adaptive ? 0 : run.radius);
     if (found) await this.open(found.particle, { picture: { index, distance: found.distance } });
     else this.status.value = { kind: 'failed', text: 'The algorithm found no surface here.' };
   }
@@ -98,7 +109,7 @@ export class Follower {
     if (opened && !this.stale.peek() && opened.subject.particle === particle) return this.seek(at);
     if (columns.count === 0 || columns.stale) return;
     this.again = (radius) => void this.goTo(place, radius);
-    const run = await this.runFor(0, coarser);
+    const run = await this.runFor(coarser);
     if (!run) return;
     const last = run.end.radii.length - 1;
     await this.open(Math.min(particle, last), { at });
@@ -121,13 +132,13 @@ export class Follower {
 
   /**
    * Returns the run on the present surface, which is made unless it is there; null if it cannot be had.
-   * @param {number} index  of the particle of the picture whose radius it has @param {number | null} coarser  another radius
+   * @param {number | null} coarser  another radius than that of the picture
    */
-  async runFor(index, coarser) {
+  async runFor(coarser) {
     const { engine } = this;
     const { columns } = engine;
     const pictureRadius = engine.progress.peek().radius;
-    const own = columns.adaptive || !(pictureRadius > 0) ? columns.radii[index] : pictureRadius;
+    const own = columns.adaptive ? 1 : pictureRadius > 0 ? pictureRadius : columns.radii[0];
     const radius = coarser ?? own;
     const run = this.run.peek();
     const surface = surfaceKey(engine);
@@ -160,10 +171,12 @@ export class Follower {
         },
       });
       if (mine !== this.asked) return null;
-      await this.client.start(surface, { ...SETTINGS, radius: about.radius, seeds: seedsOf(engine) });
+      await this.client.start(surface, settingsOf(engine, about));
       const end = await this.client.ask('seek', { event: Infinity });
       if (mine !== this.asked) return null;
-      this.run.value = { ...about, end, alike: alikeIn(engine.columns, end, 0.5 * about.radius) };
+      // Sizes that are graded lead to other particles.
+      const alike = about.adaptive ? 0 : alikeIn(engine.columns, end, 0.5 * about.radius);
+      this.run.value = { ...about, end, alike };
       return this.run.value;
     } catch (error) {
       if (mine === this.asked) this.fail(error, about.radius);
@@ -196,7 +209,8 @@ export class Follower {
     const run = this.run.peek();
     const { client, asked } = this;
     if (!run || !client) return;
-    const opened = await openParticle(client, run, particle);
+    const radius = run.adaptive ? run.end.radii[particle] : run.radius;
+    const opened = await openParticle(client, { end: run.end, radius }, particle);
     if (asked !== this.asked) return;
     const last = Math.max(0, opened.events.length - 1);
     batch(() => {
@@ -237,7 +251,7 @@ export class Follower {
       const expected = Number(/about (\d+)/.exec(words)?.[1] ?? MOST_PARTICLES);
       this.status.value = {
         kind: 'too_many',
-        text: `With the radius ${formatSignificant(radius, 3)} about ${plural(expected, 'particle')} are to be expected. The events of at most ${formatCount(MOST_PARTICLES)} are followed.`,
+        text: `With ${this.engine.columns.adaptive ? 'these sizes' : `the radius ${formatSignificant(radius, 3)}`} about ${plural(expected, 'particle')} are to be expected. The events of at most ${formatCount(MOST_PARTICLES)} are followed.`,
         radius: coarserThan(radius, expected),
       };
     } else if (error?.kind === 'refused') {

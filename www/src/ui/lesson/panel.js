@@ -13,6 +13,7 @@ import { download } from '../share.js';
 import { placedBefore } from './find.js';
 import { Follower } from './follower.js';
 import sheet from './lesson.css?url';
+import { childrenMark } from './mark.js';
 import { createTold } from './told.js';
 import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
@@ -36,10 +37,12 @@ function loadStyles() {
 
 /**
  * @param {HTMLElement} shell @param {Engine} engine
- * @param {(text: string) => void} say  tells what a link names and is not there
+ * @param {object} page
+ * @param {(text: string) => void} page.say  tells what a link names and is not there
+ * @param {(mark: ReturnType<typeof childrenMark>) => void} page.mount  puts a mark on the picture
  * @returns {Promise<import('../track.js').Lesson>}
  */
-export async function mountFollow(shell, engine, say) {
+export async function mountFollow(shell, engine, { say, mount }) {
   await loadStyles();
   const follower = new Follower(engine, say);
   const [particles, events] = [particleTrack(follower), eventTrack(follower)];
@@ -73,6 +76,7 @@ export async function mountFollow(shell, engine, say) {
   });
   keepPlace(follower, engine);
   drawFront(follower, engine);
+  mount(childrenMark(engine, follower));
 
   /** Where the focus and the picture were before. @type {{ focus: HTMLElement | null, level: number | null, step: number | null }} */
   let before = { focus: null, level: null, step: null };
@@ -271,12 +275,18 @@ function createStatus(follower, held) {
       text.textContent = `Running the paper’s algorithm: ${formatCount(status.particles)} particles`;
     else if (status.kind !== 'ready') text.textContent = status.text;
     if (status.kind === 'too_many')
-      fill(action, again(`Follow at a coarser radius, ${formatSignificant(status.radius, 2)}`, status.radius));
+      fill(action, again(coarserWords(status.radius, follower.engine.columns.adaptive), status.radius));
     else if (status.kind === 'failed') fill(action, again('Try again', null));
     else fill(action);
   });
   return element;
 }
+
+/** @param {number} radius  or, with particles of many sizes, the factor on them @param {boolean} adaptive */
+const coarserWords = (radius, adaptive) =>
+  adaptive
+    ? `Follow with sizes ${formatSignificant(radius, 2)} times as large`
+    : `Follow at a coarser radius, ${formatSignificant(radius, 2)}`;
 
 /** @param {Follower} follower @param {Engine} engine */
 function createFoot(follower, engine) {
@@ -285,8 +295,12 @@ function createFoot(follower, engine) {
     const run = follower.run.value;
     if (!run) return '';
     const count = formatCount(run.end.radii.length);
-    const sizes = run.adaptive ? ' The picture sizes its particles by the curvature; here all have this radius.' : '';
-    return `Algorithm 2 of the paper on this surface, child by child and before relaxation: ${count} particles with r = ${formatSignificant(run.radius, 3)}.${sizes} Matched particles stay among the neighbours, as in the picture; the paper removes them.`;
+    if (run.adaptive) {
+      const [least, most] = run.end.radii.reduce(([a, b], r) => [Math.min(a, r), Math.max(b, r)], [Infinity, 0]);
+      const r = `r from ${formatSignificant(least, 3)} to ${formatSignificant(most, 3)}`;
+      return `§5 of the paper on this surface, child by child and before relaxation: ${count} particles, ${r}, by the radius law of the settings. The picture solves for the places that are found here by pushes, and its sizes change gradually, so that its particles lie elsewhere.`;
+    }
+    return `Algorithm 2 of the paper on this surface, child by child and before relaxation: ${count} particles with r = ${formatSignificant(run.radius, 3)}. Matched particles stay among the neighbours, as in the picture; the paper removes them.`;
   });
   /** @param {boolean} turns  whether the camera turns there */
   const mark = (turns) => {
@@ -320,7 +334,7 @@ function save(follower) {
   const { subject, events } = opened;
   const head = [
     `Particle ${subject.particle}, level ${subject.level}`,
-    `Algorithm 2, r = ${run.radius}`,
+    run.adaptive ? `§5, particles of many sizes, r = ${subject.radius}` : `Algorithm 2, r = ${run.radius}`,
     `Surface: ${run.words}`,
   ];
   const text = transcript(

@@ -14,9 +14,9 @@ import { distanceSq } from './find.js';
  * @property {string} surface  see {@link surfaceKey}
  * @property {string} words  the surface in words
  * @property {number} pictureRadius
- * @property {number} own  radius of the particle that was asked for, which the run has unless that would be too many
- * @property {number} radius
- * @property {boolean} adaptive  whether the picture's particles have different radii
+ * @property {number} own  the radius of the picture, which the run has unless that would be too many; 1 with particles of many sizes
+ * @property {number} radius  the radius; with particles of many sizes the factor by which they are larger than those of the law
+ * @property {boolean} adaptive  whether the particles have different radii
  * @property {LessonParticles} end  all its particles
  * @property {number} alike  how many of its first particles are those of the picture
  */
@@ -28,7 +28,7 @@ const COARSER_PARTICLES = 16_000;
 const LEAST_COARSER = 1.25;
 
 /** Settings of a run: Algorithm 2 child by child. Matched particles stay among the neighbours, as in the picture's own front. */
-export const SETTINGS = /** @type {const} */ ({
+const SETTINGS = /** @type {const} */ ({
   placing: 'one_by_one',
   matched: 'stay',
   gaps: 'leave',
@@ -36,11 +36,47 @@ export const SETTINGS = /** @type {const} */ ({
   residual: RESIDUAL,
 });
 
-/** Names the surface of the picture, so that a change can be told. @param {Engine} engine */
-export function surfaceKey({ field }) {
-  const { kind, formula, parameters, bounds, surface, model } = field.value ?? {};
+/** Settings of the picture that decide the sizes of adaptive particles. */
+const SIZES = ['radius_law', 'chord_error', 'curvature_scale', 'radius_min_share', 'radius_max_share'];
+
+/** A setting of the picture. @param {Engine} engine @param {string} name */
+const settingOf = ({ state, description }, name) =>
+  state.value.settings[name] ?? description.value?.settings.find((setting) => setting.name === name)?.default;
+
+/**
+ * Returns what a run is asked for, with the sizes of the picture. Adaptive particles have the law of the picture, as it is: the paper
+ * has nothing that grades it.
+ * @param {Engine} engine @param {Pick<Run, 'radius' | 'adaptive'>} run
+ * @returns {Partial<import('../../engine/types.js').LessonSettings>}
+ */
+export function settingsOf(engine, { radius, adaptive }) {
+  const seeds = seedsOf(engine);
+  if (!adaptive) return { ...SETTINGS, seeds, radius };
+  const bounds = engine.field.peek()?.bounds;
+  const diagonal = bounds ? Math.hypot(...bounds.max.map((v, k) => v - bounds.min[k])) : 1;
+  const number = (/** @type {string} */ name) => Number(settingOf(engine, name));
+  const law = /** @type {'chord_error' | 'max_curvature' | 'sum_of_curvatures'} */ (settingOf(engine, 'radius_law'));
+  // A gap between surface and triangle grows with the square of the radius.
+  const scale =
+    law === 'chord_error' ? number('chord_error') * diagonal * radius ** 2 : number('curvature_scale') * radius;
+  return {
+    ...SETTINGS,
+    seeds,
+    sampling: 'adaptive',
+    law,
+    law_scale: scale,
+    radius_min: number('radius_min_share') * diagonal * radius,
+    radius_max: number('radius_max_share') * diagonal * radius,
+  };
+}
+
+/** Names the surface of the picture, and the sizes on it, so that a change can be told. @param {Engine} engine */
+export function surfaceKey(engine) {
+  const { kind, formula, parameters, bounds, surface, model } = engine.field.value ?? {};
   const values = parameters?.map(({ name, value }) => [name, value]);
-  return JSON.stringify([kind, formula, values, bounds, surface, model]);
+  const isAdaptive = settingOf(engine, 'sampling') === 'adaptive';
+  const sizes = isAdaptive ? SIZES.map((name) => settingOf(engine, name)) : null;
+  return JSON.stringify([kind, formula, values, bounds, surface, model, sizes]);
 }
 
 /** The surface in words, for a transcript. @param {Engine} engine */
@@ -51,7 +87,7 @@ export function surfaceWords({ field }) {
 }
 
 /** The points at which the fronts of the picture began. @param {Engine} engine @returns {Vec3[]} */
-export function seedsOf({ columns }) {
+function seedsOf({ columns }) {
   const seeds = [];
   for (let i = 0; i < columns.count; i += 1)
     if (columns.parents[i] === NO_PARENT) seeds.push(triple(columns.placed, i));

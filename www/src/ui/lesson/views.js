@@ -1,8 +1,10 @@
 /** The linked views of a particle at one event: the two drawings, the slots in words, the numbers, and the algorithm. */
 import { effect } from '@preact/signals-core';
+import { adaptivePlane } from '../../figures/adaptive.js';
 import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
+import { isAdaptive } from '../../figures/moment.js';
 import { fateShape, s } from '../../figures/svg.js';
-import { ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
+import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
 import { fill, h, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
 
@@ -17,29 +19,55 @@ import { formatCount, formatSignificant, MISSING } from '../format.js';
 export function createViews(follower) {
   const parts = [
     view('Tangent plane', tangentView),
-    view('Profile', profileView),
-    view('Numbers', numbersView),
-    view('Algorithm 2', algorithmView),
+    view('Profile', profileView, true),
+    view('Numbers', numbersView, true),
+    view('Algorithm', algorithmView),
   ];
-  effect(() => {
-    const [opened, moment] = [follower.opened.value, follower.moment.value];
-    for (const { element, draw } of parts) {
-      element.hidden = moment === null;
-      if (opened && moment) draw(opened, moment);
-    }
-  });
-  return h(
+  const element = h(
     'div',
     { class: 'follow-views' },
-    parts.map(({ element }) => element),
+    parts.map((part) => part.element),
   );
+  for (const { element: part, draw, isPointed } of parts)
+    effect(() => {
+      const [opened, moment] = [follower.opened.value, follower.moment.value];
+      const hot = isPointed ? follower.hot.value : null;
+      part.hidden = moment === null;
+      if (opened && moment) draw(opened, hot === null ? moment : pointedAt(moment, hot));
+    });
+  linkHover(element, follower);
+  return element;
 }
 
-/** @param {string} title @param {(opened: Opened, moment: Moment) => import('../dom.js').Child[]} contentOf */
-function view(title, contentOf) {
+/** The moment as if it spoke of a slot: what is shown while a child is pointed at. @param {Moment} moment @param {number} slot @returns {Moment} */
+const pointedAt = (moment, slot) => ({ ...moment, slot, isNow: true });
+
+/** Lets a child that is pointed at in one view stand out in all. @param {HTMLElement} element @param {Follower} follower */
+function linkHover(element, { pointed, hot, opened, moment }) {
+  element.addEventListener('pointerover', ({ target }) => {
+    const slot = target instanceof Element ? target.closest('[data-slot]')?.getAttribute('data-slot') : null;
+    pointed.value = slot ? Number(slot) : null;
+  });
+  element.addEventListener('pointerleave', () => {
+    pointed.value = null;
+  });
+  effect(() => {
+    void opened.value;
+    void moment.value;
+    for (const part of element.querySelectorAll('[data-slot]'))
+      part.classList.toggle('hot', part.getAttribute('data-slot') === String(hot.value));
+  });
+}
+
+/**
+ * @param {string} title @param {(opened: Opened, moment: Moment) => import('../dom.js').Child[]} contentOf
+ * @param {boolean} [isPointed]  whether it shows one child, which may be pointed at elsewhere
+ */
+function view(title, contentOf, isPointed = false) {
   const id = uniqueId('view');
   const body = h('div', { class: 'follow-view' });
   return {
+    isPointed,
     element: h(
       'section',
       { class: 'section', 'aria-labelledby': id },
@@ -52,7 +80,7 @@ function view(title, contentOf) {
 
 /** @param {Opened} opened @param {Moment} moment */
 const tangentView = (opened, moment) => [
-  tangentPlane(opened, moment),
+  isAdaptive(opened.events) ? adaptivePlane(opened, moment) : tangentPlane(opened, moment),
   h(
     'ol',
     { class: 'slots', start: 0, 'aria-label': 'Slots' },
@@ -68,7 +96,7 @@ function slotRow({ slot, fate, particle }, moment) {
   const other = particle === null || fate === 'open' ? '' : ` ${formatCount(particle)}`;
   return h(
     'li',
-    { 'aria-current': isNow ? 'step' : null },
+    { 'aria-current': isNow ? 'step' : null, 'data-slot': slot },
     h('span', { class: 'slot-name' }, String(slot)),
     shape,
     h('span', null, fate === 'open' ? MISSING : `${FATES[fate]}${other}`),
@@ -102,11 +130,15 @@ function profileView(opened, moment) {
         h('dt', null, mark('newton'), 'Newton'),
         h('dd', null, newton),
       ),
-      h('p', { class: 'quiet' }, 'Where the two searches land: the distances to the particle. The ideal is 2r.'),
+      h('p', { class: 'quiet' }, ideal(opened, profile)),
       enlarged ? h('div', { class: 'lens-box' }, enlarged, h('p', { class: 'quiet' }, magnification(profile))) : null,
     ),
   ];
 }
+
+/** @param {Opened} opened @param {NonNullable<Opened['profiles'][number]>} profile */
+const ideal = ({ subject, events }, { reach }) =>
+  `Where the two searches land: the distances to the particle. The ideal is ${isAdaptive(events) ? `that at which they touch, ${inRadii(reach, subject.radius)}` : '2r'}.`;
 
 /** @param {'landed' | 'newton'} kind */
 function mark(kind) {
@@ -131,8 +163,10 @@ function numbersView({ subject }, { event, slot, isNow, children, evaluations })
   const child = isNow && slot !== null ? children[slot] : null;
   const last = child?.iterates.at(-1) ?? null;
   const compared = child?.compared ?? null;
+  const pushed = child?.pushes.at(-1) ?? null;
   /** @type {[string, string][]} */
   const rows = [
+    ...numbersOfPush(child, subject.radius, pushed),
     ['f', last ? formatSignificant(last.value, 3) : MISSING],
     ['|∇f|', last ? formatSignificant(last.slope, 3) : MISSING],
     ['θ', last && last.theta_rad !== null ? inDegrees(last.theta_rad, 3) : MISSING],
@@ -149,14 +183,31 @@ function numbersView({ subject }, { event, slot, isNow, children, evaluations })
   ];
 }
 
-/** @param {Opened} _opened @param {Moment} moment */
-function algorithmView(_opened, { event }) {
-  const now = lineOf(event);
+/**
+ * The numbers of an adaptive child on its way.
+ * @param {Child | null} child @param {number} radius  of its parent @param {Child['pushes'][number] | null} pushed
+ * @returns {[string, string][]}
+ */
+function numbersOfPush(child, radius, pushed) {
+  if (!child || !pushed) return [];
+  const { room } = child;
+  return [
+    ['Radius of the child', inRadii(pushed.radius, radius)],
+    ['Pushes', formatCount(child.pushes.length - 1)],
+    ['φ, the angle that it takes', room ? inDegrees(room.phi_rad, 1) : MISSING],
+    ['τ, the free angle', room ? inDegrees(room.tau_rad, 1) : MISSING],
+  ];
+}
+
+/** @param {Opened} opened @param {Moment} moment */
+function algorithmView({ events }, { event }) {
+  const lines = isAdaptive(events) ? ADAPTIVE : ALGORITHM;
+  const now = lineOf(event, lines);
   return [
     h(
       'ol',
       { class: 'algorithm' },
-      ALGORITHM.map(({ depth, text }, k) =>
+      lines.map(({ depth, text }, k) =>
         h('li', { 'data-depth': depth, 'aria-current': k === now ? 'step' : null }, text),
       ),
     ),
