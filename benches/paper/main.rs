@@ -23,6 +23,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{env, fs, thread};
 use steps::Treated;
 
+/// The system counts processor time no finer than this.
+const CLOCK_TICK_S: f64 = 5e-3;
+
 /// Side of a square of the figures, in pixels.
 const SIDE: usize = 420;
 
@@ -100,14 +103,20 @@ fn main() -> io::Result<()> {
 }
 
 fn head(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    // Processor time is longer where other work takes the caches.
+    let load =
+        fs::read_to_string("/proc/loadavg").ok().and_then(|text| Some(text.split(' ').next()?.to_owned()));
+    let load = load.unwrap_or_else(|| "unknown".to_owned());
     writeln!(
         out,
         "\
 # The paper, reproduced
 
 The jobs and figures of *MarchingParticles: Fast Generation of Particles for the Sampling of Implicit Surfaces* (2007), made again
-by this program. `cargo xtask paper` has written this page and drawn its pictures, on {}; times are seconds of processor time of
-one thread.
+by this program. `cargo xtask paper` has written this page and drawn its pictures.
+
+On {}; {} jobs at a time, load average {load} when they began. Times are seconds of processor time of one thread; other work on the
+machine makes them longer. Particles, steps and figures are the same on every machine.
 
 - **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
   same column, and ratios.
@@ -127,6 +136,7 @@ Hole and pair are the radius of the largest hole and the distance of the closest
 or in adaptive sampling of the particles' own radii.
 ",
         plan.machine,
+        plan.threads,
         grouped(MAX_PARTICLES as usize),
         plan.limit_s
     )
@@ -226,7 +236,9 @@ fn write_line(
     row("Steps", [&steps, &steps], &|outcome| grouped(outcome.steps as usize))?;
     let last = |printed: &Printed| format!("{:.2} s", printed.last_step);
     row("Last step", [&last, &last], &|outcome| seconds(outcome.last_step))?;
-    let total = |printed: &Printed| format!("{:.2} s", printed.total);
+    let total = |printed: &Printed| {
+        format!("{}{} s", grouped(printed.total as usize), &format!("{:.2}", printed.total.fract())[1..])
+    };
     row("Total time", [&total, &total], &|outcome| seconds(outcome.total()))?;
     row("Evaluations", [&none, &none], &|outcome| grouped(outcome.evaluations as usize))?;
     row("Six neighbours", [&none, &none], &|outcome| format!("{:.1} %", 100.0 * outcome.figures.six))?;
@@ -240,20 +252,18 @@ fn write_line(
         let figures = &outcome.figures;
         format!("{:.2}", if is_uniform { figures.rho } else { figures.overlap_min })
     })?;
-    let times = |k: usize| match (ours[k], other[k]) {
-        (Some(ours), Some(other)) => {
-            let sign = if other.end == End::CutOff { "> " } else { "" };
-            format!("{sign}{:.1}", other.total() / ours.total())
-        }
-        _ => "–".to_owned(),
-    };
-    writeln!(
+    write!(
         out,
-        "\n{name} takes {:.1} times as long in the paper; {} times as long by the faithful pair, {} times by the fast one.",
-        line.other.total / line.ours.total,
-        times(0),
-        times(1)
-    )
+        "\nThe time of {name} over that of the front: {:.1} in the paper",
+        line.other.total / line.ours.total
+    )?;
+    for (k, pair) in ["faithful", "fast"].into_iter().enumerate() {
+        if let (Some(ours), Some(other)) = (ours[k], other[k]) {
+            let sign = if other.end == End::CutOff { "more than " } else { "" };
+            write!(out, ", {sign}{:.1} by the {pair} pair", other.total() / ours.total())?;
+        }
+    }
+    writeln!(out, ".")
 }
 
 fn notes(out: &mut dyn Write) -> io::Result<()> {
@@ -292,16 +302,16 @@ fn table_2(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             grouped(*count as usize),
             faithful(&|outcome| grouped(outcome.count())),
             grouped(fast.count()),
-            faithful(&|outcome| seconds(outcome.generation)),
-            seconds(fast.generation),
-            faithful(&|outcome| seconds(outcome.relaxation)),
-            seconds(fast.relaxation)
+            faithful(&|outcome| coarse(outcome.generation)),
+            coarse(fast.generation),
+            faithful(&|outcome| coarse(outcome.relaxation)),
+            coarse(fast.relaxation)
         )?;
     }
     writeln!(
         out,
         "\nIn the paper the relaxation takes most of the time and grows faster than the number of particles, for which it names its space \
-         partitioning. Here both grow in proportion."
+         partitioning. Here both grow about in proportion."
     )
 }
 
@@ -519,6 +529,11 @@ fn grouped(number: usize) -> String {
         text.push(digit);
     }
     text
+}
+
+/// A time of which the clock's ticks may be a large part.
+fn coarse(time: f64) -> String {
+    if time < CLOCK_TICK_S { format!("< {:.0} ms", 1e3 * CLOCK_TICK_S) } else { seconds(time) }
 }
 
 /// A time with three digits.

@@ -8,6 +8,9 @@ use std::fmt::Write as _;
 const PANEL: f64 = 150.0;
 const CAPTION: f64 = 34.0;
 
+/// Room to the left and right of all panels.
+const MARGIN: f64 = 8.0;
+
 /// Panels in a row.
 const COLUMNS: usize = 4;
 
@@ -206,9 +209,9 @@ impl Panels<'_> {
     fn end(mut self, title: &str) -> String {
         self.body += "</g>";
         let rows = self.count.div_ceil(COLUMNS);
-        let (width, height) = (COLUMNS as f64 * PANEL, rows as f64 * (PANEL + CAPTION));
+        let (width, height) = (COLUMNS as f64 * PANEL + 2.0 * MARGIN, rows as f64 * (PANEL + CAPTION));
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" role=\"img\"><title>{title}</title>\
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-{MARGIN} 0 {width} {height}\" role=\"img\"><title>{title}</title>\
              <style>{STYLE}</style>{}</svg>\n",
             self.body
         )
