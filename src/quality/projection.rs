@@ -65,3 +65,24 @@ pub(super) fn is_reached(field: &mut dyn Field, sample: Vec3, leash: f32) -> boo
     field.gradients(&[sample], &mut value, &mut gradient);
     value[0].abs() <= LAST_STEP * leash * gradient[0].length()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+
+    #[test]
+    fn a_sample_is_led_onto_a_surface_that_bends_by_more_than_one_step() {
+        let mut field = FormulaField::parse("x^2 + y^2 + z^2 - 1", &[]).expect("a formula");
+        let mut sample = [Vec3::new(0.0, 0.48, 0.64), Vec3::new(-1.3, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0)];
+        project(&mut field, &mut sample, &[0.5; 3], LAST_STEP);
+        // One step ends at 1.025 and at 1.035.
+        for p in &sample[..2] {
+            assert!((p.length() - 1.0).abs() < 1e-3, "{p}");
+            assert!(is_reached(&mut field, *p, 0.5));
+        }
+        // Beyond its leash it stays where it is, and is known not to have come to the surface.
+        assert_eq!(sample[2], Vec3::new(3.0, 0.0, 0.0));
+        assert!(!is_reached(&mut field, sample[2], 0.5));
+    }
+}
