@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use marching_particles::field::gallery;
-use marching_particles::sampler::{Method, Sampler, Sampling, Settings};
+use marching_particles::sampler::{Method, Sampler, Sampling, Settings, SettingsError, SizeMode};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -50,8 +50,11 @@ const MOST: f64 = 60.0;
 const MOST_ADAPTIVE: f64 = 64.0;
 
 /// The same for refined runs. While the particles of the last level are handed on, there are also its mesh, with positions and normals of
-/// its own, the walk that orders them, and the level before.
+/// its own, the walk that orders them, and the level before; where sizes differ, also those that are wanted.
 const MOST_REFINED: f64 = 110.0;
+
+/// How far what a run is expected to take may be off, in either direction.
+const ESTIMATE: f64 = 0.1;
 
 /// Bytes of a particle's columns: position, normal, radius, parent, level, slots.
 const COLUMNS: usize = 12 + 12 + 4 + 4 + 4 + 4;
@@ -69,6 +72,25 @@ fn peak_of(settings: Settings) -> (usize, usize) {
     (sampler.particles().len(), PEAK.load(Ordering::Relaxed) - before)
 }
 
+/// Holds the memory that a run is expected to take to what it does take, `bytes` per particle.
+fn assert_expected(settings: Settings, bytes: f64) {
+    let surface = gallery::find("ellipsoid").expect("the gallery has the ellipsoid");
+    let mut field = surface.field();
+    let settings = Settings { size_mode: SizeMode::Count, count: 40_000, ..settings };
+    for (limit, is_refused) in [(1.0 - ESTIMATE, true), (1.0 + ESTIMATE, false)] {
+        let mut sampler = Sampler::new();
+        sampler.limit_memory((f64::from(settings.count) * bytes * limit) as usize);
+        let refused = matches!(
+            sampler.start(&mut field, &surface.bounds, &settings),
+            Err(SettingsError::Memory { particles: 40_000 })
+        );
+        assert_eq!(
+            refused, is_refused,
+            "with {limit} times the {bytes:.1} bytes that a particle takes: {settings:?}"
+        );
+    }
+}
+
 /// Bytes per particle beyond the output, in the worst of the runs. The memory of the survey, which does not grow with
 /// the number of particles, cancels against that of the `small` run.
 fn beyond(small: Settings, runs: &[Settings]) -> f64 {
@@ -83,15 +105,24 @@ fn beyond(small: Settings, runs: &[Settings]) -> f64 {
 
 // This binary has one test, because the allocations of concurrent tests would be counted too.
 #[test]
-fn run_takes_few_bytes_per_particle_beyond_its_output() {
-    let uniform = |radius_share| Settings { radius_share, ..Settings::default() };
-    let worst = beyond(uniform(0.02), &[0.004, 0.0035, 0.003, 0.0025, 0.0022, 0.0019].map(uniform));
-    assert!(worst <= MOST, "{worst:.1} bytes per particle");
-    let adaptive =
-        |chord_error| Settings { sampling: Sampling::Adaptive, chord_error, ..Settings::default() };
-    let worst = beyond(adaptive(5e-4), &[1.5e-5, 1e-5, 7e-6, 5e-6, 3.5e-6].map(adaptive));
-    assert!(worst <= MOST_ADAPTIVE, "{worst:.1} bytes per adaptive particle");
-    let refined = |radius_share| Settings { method: Method::Refined, ..uniform(radius_share) };
-    let worst = beyond(refined(0.02), &[0.004, 0.0035, 0.003, 0.0025, 0.0022, 0.0019].map(refined));
-    assert!(worst <= MOST_REFINED, "{worst:.1} bytes per refined particle");
+fn run_takes_few_bytes_per_particle_beyond_its_output_and_as_many_as_expected() {
+    const RADII: [f64; 6] = [0.004, 0.0035, 0.003, 0.0025, 0.0022, 0.0019];
+    const CHORD_ERRORS: [f64; 5] = [1.5e-5, 1e-5, 7e-6, 5e-6, 3.5e-6];
+    for (method, most, most_adaptive) in
+        [(Method::Front, MOST, MOST_ADAPTIVE), (Method::Refined, MOST_REFINED, MOST_REFINED)]
+    {
+        let uniform = |radius_share| Settings { method, radius_share, ..Settings::default() };
+        let adaptive = |chord_error| Settings {
+            method,
+            sampling: Sampling::Adaptive,
+            chord_error,
+            ..Settings::default()
+        };
+        let worst = beyond(uniform(0.02), &RADII.map(uniform));
+        assert!(worst <= most, "{worst:.1} bytes per particle, {method:?}");
+        assert_expected(uniform(0.02), worst + COLUMNS as f64);
+        let worst = beyond(adaptive(5e-4), &CHORD_ERRORS.map(adaptive));
+        assert!(worst <= most_adaptive, "{worst:.1} bytes per adaptive particle, {method:?}");
+        assert_expected(adaptive(5e-4), worst + COLUMNS as f64);
+    }
 }

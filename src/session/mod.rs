@@ -23,8 +23,8 @@ use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{self, Figures, Histogram, Places, Sizes};
 use crate::sampler::{
-    BYTES_PER_PARTICLE, FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings,
-    SettingsError, SizeMode, Start, StopReason,
+    FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings, SettingsError, SizeMode,
+    Start, StopReason, bytes_per_particle,
 };
 use crate::slices::{self, Work};
 use fitting::Fitting;
@@ -210,6 +210,8 @@ pub struct Session {
     bounds: Bounds,
     fitting: Fitting,
     sampler: Sampler,
+    /// Runs of more particles are refused.
+    most_particles: usize,
     warnings: Vec<String>,
     last: Option<Progress>,
     /// The particles after the front, until they are measured.
@@ -275,6 +277,7 @@ impl Session {
             bounds: surface.bounds,
             fitting: Fitting::default(),
             sampler: Sampler::new(),
+            most_particles: usize::MAX,
             warnings: Vec::new(),
             last: None,
             front: None,
@@ -485,8 +488,9 @@ impl Session {
 
     /// Refuses, from now on, runs that need more than about `bytes` with the report on them.
     pub fn limit_memory(&mut self, bytes: usize) {
-        self.sampler
-            .limit_memory(bytes / (BYTES_PER_PARTICLE + KEPT_BYTES + REPORT_BYTES) * BYTES_PER_PARTICLE);
+        // A refined run takes more than a front does, but before the report is made it has given most of that back.
+        let with_report = bytes_per_particle(&Settings::DEFAULT) + KEPT_BYTES + REPORT_BYTES;
+        self.most_particles = bytes / with_report;
     }
 
     /// Starts a run on the present field.
@@ -500,6 +504,7 @@ impl Session {
             self.fit(settings, false, u32::MAX);
         }
         self.fitting.is_settled = false;
+        self.sampler.limit_memory(self.most_particles.saturating_mul(bytes_per_particle(settings)));
         let start = if self.is_surveyed {
             self.sampler.start_again(self.source.field(), settings)?
         } else {
