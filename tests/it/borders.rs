@@ -5,6 +5,7 @@ use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Options, Triangulation, triangulate};
+use marching_particles::mesh::topology::Topology;
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
@@ -115,6 +116,42 @@ fn the_border_lies_on_the_box_and_the_topology_is_that_of_the_surface() {
         let cut = particles.slots.iter().filter(|slots| is_cut(slots)).count();
         let on_border = mesh_of(particles, &bounds).topology.borders.iter().map(Vec::len).sum::<usize>();
         assert_eq!(cut, on_border, "{name}: particles with slots outside the box");
+    }
+}
+
+#[test]
+fn acute_corners_hold_no_crowded_pair() {
+    // Eight pieces that meet the edges of the box at 16° and at 30°, and a corner that comes to lie beside a particle.
+    let sphere = "x^2 + y^2 + z^2 = 1";
+    for (formula, bounds, euler) in [
+        (sphere, Bounds::cube(0.7), 8),
+        (sphere, Bounds::cube(0.68), 8),
+        ("z = x^2 - y^2", Bounds::cube(0.9), 1),
+    ] {
+        for count in [4_000, 20_000] {
+            let name = format!("{formula} in {bounds:?}, {count} particles");
+            let sampler = refined(formula, &bounds, count);
+            assert_eq!(sampler.counts().refusal, None, "{name}");
+            let position = &sampler.particles().position;
+            assert!(
+                (position.len() as f64 / f64::from(count) - 1.0).abs() <= 0.02,
+                "{name}: {}",
+                position.len()
+            );
+            let triangles = sampler.triangles();
+            let topology = Topology::new(triangles, position.len());
+            assert!(topology.is_manifold(), "{name}");
+            assert_eq!(topology.euler(), euler, "{name}");
+            let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            let length = |[a, b]: [u32; 2]| position[a as usize].distance(position[b as usize]);
+            let mean = sides().map(length).sum::<f32>() / sides().count() as f32;
+            let shortest = sides().map(length).fold(f32::INFINITY, f32::min);
+            assert!(
+                shortest >= 0.57 * mean,
+                "{name}: the closest pair is at {} of the mean",
+                shortest / mean
+            );
+        }
     }
 }
 

@@ -96,7 +96,7 @@ struct Refinement {
     layer: Layer,
     block: Block,
     surgeon: Surgeon,
-    /// Particles near defects, in ascending order.
+    /// Particles near defects, in ascending order; half-edges of crowded particles, while these are thinned out.
     near: Vec<u32>,
     /// Levels still to come.
     to_come: u32,
@@ -307,6 +307,10 @@ impl Refinement {
         };
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
+            Pass::Thin => {
+                self.near.clear();
+                mesh.half_edge_slots()
+            }
             Pass::Measure | Pass::Inspect => {
                 self.tally = Tally::default();
                 mesh.half_edge_slots() / 3
@@ -335,7 +339,7 @@ impl Refinement {
         let mut ground = Ground { field, block: &mut self.block };
         let kind = self.recipe.passes[pass];
         let per_unit = match kind {
-            Pass::Flip => HALF_EDGES_PER_UNIT,
+            Pass::Flip | Pass::Thin => HALF_EDGES_PER_UNIT,
             Pass::Measure | Pass::Inspect => FACES_PER_UNIT,
             _ => 1,
         };
@@ -376,6 +380,7 @@ impl Refinement {
                 let near = self.near[next as usize..last as usize].iter().copied();
                 layer.centre(&mut ground, springs, near);
             }
+            Pass::Thin => self.near.extend((next..last).filter(|&h| layer.is_crowded(h, self.spacing))),
             Pass::Land => {
                 layer.land(&mut ground, self.spacing, next..last);
             }
@@ -399,6 +404,10 @@ impl Refinement {
             Pass::Measure => self.measure(),
             Pass::Find => {
                 self.surgeon.widen(&self.layer.mesh, &mut self.near);
+                Ok(())
+            }
+            Pass::Thin => {
+                self.layer.thin(&mut self.near, self.spacing);
                 Ok(())
             }
             Pass::Inspect => {

@@ -21,6 +21,8 @@ pub(super) enum Pass {
     Find,
     /// A step of Lloyd's method for those.
     Centre,
+    /// Finds the pairs of particles that crowd at the border, and takes one of each out.
+    Thin,
     /// One step of Newton's method for everyone, so that positions and normals are those of the surface.
     Land,
     /// Looks at the finished faces.
@@ -121,6 +123,9 @@ impl Recipe {
             (true, false) => recipe.graded(plan),
         }
         recipe.passes.extend([Pass::Find].into_iter().chain([Pass::Centre].repeat(plan.centre)));
+        if has_border && to_come == 0 {
+            recipe.passes.extend([Pass::Thin, Pass::Flip]);
+        }
         recipe.passes.push(Pass::Land);
         if is_graded && to_come == 0 {
             recipe.passes.push(Pass::Size(WHOLE));

@@ -200,7 +200,7 @@ fn tidy(layer: &mut Layer, spacing: f32) {
 }
 
 /// Collapses an edge, where that is allowed and makes no flat triangle; whether it did.
-fn collapse(layer: &mut Layer, h: u32, spacing: f32) -> bool {
+pub(super) fn collapse(layer: &mut Layer, h: u32, spacing: f32) -> bool {
     if !layer.can_merge(h) {
         return false;
     }

@@ -8,6 +8,7 @@ mod cover;
 mod mend;
 #[cfg(test)]
 mod tests;
+mod thin;
 
 pub(super) use clip::clip;
 pub(crate) use clip::grown;

@@ -141,5 +141,19 @@ proptest! {
         check(&layer, &bounds);
         prop_assert_eq!(layer.mesh.euler(), 1);
         prop_assert_eq!(corners(&layer), 4);
+
+        // As if the particles were to be farther apart: most edges of the border are crowded.
+        let far = 1.8 * SPACING;
+        let crowded = |layer: &Layer| -> Vec<u32> {
+            (0..layer.mesh.half_edge_slots() as u32).filter(|&h| layer.is_crowded(h, far)).collect()
+        };
+        let mut found = crowded(&layer);
+        let before = found.len();
+        prop_assert!(before > 0);
+        layer.thin(&mut found, far);
+        check(&layer, &bounds);
+        prop_assert_eq!(layer.mesh.euler(), 1);
+        prop_assert_eq!(corners(&layer), 4);
+        prop_assert!(crowded(&layer).len() < before);
     }
 }

@@ -1,0 +1,54 @@
+//! Acute corners: where two faces of the box cut the surface at a small angle, the particles along both curves come near each other.
+
+use super::super::layer::Layer;
+
+/// Two particles of which one lies on the border are crowded if they are nearer than this share of the spacing. Without one of the two an
+/// edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be.
+const CROWDED: f32 = 0.6;
+
+impl Layer {
+    /// Whether the edge of `h`, each edge for one of its half-edges, joins two crowded particles.
+    pub(in super::super) fn is_crowded(&self, h: u32, spacing: f32) -> bool {
+        // The twin of none is the largest number.
+        if !self.mesh.has_half_edge(h) || self.mesh.twin(h) < h {
+            return false;
+        }
+        let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
+        (self.mesh.is_border(a) || self.mesh.is_border(b))
+            && self.length(h) < CROWDED * spacing * self.size_between(a, b)
+    }
+
+    /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the one
+    /// that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn. None moves.
+    pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) {
+        half_edges.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)).then(g.cmp(&h)));
+        for &h in &*half_edges {
+            if !self.is_crowded(h, spacing) {
+                continue;
+            }
+            let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
+            let first = if self.room(a, b) <= self.room(b, a) { [a, b] } else { [b, a] };
+            let _ = first.into_iter().any(|v| self.take_out(v, spacing));
+        }
+    }
+
+    /// Distance of a particle on the border from the nearest of its neighbours but `other`, and 0 for one inside.
+    fn room(&self, v: u32, other: u32) -> f32 {
+        if !self.mesh.is_border(v) {
+            return 0.0;
+        }
+        let p = self.position[v as usize];
+        let others = self.mesh.neighbours(v).filter(|&w| w != other);
+        others.map(|w| self.position[w as usize].distance(p)).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Merges a particle into the nearest of its neighbours for which that is allowed; whether it did.
+    fn take_out(&mut self, v: u32, spacing: f32) -> bool {
+        if self.frame.planes(v).is_corner() {
+            return false;
+        }
+        let mut ways: Vec<u32> = self.mesh.around(v).collect();
+        ways.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)).then(g.cmp(&h)));
+        ways.into_iter().any(|h| super::clip::collapse(self, h, spacing))
+    }
+}
