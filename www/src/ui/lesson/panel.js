@@ -10,6 +10,7 @@ import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { icon } from '../icons.js';
 import { download } from '../share.js';
+import { loadSheet } from '../sheet.js';
 import { placedBefore } from './find.js';
 import { Follower } from './follower.js';
 import sheet from './lesson.css?url';
@@ -23,18 +24,6 @@ import { createViews } from './views.js';
 /** Distance in radii up to which two particles are at one place, but for rounding. */
 const SAME_PLACE = 0.005;
 
-/** Loads the styles of the panel. @returns {Promise<void>} */
-function loadStyles() {
-  return new Promise((resolve, reject) => {
-    const failed = () => {
-      link.remove();
-      reject(new Error('the styles of the panel did not load'));
-    };
-    const link = h('link', { rel: 'stylesheet', href: sheet, on: { load: () => resolve(), error: failed } });
-    document.head.append(link);
-  });
-}
-
 /**
  * @param {HTMLElement} shell @param {Engine} engine
  * @param {object} page
@@ -43,7 +32,7 @@ function loadStyles() {
  * @returns {Promise<import('../track.js').Lesson>}
  */
 export async function mountFollow(shell, engine, { say, mount }) {
-  await loadStyles();
+  await loadSheet(sheet);
   const follower = new Follower(engine, say);
   const [particles, events] = [particleTrack(follower), eventTrack(follower)];
   const id = uniqueId('follow');

@@ -3,6 +3,8 @@ import { computed, effect } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatSignificant, MISSING, plural } from '../format.js';
 import { clamp } from '../scale.js';
+import { loadSheet } from '../sheet.js';
+import sheet from './charts.css?url';
 import { fatesOf, movesOf } from './figures.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
@@ -21,7 +23,8 @@ import { fatesOf, movesOf } from './figures.js';
  */
 
 /** @param {Engine} engine @param {Player} player */
-export function createCharts(engine, player) {
+export async function createCharts(engine, player) {
+  await loadSheet(sheet);
   const { levels } = player;
   const { table, kept, level, newest, relaxed, whole } = levels;
   const moves = computed(() => {
@@ -70,7 +73,7 @@ function freshChart({ fresh, last }, at) {
   const counts = [...fresh];
   const most = Math.max(...counts);
   return {
-    title: 'New particles per level',
+    title: 'New per level',
     kind: 'bars',
     rows: [{ fate: 'new', name: 'new', counts }],
     first: 0,
@@ -89,7 +92,7 @@ function fateChart(table, at) {
     return `${formatCount(count)} ${name}`;
   });
   return {
-    title: 'Fates of the children per level',
+    title: 'Fates per level',
     kind: 'bars',
     rows,
     first: 0,
@@ -105,7 +108,7 @@ function energyChart(energy, at) {
   const [from, to] = [energy[0], energy.at(-1)];
   const of = energy.length > 1 ? `from ${formatSignificant(from, 3)} to ${formatSignificant(to, 3)}` : '';
   return {
-    title: 'Energy per particle',
+    title: 'Energy per step',
     kind: 'line',
     rows: [{ fate: 'energy', name: 'energy', counts: [...energy] }],
     first: 0,

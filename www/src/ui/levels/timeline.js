@@ -61,7 +61,7 @@ export function createTimeline(body, engine, { told, lesson, say }) {
     speedOf(player),
     chartsOf(body, engine, player, say),
   );
-  explainParts(grains.element, track);
+  explainParts(grains.element, track, player);
   takeKeys(player, { body, range });
   restore(engine, player, { levels, say });
   effect(() => {
@@ -237,7 +237,7 @@ function chartsOf(body, engine, player, say) {
   let charts = null;
   const toggle = async () => {
     try {
-      charts ??= (await import('./charts.js')).createCharts(engine, player);
+      charts ??= await (await import('./charts.js')).createCharts(engine, player);
     } catch {
       return say('The charts did not load. The timeline is not affected.');
     }
@@ -261,19 +261,27 @@ function chartsOf(body, engine, player, say) {
   return button;
 }
 
-/** @param {HTMLElement} grains @param {HTMLElement} track */
-function explainParts(grains, track) {
+/** @param {HTMLElement} grains @param {HTMLElement} track @param {Player} player */
+function explainParts(grains, track, player) {
   const about = {
     level: {
       title: 'Generation levels',
       text: 'New particles per level, then the relaxation. Press or drag to see the front as far as that level.',
+    },
+    particle: {
+      title: 'Particles',
+      text: 'In the order in which they are treated; a bar per level. Press or drag to see one with its children.',
+    },
+    event: {
+      title: 'Events of the particle',
+      text: 'From its turn to its end; high bars are the fates of its children. After the last one comes the next particle.',
     },
     grains: {
       title: 'What a step is',
       text: 'A whole generation level; one particle with its children; or one event of it. Arrow keys step by events, with Shift by particles, with Alt by levels.',
     },
   };
-  explain(track, () => about.level, { side: 'above', focus: false });
+  explain(track, () => about[player.grain.peek()], { side: 'above', focus: false });
   explain(grains, () => about.grains, { side: 'above' });
 }
 
