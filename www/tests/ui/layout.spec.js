@@ -296,7 +296,7 @@ test('the page says in one line what it is', async ({ page }) => {
 test('in a large window everything grows with it, in a usual one it has the size that the user has set', async ({
   page,
 }) => {
-  const { clean } = await open(page, { width: 1440, height: 900 });
+  const { clean } = await open(page, { width: 1600, height: 900 });
   const sizes = () =>
     page.evaluate(() => {
       const [field, levels, bar] = ['#panel-field', '#panel-levels', '#panel-sampling'].map((part) =>
