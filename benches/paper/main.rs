@@ -346,7 +346,7 @@ fn all_of(set: &Set, up: Vec3, back: Vec3, colour: Colour) -> Vec<u8> {
     draw(set, &View::of(set, back, up), colour, SIDE)
 }
 
-/// A bunny, from where its ears and the gap between them can be seen.
+/// A bunny, from its side.
 fn bunny(set: &Set, colour: Colour) -> Vec<u8> {
     all_of(set, Vec3::Z, BUNNY_EYE, colour)
 }

@@ -75,7 +75,7 @@ pub(crate) fn machine(project: &Project) -> String {
         .unwrap_or_else(|| std::env::consts::ARCH.to_owned());
     let cores = std::thread::available_parallelism().map_or(0, std::num::NonZero::get);
     let compiler = answer(&rustc().to_string_lossy(), &["--version"]).unwrap_or_default();
-    let commit =
-        answer("git", &["describe", "--always", "--dirty"]).unwrap_or_else(|| "no commit".to_owned());
+    let commit = answer("git", &["describe", "--always", "--dirty"])
+        .map_or_else(|| "no commit".to_owned(), |name| format!("commit {name}"));
     format!("{processor}, {cores} cores; {compiler}; {commit}")
 }
