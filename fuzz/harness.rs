@@ -201,8 +201,9 @@ pub fn file(bytes: &[u8]) {
 /// evaluations with finite particles, and what is proven is whole. The particles do not depend on the size of the steps.
 pub fn request(bytes: &[u8]) {
     let Ok(mut given) = serde_json::from_slice::<serde_json::Value>(bytes) else { return };
-    let Ok(field) = serde_json::from_value::<FieldRequest>(given["field"].take()) else { return };
-    let Ok(settings) = serde_json::from_value::<Settings>(given["settings"].take()) else { return };
+    let mut take = |name: &str| given.get_mut(name).map(serde_json::Value::take).unwrap_or_default();
+    let Ok(field) = serde_json::from_value::<FieldRequest>(take("field")) else { return };
+    let Ok(settings) = serde_json::from_value::<Settings>(take("settings")) else { return };
     // Small runs, so that there are many.
     let settings = Settings {
         max_particles: settings.max_particles.min(2_000),
