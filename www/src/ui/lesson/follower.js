@@ -218,6 +218,7 @@ export class Follower {
       this.at.value = at === 'last' ? last : Math.min(at, last);
       this.status.value = { kind: 'ready' };
     });
+    this.engine.turnTo(opened.normal);
   }
 
   next() {
