@@ -6,6 +6,11 @@
 import { effect } from '@preact/signals-core';
 import { changeView } from './store.js';
 
+/**
+ * Largest number of particles at which the surface to come is drawn. They are joined to a mesh for it, which takes about 0.1 s.
+ */
+const MOST_TO_COME = 200_000;
+
 export class Look {
   /**
    * @param {object} parts
@@ -45,6 +50,7 @@ export class Look {
     const box = bounds ?? store.field.value?.bounds ?? null;
     // Where there is no surface, its box is shown, unless there is no surface anywhere.
     const isMissed = store.empty.value && store.field.value?.reach !== 'nowhere';
+    const isGhostly = view.ghost || this.isToCome();
     viewer.set({
       colour: view.colour,
       size: view.size,
@@ -52,7 +58,7 @@ export class Look {
       faces: view.faces,
       edges: view.edges,
       marks: view.marks,
-      ghost: view.ghost,
+      ghost: isGhostly,
       theme,
       box: view.box || isMissed ? box : null,
       axes: view.axes,
@@ -65,7 +71,16 @@ export class Look {
     sampling.showCurvature(view.colour === 'curvature');
     // Without a graphics device there are discs.
     const { value: backend } = store.backend;
-    sampling.showMesh((view.draw === 'mesh' || view.ghost) && (backend === 'webgpu' || backend === 'webgl2'));
+    sampling.showMesh((view.draw === 'mesh' || isGhostly) && (backend === 'webgpu' || backend === 'webgl2'));
+  }
+
+  /**
+   * Returns whether the surface is still to come, because only a part of the run is shown. Then it is drawn faintly. The mesh over
+   * all particles stands for it: it is exact where the particles will be, and there is no second way of drawing.
+   */
+  isToCome() {
+    const { level, follow } = this.store.state.value.view;
+    return (level !== null || follow !== null) && this.viewer.columns.count <= MOST_TO_COME;
   }
 
   /** Returns the points of the model on the page, or null if they are not drawn. */

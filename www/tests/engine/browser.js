@@ -43,7 +43,8 @@ export const counts = (page) => page.evaluate(() => /** @type {any} */ (window).
 export const atRest = (page) => page.evaluate(() => /** @type {any} */ (window).marchingParticles.debug.still());
 
 /**
- * What is in the picture: the share of pixels that differ from its corner, and how many of 12 hues there are.
+ * What is in the picture: the share of pixels that differ from its corner and of those that have a colour, and how many of 12 hues
+ * there are.
  * @param {Page} page
  * @param {number} [width] @param {number} [height]
  */
@@ -54,6 +55,7 @@ export function picture(page, width = 160, height = 120) {
       const corner = [pixels[0], pixels[1], pixels[2]];
       const hues = new Array(12).fill(0);
       let drawn = 0;
+      let coloured = 0;
       for (let i = 0; i < pixels.length; i += 4) {
         const [r, g, b] = [pixels[i], pixels[i + 1], pixels[i + 2]];
         if (Math.abs(r - corner[0]) + Math.abs(g - corner[1]) + Math.abs(b - corner[2]) < 24) continue;
@@ -61,6 +63,7 @@ export function picture(page, width = 160, height = 120) {
         const most = Math.max(r, g, b);
         const chroma = most - Math.min(r, g, b);
         if (chroma < 20) continue;
+        coloured += 1;
         const hue = most === r ? (g - b) / chroma + 6 : most === g ? (b - r) / chroma + 2 : (r - g) / chroma + 4;
         hues[Math.floor(hue * 2) % 12] += 1;
       }
@@ -69,6 +72,7 @@ export function picture(page, width = 160, height = 120) {
         width: pw,
         height: ph,
         drawn: drawn / (pw * ph),
+        coloured: coloured / (pw * ph),
         hues: hues.filter((n) => n > 4).length,
         corner,
         middle: [...pixels.subarray(middle, middle + 4)],
