@@ -61,7 +61,7 @@ export function mountInterface(engine) {
       motion,
       print,
       timeline: () => timeline,
-      hide: layout.toggleHidden,
+      hide: layout.hideMore,
       open: () => shortcuts.open(),
     }),
   );
@@ -100,7 +100,7 @@ export function mountInterface(engine) {
     const legend = createLegend(engine, description);
     view.prepend(
       legend,
-      createToolbar(engine, { hide: layout.toggleHidden, shortcuts: shortcuts.open, picture, motion, toast }),
+      createToolbar(engine, { hide: layout.hideMore, shortcuts: shortcuts.open, picture, motion, toast }),
     );
     layout.follow(legend);
     shell.dataset.ready = '';
@@ -270,7 +270,7 @@ const shortcutsOf = (engine, { history, motion, print, timeline, hide, open }) =
     label: 'Light or dark',
     act: () => engine.setView({ theme: engine.theme.peek() === 'dark' ? 'light' : 'dark' }),
   },
-  { keys: ['h', 'H'], shown: 'H', label: 'Hide or show the panels', act: hide },
+  { keys: ['h', 'H'], shown: 'H', label: 'Hide the panels; then the timeline, too; then show all', act: hide },
   { keys: ['?'], shown: '?', label: 'This sheet', act: open },
 ];
 

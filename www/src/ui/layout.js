@@ -10,6 +10,7 @@ const NARROW = '(max-width: 67.45em)';
 /** Width of a phone in portrait orientation, with panels and tabs below the picture. */
 const COMPACT = '(max-width: 44.95em)';
 
+/** What is hidden: `panels` leaves the picture with caption and timeline, to be presented. @typedef {'nothing' | 'panels' | 'all'} Hidden */
 /** A panel with a `head` can be folded. @typedef {{ id: string, title: string, panel: HTMLElement, head?: HTMLElement }} Panel */
 
 /**
@@ -55,15 +56,17 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
 
   const unhide = h(
     'button',
-    { type: 'button', class: 'button unhide', on: { click: () => hide(false) } },
+    { type: 'button', class: 'button unhide', on: { click: () => hide('nothing') } },
     'Show the panels',
   );
   view.append(unhide);
-  /** @param {boolean} hidden */
+  /** @param {Hidden} hidden */
   function hide(hidden) {
-    shell.toggleAttribute('data-hidden', hidden);
-    if (hidden && document.activeElement instanceof HTMLElement && document.activeElement.offsetParent === null)
-      unhide.focus();
+    if (hidden === 'nothing') delete shell.dataset.hidden;
+    else shell.dataset.hidden = hidden;
+    const { activeElement: active } = document;
+    // The focus does not stay on what is hidden.
+    if (active instanceof HTMLElement && active !== document.body && active.offsetParent === null) unhide.focus();
   }
 
   const compact = matchMedia(COMPACT);
@@ -88,7 +91,8 @@ export function mountLayout({ shell, view, nav, panels, covered, inset }) {
     /** Updates the free area whenever a part of the view changes its size. @param {HTMLElement} part */
     follow: (part) => sizes.observe(part),
     measure,
-    toggleHidden: () => hide(!shell.hasAttribute('data-hidden')),
+    /** Hides the panels; then caption and timeline, too; then nothing. */
+    hideMore: () => hide(shell.dataset.hidden === 'all' ? 'nothing' : shell.dataset.hidden ? 'all' : 'panels'),
   };
 }
 

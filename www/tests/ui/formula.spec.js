@@ -177,7 +177,7 @@ test('a function typed letter by letter makes no sliders of its beginnings, and 
 test('a parameter named like the beginning of a function gets its slider after a pause', async ({ page }) => {
   await open(page);
   await typeFormula(page, 'x^2 + y^2 + z^2 = s');
-  await expect(page.getByRole('slider', { name: /s$/ })).toBeVisible();
+  await expect(page.locator('.row[data-parameter="s"]').getByRole('slider')).toBeVisible();
 });
 
 test('on a phone a mistake is read and mended without scrolling for it', async ({ page }) => {

@@ -223,6 +223,7 @@ test('keys alone reach the formula, a slider, the run and the panels', async ({ 
   await page.keyboard.press('h');
   await expect(page.locator('#panel-field')).toBeHidden();
   await page.keyboard.press('h');
+  await page.keyboard.press('h');
   await expect(page.locator('#panel-field')).toBeVisible();
   await page.keyboard.press('?');
   await expect(page.getByRole('dialog', { name: 'Keyboard and hand' })).toBeVisible();

@@ -177,7 +177,7 @@ test('a parameter is played, in one step of the history, and stops where it is',
   await page.getByRole('button', { name: 'Play a' }).click();
   const course = page.getByRole('radiogroup', { name: 'Course' });
   await course.getByRole('radio', { name: 'Loop' }).check();
-  await page.getByRole('combobox', { name: 'Speed' }).selectOption('4\u202f×');
+  await page.getByRole('combobox', { name: 'Speed', exact: true }).selectOption('4\u202f×');
   await expect.poll(value).not.toBe(undefined);
   const first = await value();
   await expect.poll(value).not.toBe(first);

@@ -91,7 +91,12 @@ test('panels fold, and hide all together', async ({ page }) => {
   await expect(page.locator('#report-body')).toBeVisible();
   await page.getByRole('button', { name: 'View options' }).click();
   await page.getByRole('button', { name: 'Hide the panels' }).click();
+  await expect(page.locator('.panel:visible')).toHaveCount(1);
+  await expect(page.getByRole('slider', { name: 'Timeline' })).toBeVisible();
+  await expect(page.locator('.caption')).toBeVisible();
+  await page.keyboard.press('h');
   await expect(page.locator('.panel:visible')).toHaveCount(0);
+  await expect(page.locator('.caption')).toBeHidden();
   await page.getByRole('button', { name: 'Show the panels' }).click();
   await expect(page.locator('.panel:visible')).toHaveCount(4);
 });

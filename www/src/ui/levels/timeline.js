@@ -219,7 +219,7 @@ function captionOf({ track }) {
 function speedOf(player) {
   const select = h(
     'select',
-    { class: 'select speed', 'aria-label': 'Speed' },
+    { class: 'select speed', 'aria-label': 'Speed of the timeline' },
     SPEEDS.map((value) => h('option', { value, selected: value === 1 }, `${value}\u202f×`)),
   );
   select.addEventListener('change', () => {
