@@ -231,5 +231,24 @@ fn page(project: &Project) -> Result<()> {
 fn browser(project: &Project, chromium: &str) -> Result<()> {
     site::build(project)?;
     site::report_sizes(project)?;
-    node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", chromium)]).map(drop)
+    let told = node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", chromium)])?;
+    for line in flaky(&told) {
+        println!("{line}");
+    }
+    Ok(())
+}
+
+/// The part of Playwright's summary that names the tests which passed only when they were repeated.
+fn flaky(told: &str) -> impl Iterator<Item = &str> {
+    told.lines().skip_while(|line| !line.ends_with(" flaky")).take_while(|line| !line.contains(" passed ("))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn only_repeated_tests_are_told_of() {
+        let told = "  \u{2713} 1 a test\n\n  1 flaky\n    [webgl2] another test\n  2 passed (1.0m)\n";
+        assert_eq!(super::flaky(told).collect::<Vec<_>>(), ["  1 flaky", "    [webgl2] another test"]);
+        assert_eq!(super::flaky("  3 passed (1.0m)\n").count(), 0);
+    }
 }
