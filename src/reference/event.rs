@@ -292,7 +292,7 @@ pub enum Event {
     Died {
         /// The particle.
         particle: u32,
-        /// What it felt.
+        /// Energy of the particle.
         energy: f64,
     },
     /// An iteration is over.

@@ -6,7 +6,7 @@ use glam::DVec3;
 /// A particle moves by no more than this in an iteration, in radii.
 pub(super) const MAX_MOVE: f64 = 0.35;
 
-/// What the neighbours of a particle make it feel.
+/// Sums of force and energy over the neighbours of a particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Felt {
     /// Sum of the repulsion.

@@ -79,7 +79,7 @@ use walk::{Place, Setup, Walk};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonChapter"))]
 pub struct Chapter {
-    /// What it is.
+    /// Kind of the chapter.
     #[serde(flatten)]
     pub kind: ChapterKind,
     /// Number of its first event in the run.
@@ -138,7 +138,7 @@ pub struct Life {
     pub done: Option<u32>,
 }
 
-/// What is looked at.
+/// The moment of the run that is shown.
 #[derive(Default)]
 struct View {
     /// The chapter whose events are at hand.

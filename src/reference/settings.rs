@@ -66,7 +66,7 @@ pub enum Order {
     Stack,
 }
 
-/// What becomes of a particle with which a child was identified (§4.4).
+/// Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonMatched"))]
 #[serde(rename_all = "snake_case")]

@@ -196,7 +196,7 @@ pub(super) struct Walk {
     pub(super) children: VecDeque<Child>,
     /// Forces of the relaxation step.
     pub(super) forces: Vec<DVec3>,
-    /// What the particles feel in an iteration of a particle system.
+    /// Force and energy of each particle in an iteration of a particle system.
     pub(super) felt: Vec<Felt>,
     /// Particles that die at the end of the iteration, by index.
     pub(super) dying: Vec<u32>,

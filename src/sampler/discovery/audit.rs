@@ -60,7 +60,7 @@ pub(crate) struct Audited<'a> {
     pub(crate) radius: f64,
     /// How sheets are told apart.
     pub(crate) rule: SheetRule,
-    /// What was searched, and the margin in it.
+    /// Corners of the region that was searched, and the width by which it is larger than the clip box.
     pub(crate) within: ([DVec3; 2], f64),
 }
 

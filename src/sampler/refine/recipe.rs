@@ -75,8 +75,8 @@ const LAST: Plan = Plan { sweeps: 4, rounds: 0, calm: 0, centre: 4, theta: 0.95,
 const FEW_LEVELS: u32 = 2;
 const FIRST_OF_FEW: Plan = Plan { delta: 0.03, ..FIRST };
 const LAST_OF_FEW: Plan = Plan { sweeps: 6, centre: 2, ..LAST };
-/// The same where it is refined once: stiffer springs do more for the angles than they cost the closest pairs. On the decocube with 20,000
-/// particles the mean smallest angle is 55.8° instead of 55.3° and no triangle is above 90° instead of ten, with the closest pair at
+/// The last level of a front that is refined once: stiffer springs do more for the angles than they cost the closest pairs. On the
+/// decocube with 20,000 particles the mean smallest angle is 55.8° instead of 55.3° and no triangle is above 90° instead of ten, with the closest pair at
 /// 0.777 instead of 0.786.
 const LAST_OF_ONE: Plan = Plan { theta: 0.7, ..LAST_OF_FEW };
 /// The last two levels of a surface with a border. Those that repeat in space are saddles throughout, with three times the defects

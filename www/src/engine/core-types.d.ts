@@ -534,7 +534,7 @@ data: [LessonParticle, LessonParticle],
 energy: number, } | { "type": "died",
 /** The particle. */
 particle: number,
-/** What it felt. */
+/** Energy of the particle. */
 energy: number, } | { "type": "iteration_ends",
 /** Number of the iteration, from 1. */
 iteration: number,
@@ -575,7 +575,7 @@ export type LessonLife = {
   done: number | null,
 };
 
-/** What becomes of a particle with which a child was identified (§4.4). */
+/** Whether a particle with which a child was identified stays among the neighbours of the parent (§4.4). */
 export type LessonMatched = "leave" | "stay";
 
 /** Which method covers the surface. */
