@@ -86,6 +86,7 @@ fn types_of_the_page_are_those_of_the_core() {
     declarations.add::<reference::Event>();
     declarations.add::<reference::Life>();
     declarations.add::<reference::Iterate>();
+    declarations.add::<reference::Push>();
     let text: String = std::iter::once(HEAD.to_owned()).chain(declarations.found.into_values()).collect();
 
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("www/src/engine/core-types.d.ts");

@@ -56,6 +56,7 @@ mod walk;
 mod witkin_heckbert;
 
 pub use event::{Event, Nearby, Vector};
+pub use relaxation::Push;
 pub use section::Iterate;
 pub use settings::{
     LessonField, MAX_PARTICLES, Matched, Method, Order, Placing, Projection, ReferenceError, Seeding,
@@ -325,6 +326,17 @@ impl Reference {
     #[must_use]
     pub fn particles(&self) -> &[Particle] {
         &self.view.particles
+    }
+
+    /// What the particles around push a particle with, at the moment that was sought; nothing if there is no such particle. The part of
+    /// their sum in the tangent plane is the force of [`Event::Moved`].
+    #[must_use]
+    pub fn pushes(&self, particle: u32) -> Vec<Push> {
+        if particle as usize >= self.view.particles.len() {
+            return Vec::new();
+        }
+        let walk = Walk::at(&self.setup, Place::new(0), self.view.particles.clone());
+        walk.pushes(&self.setup, particle).collect()
     }
 
     /// The box that is sampled.

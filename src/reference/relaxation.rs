@@ -2,11 +2,25 @@
 //! radii; in non-uniform sampling (§5.4) forces between discs that overlap.
 
 use super::buckets::Buckets;
-use super::event::Event;
+use super::event::{Event, Nearby, Vector};
 use super::surface::{Landing, Surface};
 use super::walk::{Setup, Walk};
 use crate::sampler::Sampling;
 use glam::DVec3;
+use serde::Serialize;
+
+/// What one particle pushes another with.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPush"))]
+pub struct Push {
+    /// The particle that pushes.
+    #[serde(flatten)]
+    pub near: Nearby,
+    /// Its repulsion, along the offset between the two.
+    pub force: Vector,
+    /// Energy of the pair.
+    pub energy: f64,
+}
 
 /// Particles of one size repel each other up to this distance, in σ.
 const RANGE: f64 = 3.0;
@@ -69,31 +83,39 @@ impl Walk {
     ///
     /// Pairs on two sheets do not count.
     fn repulsion(&mut self, setup: &Setup) -> f64 {
-        let reach = |radius: f64| match setup.settings.sampling {
-            Sampling::Uniform => RANGE * radius,
-            Sampling::Adaptive => OVERLAP_REACH * (radius + setup.largest()),
-        };
         let mut energy = 0.0;
         self.forces.clear();
-        for (i, own) in self.particles.iter().enumerate() {
+        for i in 0..self.particles.len() as u32 {
             let mut force = DVec3::ZERO;
-            for near in self.buckets.near(&self.particles, own.p(), reach(own.radius)) {
-                let other = &self.particles[near.particle as usize];
-                if near.particle as usize == i {
-                    continue;
-                }
-                let (push, pair) = match setup.settings.sampling {
-                    Sampling::Uniform => gaussian(near.distance, own.radius),
-                    Sampling::Adaptive => overlap(near.distance, own.radius + other.radius),
-                };
-                let weight = same_sheet_weight(own.n().dot(other.n()));
-                force += (own.p() - other.p()) * (weight * push);
+            for push in self.pushes(setup, i) {
+                force += DVec3::from(push.force);
                 // Each pair is met twice.
-                energy += 0.5 * weight * pair;
+                energy += 0.5 * push.energy;
             }
-            self.forces.push(force - own.n() * own.n().dot(force));
+            let normal = self.particles[i as usize].n();
+            self.forces.push(force - normal * normal.dot(force));
         }
         energy / self.particles.len() as f64
+    }
+
+    /// What the particles around push a particle with, where all of them are now.
+    pub(super) fn pushes(&self, setup: &Setup, particle: u32) -> impl Iterator<Item = Push> {
+        let own = &self.particles[particle as usize];
+        let reach = match setup.settings.sampling {
+            Sampling::Uniform => RANGE * own.radius,
+            Sampling::Adaptive => OVERLAP_REACH * (own.radius + setup.largest()),
+        };
+        let around = self.buckets.near(&self.particles, own.p(), reach).into_iter();
+        around.filter(move |near| near.particle != particle).map(move |near| {
+            let other = &self.particles[near.particle as usize];
+            let (push, pair) = match setup.settings.sampling {
+                Sampling::Uniform => gaussian(near.distance, own.radius),
+                Sampling::Adaptive => overlap(near.distance, own.radius + other.radius),
+            };
+            let weight = same_sheet_weight(own.n().dot(other.n()));
+            let force = (own.p() - other.p()) * (weight * push);
+            Push { near, force: force.to_array(), energy: weight * pair }
+        })
     }
 
     /// Moves a particle by its force and brings it back onto the surface.

@@ -125,6 +125,11 @@ impl Lesson {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
     }
 
+    /// What pushes a particle in a relaxation, at the moment that was sought: an array of `LessonPush`.
+    pub fn pushes(&self, particle: u32) -> JsValue {
+        to_js(&self.run.as_ref().map(|run| run.pushes(particle)).unwrap_or_default())
+    }
+
     /// Positions at the moment that was sought, three floats each.
     pub fn positions(&self) -> Vec<f32> {
         self.column(|particle| particle.p().as_vec3().to_array()).into_flattened()

@@ -634,6 +634,18 @@ export type LessonProgress = {
 /** How a child is moved onto the surface (§4.3). */
 export type LessonProjection = "circle" | "newton";
 
+/** What one particle pushes another with. */
+export type LessonPush = {
+  /** Its repulsion, along the offset between the two. */
+  force: [number, number, number],
+  /** Energy of the pair. */
+  energy: number,
+  /** Its index. */
+  particle: number,
+  /** Distance to it. */
+  distance: number,
+};
+
 /** When the fronts of a surface with several components begin. */
 export type LessonSeeding = "one_by_one" | "together";
 

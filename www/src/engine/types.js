@@ -41,6 +41,8 @@
 /** What a mesh adds up to. @typedef {import('./core-types.js').MeshAnswer} MeshAnswer */
 /** @typedef {import('./core-types.js').LessonEvent} LessonEvent */
 /** @typedef {import('./core-types.js').LessonIterate} LessonIterate */
+/** @typedef {import('./core-types.js').LessonPush} LessonPush */
+/** @typedef {import('./core-types.js').LessonChapter} LessonChapter */
 /** @typedef {import('./core-types.js').LessonSettings} LessonSettings */
 /** @typedef {import('./lesson/client.js').LessonClient} LessonClient */
 /** @typedef {import('./lesson/protocol.js').Particles} LessonParticles */

@@ -177,6 +177,48 @@ test('a child that is pointed at stands out in every view and in the picture', a
   await clean();
 });
 
+test('in a relaxation step the panel shows who pushes the particle, and where it goes', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 0: taken/);
+  await panel(page).getByRole('button', { name: 'Its relaxation' }).click();
+  const told = panel(page).locator('.follow-told');
+  await expect(told).toHaveText(/^Step 1 of 10: 6 particles push it, together by \S+\sr\. A step of 0\.6 makes/);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', 'Relaxation step 1 of 10');
+  await expect(panel(page).locator('.rest .push')).toHaveCount(6);
+  await expect(panel(page).getByRole('img', { name: /in relaxation step 1: 6 particles push it/ })).toBeVisible();
+  // Of the slots nothing is said here.
+  await expect(panel(page).getByRole('list', { name: 'Slots' })).toBeHidden();
+  const pushers = panel(page).getByRole('list', { name: '6 particles push' });
+  await expect(pushers.getByRole('listitem').first()).toHaveText(
+    /^Particle \d+, [12]\.\d+\sr away, pushes by 0\.\d+\sr$/,
+  );
+  // The seed lies evenly between its six; somewhere a particle is pushed far.
+  await panel(page).getByRole('button', { name: 'Follow the one that is pushed most' }).click();
+  await expect(told).toContainText('cut off there');
+  expect(Number((await told.textContent())?.match(/together by ([\d.]+)/)?.[1])).toBeGreaterThan(0.35);
+  expect((await scan(page)).violations).toEqual([]);
+  await page.getByRole('button', { name: 'Level forward' }).click();
+  await expect(told).toHaveText(/^Step 2 of 10: /);
+  const forwards = await told.textContent();
+  await page.getByRole('button', { name: 'Level forward' }).click();
+  await expect(told).toHaveText(/^Step 3 of 10: /);
+  await page.getByRole('button', { name: 'Level back' }).click();
+  await expect(told).toHaveText(forwards ?? '');
+  const [file] = await Promise.all([
+    page.waitForEvent('download'),
+    panel(page).getByRole('button', { name: 'Save transcript' }).click(),
+  ]);
+  expect((await readFile(await file.path(), 'utf8')).match(/^Step \d+ of 10: /gm)).toHaveLength(10);
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  await panel(page).getByRole('button', { name: 'Its events' }).click();
+  await expect(panel(page).getByRole('list', { name: 'Slots' })).toBeVisible();
+  await page.goto('about:blank');
+  await open(page, { width: 1280, height: 800, hash: new URL(link).hash });
+  await expect(told).toHaveText(forwards ?? '');
+  await clean();
+});
+
 test('of an adaptive particle every push and every free angle is an event', async ({ page }) => {
   const { clean } = await open(page, { width: 1280, height: 800 });
   await page.evaluate(() => {

@@ -1,10 +1,11 @@
 import { beforeAll, describe, expect, test } from 'vitest';
-import { arcOf, inPlane, lensOf, slotPlace, unrolled, widthOf } from '../../src/figures/geometry.js';
+import { arcOf, inPlane, lensOf, slotPlace, tangentsOf, unrolled, widthOf } from '../../src/figures/geometry.js';
 import { isAdaptive, momentAt } from '../../src/figures/moment.js';
+import { numbersOfRest, pushersOf, restOf, tellRest } from '../../src/figures/rest.js';
 import { ADAPTIVE, ALGORITHM, lineOf, tell, transcript, valueText } from '../../src/figures/words.js';
 import { setLocale } from '../../src/ui/format.js';
 import { nearest, placedBefore, standIn } from '../../src/ui/lesson/find.js';
-import { circleAround, tangentsOf } from '../../src/ui/lesson/mark.js';
+import { circleAround } from '../../src/ui/lesson/mark.js';
 import { alikeIn } from '../../src/ui/lesson/run.js';
 import { heightsOf, stretchesOf } from '../../src/ui/lesson/tracks.js';
 
@@ -268,6 +269,87 @@ describe('an adaptive particle', () => {
     const arc = arcOf(Math.PI / 2, Math.PI, 2);
     expect(arc[0][1]).toBeCloseTo(2);
     expect(arc.at(-1)?.[1]).toBeCloseTo(-2);
+  });
+});
+
+describe('a relaxation step of a particle', () => {
+  const moved = /** @type {const} */ ({
+    type: 'moved',
+    particle: 47,
+    force: /** @type {[number, number, number]} */ ([0.004, 0, 0]),
+    target: /** @type {[number, number, number]} */ ([1.0024, 0, 0]),
+    position: /** @type {[number, number, number]} */ ([1.0023, 0, -0.0001]),
+    normal: /** @type {[number, number, number]} */ ([0, 0, 1]),
+    radius: 0.1,
+    is_kept: false,
+  });
+  /** @type {import('../../src/figures/rest.js').Rest} */
+  const rest = {
+    step: 2,
+    steps: 10,
+    size: 0.6,
+    before: 0.5,
+    after: 0.4,
+    largest: 0.35,
+    place: [1, 0, 0],
+    normal: [0, 0, 1],
+    radius: 0.1,
+    pushes: [
+      { particle: 31, distance: 0.19, force: [0.03, 0, 0], energy: 0.16, at: [0.81, 0, 0], radius: 0.1 },
+      { particle: 50, distance: 0.2, force: [-0.026, 0, 0], energy: 0.12, at: [1.2, 0, 0], radius: 0.1 },
+    ],
+    moved,
+  };
+
+  test('is told with its pushes, its move and its landing', () => {
+    expect(tellRest(rest)).toBe(
+      'Step 2 of 10: 2 particles push it, together by 0.040\u00a0r. A step of 0.6 makes that a move of 0.024\u00a0r. Back on the surface it is 0.023\u00a0r from where it was.',
+    );
+    expect(tellRest({ ...rest, moved: { ...moved, is_kept: true } })).toContain('It stays where it is, since the move');
+    // A move is cut off at 0.35 r.
+    const far = {
+      ...moved,
+      force: /** @type {[number, number, number]} */ ([0.1, 0, 0]),
+      target: /** @type {[number, number, number]} */ ([1.035, 0, 0]),
+    };
+    expect(tellRest({ ...rest, moved: far })).toContain('a move of 0.350\u00a0r, cut off there');
+    expect(tellRest({ ...rest, pushes: [] })).toContain('nobody pushes it');
+  });
+
+  test('names who pushes, the strongest first, and half of the energy of each pair', () => {
+    expect(pushersOf(rest)[0]).toBe('Particle 31, 1.90\u00a0r away, pushes by 0.300\u00a0r');
+    expect(new Map(numbersOfRest(rest)).get('Its own energy before')).toBe('0.14');
+  });
+
+  test('is fetched with the places before anything moved', async () => {
+    /** @type {unknown[]} */
+    const asked = [];
+    const client = /** @type {any} */ ({
+      ask: async (/** @type {string} */ about, /** @type {any} */ ask) => {
+        asked.push([about, ask]);
+        if (about === 'pushes')
+          return [
+            { particle: 1, distance: 3, force: [0, 0, 0], energy: 0 },
+            { particle: 2, distance: 2, force: [0, 1, 0], energy: 1 },
+          ];
+        if (about === 'seek')
+          return { positions: new Float32Array(9), normals: new Float32Array(9), radii: Float32Array.of(1, 1, 1) };
+        return ask.first === 100
+          ? [{ type: 'step_begins', step: 1, size: 0.6, energy: 2 }]
+          : [{ ...moved, particle: 0 }];
+      },
+    });
+    const level = /** @type {any} */ ({ kind: 'level', first_event: 0, events: 100 });
+    const step = /** @type {any} */ ({ kind: 'relaxation', first_event: 100, events: 5, energy: 1, largest_move: 0.1 });
+    const found = await restOf(client, [level, step], 0, 1);
+    expect(found).toMatchObject({ step: 1, steps: 1, before: 2, after: 1, largest: 0.1 });
+    // One that is too far away to push is left out.
+    expect(found?.pushes.map(({ particle }) => particle)).toEqual([2]);
+    expect(asked.slice(-2)).toEqual([
+      ['seek', { event: 101 }],
+      ['pushes', { particle: 0 }],
+    ]);
+    expect(await restOf(client, [level, step], 0, 2)).toBe(null);
   });
 });
 

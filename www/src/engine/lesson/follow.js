@@ -84,6 +84,8 @@ export function follow(lesson, env) {
         return particles(lesson.seek(Math.min(question.ask.event, 0xffff_ffff)));
       case 'life':
         return lesson.life(question.ask.particle);
+      case 'pushes':
+        return lesson.pushes(question.ask.particle);
       case 'section': {
         const { centre, right, up, half, cells } = question.ask;
         return lesson.section(Float64Array.from(centre), Float64Array.from(right), Float64Array.from(up), half, cells);

@@ -13,6 +13,7 @@
  * @typedef {import('../core-types.js').LessonEvent} LessonEvent
  * @typedef {import('../core-types.js').LessonLife} LessonLife
  * @typedef {import('../core-types.js').LessonIterate} LessonIterate
+ * @typedef {import('../core-types.js').LessonPush} LessonPush
  * @typedef {import('../core-types.js').Bounds} Bounds
  * @typedef {import('../core-types.js').Fault} Fault
  */
@@ -48,6 +49,7 @@
  * @property {{ask: {first: number, count: number}, answer: LessonEvent[]}} events
  * @property {{ask: {event: number}, answer: Particles}} seek  the particles before that event; at the end for a larger number
  * @property {{ask: {particle: number}, answer: LessonLife | null}} life
+ * @property {{ask: {particle: number}, answer: LessonPush[]}} pushes  of a relaxation on a particle, at the moment that was sought
  * @property {{ask: Plane, answer: Float32Array}} section  the curve f = 0 in the plane: segments as x₀, y₀, x₁, y₁ around the centre
  * @property {{ask: {start: Vec3, reach: number}, answer: LessonIterate[]}} newton  Newton's method in space from a point
  * @property {{ask: {units: number}, answer: Advanced}} advance  goes on with a run that was begun and held

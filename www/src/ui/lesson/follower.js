@@ -8,6 +8,7 @@ import { openParticle, triple } from '../../figures/particle.js';
 import { formatCount, formatSignificant, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { nearest, standIn } from './find.js';
+import { Relaxation } from './rest.js';
 import { alikeIn, coarserThan, MOST_PARTICLES, settingsOf, surfaceKey, surfaceWords } from './run.js';
 
 /**
@@ -56,6 +57,8 @@ export class Follower {
       const { phase, radius } = engine.progress.value;
       return surfaceKey(engine) !== run.surface || (phase === 'done' && radius !== run.pictureRadius);
     });
+    /** The particle in the relaxation. */
+    this.rest = new Relaxation(this);
     /** @type {LessonClient | null} */
     this.client = null;
     /** Number of the last order, so that the answers to earlier ones are dropped. */
@@ -277,6 +280,7 @@ export class Follower {
   /** Ends the worker and frees its memory. */
   close() {
     this.next();
+    this.rest.close();
     this.client?.close();
     this.client = null;
     batch(() => {

@@ -1,9 +1,8 @@
 /** Draws the children of the particle that is followed in the picture, and the circle on which the one at hand is looked for. */
-import { dot } from '../../figures/geometry.js';
+import { dot, tangentsOf } from '../../figures/geometry.js';
 
 /**
  * @typedef {import('../../engine/types.js').Engine} Engine
- * @typedef {import('../../engine/types.js').Vec3} Vec3
  * @typedef {import('../../figures/moment.js').Child} Child
  * @typedef {import('./follower.js').Follower} Follower
  */
@@ -31,19 +30,6 @@ export function circleAround(centre, a, b, radius, corners) {
   });
 }
 
-/** Two unit vectors perpendicular to a unit normal and to each other. @param {ArrayLike<number>} n @returns {[Vec3, Vec3]} */
-export function tangentsOf(n) {
-  const axis = Math.abs(n[0]) < 0.7 ? [1, 0, 0] : [0, 1, 0];
-  const along = dot(axis, n);
-  const flat = [0, 1, 2].map((k) => axis[k] - along * n[k]);
-  const length = Math.hypot(flat[0], flat[1], flat[2]);
-  const [x, y, z] = flat.map((v) => v / length);
-  return [
-    [x, y, z],
-    [n[1] * z - n[2] * y, n[2] * x - n[0] * z, n[0] * y - n[1] * x],
-  ];
-}
-
 /** Where a child is, as far as it is known. @param {Child} child */
 export const whereIs = ({ landed, iterates, start, pushes }) =>
   landed?.position ?? iterates.at(-1)?.position ?? start?.place ?? pushes.at(-1)?.position ?? null;
@@ -52,9 +38,9 @@ export const whereIs = ({ landed, iterates, start, pushes }) =>
  * @param {Engine} engine @param {Follower} follower
  * @returns {{ shown: () => boolean, draw: (pen: Pen) => void }}
  */
-export function childrenMark(engine, { opened, moment, hot, stale }) {
+export function childrenMark(engine, { opened, moment, hot, stale, rest }) {
   return {
-    shown: () => moment.value !== null && !stale.value,
+    shown: () => moment.value !== null && !stale.value && rest.status.value === null,
     draw(pen) {
       if (!opened.value || !moment.value) return;
       const { subject, place, normal, profiles } = opened.value;

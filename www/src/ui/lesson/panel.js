@@ -15,6 +15,7 @@ import { placedBefore } from './find.js';
 import { Follower } from './follower.js';
 import sheet from './lesson.css?url';
 import { childrenMark } from './mark.js';
+import { settingOf } from './run.js';
 import { createTold } from './told.js';
 import { eventTrack, particleTrack } from './tracks.js';
 import { createViews } from './views.js';
@@ -65,6 +66,7 @@ export async function mountFollow(shell, engine, { say, mount }) {
   });
   keepPlace(follower, engine);
   drawFront(follower, engine);
+  follower.rest.watch();
   mount(childrenMark(engine, follower));
 
   /** Where the focus and the picture were before. @type {{ focus: HTMLElement | null, level: number | null, step: number | null }} */
@@ -284,6 +286,8 @@ function createFoot(follower, engine) {
     const run = follower.run.value;
     if (!run) return '';
     const count = formatCount(run.end.radii.length);
+    if (follower.rest.status.value)
+      return 'The steps of that run, from its own particles. Where the picture’s front went another way, its particles move otherwise.';
     if (run.adaptive) {
       const [least, most] = run.end.radii.reduce(([a, b], r) => [Math.min(a, r), Math.max(b, r)], [Infinity, 0]);
       const r = `r from ${formatSignificant(least, 3)} to ${formatSignificant(most, 3)}`;
@@ -295,11 +299,13 @@ function createFoot(follower, engine) {
   const mark = (turns) => {
     const opened = follower.opened.peek();
     if (!opened) return;
-    const { place, normal, subject } = opened;
+    const { subject } = opened;
+    const { place, normal } = follower.rest.status.peek()?.rest ?? opened;
     // The name that the drawings give it: its number in the picture may be another one.
     engine.pointOut({ places: [place], radius: subject.radius, normal, text: 'p' }, { turns });
   };
   effect(() => {
+    void follower.rest.status.value;
     if (follower.opened.value) mark(false);
   });
   return h(
@@ -308,15 +314,30 @@ function createFoot(follower, engine) {
     h(
       'div',
       { class: 'follow-actions' },
+      createTurn(follower, engine),
       h('button', { type: 'button', class: 'button', on: { click: () => mark(true) } }, 'Show in the picture'),
-      h('button', { type: 'button', class: 'button', on: { click: () => save(follower) } }, 'Save transcript'),
+      h('button', { type: 'button', class: 'button', on: { click: () => void save(follower) } }, 'Save transcript'),
     ),
     about,
   );
 }
 
+/** Leads from the events of the particle to its relaxation, and back. @param {Follower} follower @param {Engine} engine */
+function createTurn({ rest }, engine) {
+  const turn = () => {
+    const isResting = rest.status.peek() !== null;
+    engine.setView(isResting ? { grain: 'event', level: null, step: null } : { grain: 'level', level: null, step: 1 });
+  };
+  const button = h('button', { type: 'button', class: 'button', on: { click: turn } });
+  bindText(button, () => (rest.status.value ? 'Its events' : 'Its relaxation'));
+  effect(() => {
+    button.hidden = Number(settingOf(engine, 'relax_steps')) === 0;
+  });
+  return button;
+}
+
 /** @param {Follower} follower */
-function save(follower) {
+async function save(follower) {
   const opened = follower.opened.peek();
   const run = follower.run.peek();
   if (!opened || !run) return;
@@ -331,5 +352,7 @@ function save(follower) {
     subject,
     head,
   );
-  download(new Blob([text], { type: 'text/plain;charset=utf-8' }), `particle-${subject.particle}.txt`);
+  const rest = await follower.rest.told(subject.particle);
+  const all = rest.length > 0 ? `${text}\nRelaxation\n${rest.join('\n').replace(/\u00a0/g, ' ')}\n` : text;
+  download(new Blob([all], { type: 'text/plain;charset=utf-8' }), `particle-${subject.particle}.txt`);
 }

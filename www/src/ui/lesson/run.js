@@ -40,7 +40,7 @@ const SETTINGS = /** @type {const} */ ({
 const SIZES = ['radius_law', 'chord_error', 'curvature_scale', 'radius_min_share', 'radius_max_share'];
 
 /** A setting of the picture. @param {Engine} engine @param {string} name */
-const settingOf = ({ state, description }, name) =>
+export const settingOf = ({ state, description }, name) =>
   state.value.settings[name] ?? description.value?.settings.find((setting) => setting.name === name)?.default;
 
 /**

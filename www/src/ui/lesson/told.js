@@ -19,8 +19,9 @@ export function createTold(follower) {
 }
 
 /** @param {Follower} follower */
-function wordsOf({ opened, moment }) {
+function wordsOf({ opened, moment, rest }) {
   if (!opened.value) return '';
+  if (rest.status.value) return rest.status.value.text;
   return moment.value
     ? tell(moment.value, opened.value.subject)
     : 'This particle still waited in the queue when the run reached its limit, so it has no events.';

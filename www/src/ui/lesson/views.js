@@ -7,6 +7,7 @@ import { fateShape, s } from '../../figures/svg.js';
 import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
 import { fill, h, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
+import { createRestViews } from './rest.js';
 
 /**
  * @typedef {import('./follower.js').Follower} Follower
@@ -27,12 +28,13 @@ export function createViews(follower) {
     'div',
     { class: 'follow-views' },
     parts.map((part) => part.element),
+    createRestViews(follower),
   );
   for (const { element: part, draw, isPointed } of parts)
     effect(() => {
       const [opened, moment] = [follower.opened.value, follower.moment.value];
       const hot = isPointed ? follower.hot.value : null;
-      part.hidden = moment === null;
+      part.hidden = moment === null || follower.rest.status.value !== null;
       if (opened && moment) draw(opened, hot === null ? moment : pointedAt(moment, hot));
     });
   linkHover(element, follower);

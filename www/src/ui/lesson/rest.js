@@ -1,0 +1,187 @@
+/**
+ * Follows the particle that is open through the relaxation: where the timeline stands at a relaxation step, the panel shows who
+ * pushes the particle, and where it goes. The run with its steps is another one, made when it is first asked for.
+ */
+import { computed, effect, signal } from '@preact/signals-core';
+import { mostPushed, numbersOfRest, pushersOf, restOf, tellRest } from '../../figures/rest.js';
+import { moveLens, restPlane, SCALE_WORDS } from '../../figures/rest-drawings.js';
+import { fill, h, uniqueId } from '../dom.js';
+import { formatCount, formatSignificant } from '../format.js';
+import { settingOf, settingsOf } from './run.js';
+
+/**
+ * @typedef {import('../../figures/rest.js').Rest} Rest
+ * @typedef {import('./follower.js').Follower} Follower
+ * @typedef {import('./follower.js').Opened} Opened
+ */
+/** What there is of a step: null where the timeline stands elsewhere. @typedef {null | { text: string, rest: Rest | null }} RestStatus */
+
+export class Relaxation {
+  /** @param {Follower} follower */
+  constructor(follower) {
+    this.follower = follower;
+    this.status = signal(/** @type {RestStatus} */ (null));
+    /** @type {import('../../engine/types.js').LessonClient | null} */
+    this.client = null;
+    /** The run and its number of steps, so that a change can be told. @type {{ of: object, steps: number, chapters: Promise<import('../../engine/types.js').LessonChapter[]> } | null} */
+    this.made = null;
+    this.asked = 0;
+  }
+
+  /** Shows the step at which the timeline stands. */
+  watch() {
+    const { engine, opened, stale } = this.follower;
+    const wanted = computed(() => {
+      const { grain, level, step } = engine.state.value.view;
+      const isThere = grain === 'level' && level === null && opened.value !== null && !stale.value;
+      return isThere ? `${opened.value?.subject.particle} ${step ?? 'last'}` : null;
+    });
+    effect(() => {
+      const place = wanted.value;
+      this.asked += 1;
+      const mine = this.asked;
+      if (place === null) this.status.value = null;
+      // On the way to a place the timeline may stand at another for a moment.
+      else setTimeout(() => mine === this.asked && void this.show(place));
+    });
+  }
+
+  /** @param {string} place */
+  async show(place) {
+    const mine = this.asked;
+    const [particle, step] = place.split(' ');
+    const usual = Number(settingOf(this.follower.engine, 'relax_steps'));
+    const wanted = step === 'last' ? usual : Number(step);
+    if (wanted === 0) return;
+    if (this.status.peek() === null) this.status.value = { text: 'Running the relaxation', rest: null };
+    const told = (/** @type {RestStatus} */ status) => {
+      if (mine === this.asked) this.status.value = status;
+    };
+    try {
+      const chapters = await this.chapters(Math.max(usual, wanted));
+      if (mine !== this.asked || !this.client) return;
+      const rest = await restOf(this.client, chapters, Number(particle), wanted);
+      told({ text: rest ? tellRest(rest) : 'This run has no such step.', rest });
+    } catch (error) {
+      if (/** @type {any} */ (error)?.kind !== 'given_up')
+        told({ text: `The relaxation cannot be shown: ${/** @type {Error} */ (error).message}.`, rest: null });
+    }
+  }
+
+  /** The chapters of the run with its steps, which is made unless it is there. @param {number} steps */
+  async chapters(steps) {
+    const { follower } = this;
+    const { engine } = follower;
+    const run = follower.run.peek();
+    const surface = engine.lessonSurface();
+    if (!run || !surface) return [];
+    if (this.made?.of === run && this.made.steps >= steps) return this.made.chapters;
+    this.client ??= await engine.openLesson();
+    const { client } = this;
+    const chapters = client
+      .start(surface, { ...settingsOf(engine, run), relax_steps: steps })
+      .then(() => client.ask('chapters', { first: 0 }));
+    this.made = { of: run, steps, chapters };
+    chapters.catch(() => {
+      this.made = null;
+    });
+    return chapters;
+  }
+
+  /** Opens the particle that is pushed most in the step that is shown. */
+  async openMost() {
+    const step = this.status.peek()?.rest?.step;
+    const chapters = await this.made?.chapters.catch(() => []);
+    if (!this.client || !chapters || step === undefined) return;
+    await this.follower.open(await mostPushed(this.client, chapters, step));
+  }
+
+  /** Every step of a particle in words, if the run is there. @param {number} particle */
+  async told(particle) {
+    const chapters = (await this.made?.chapters.catch(() => [])) ?? [];
+    const words = [];
+    for (let step = 1; this.client; step += 1) {
+      const rest = await restOf(this.client, chapters, particle, step);
+      if (!rest) break;
+      words.push(tellRest(rest));
+    }
+    return words;
+  }
+
+  /** Frees the worker. */
+  close() {
+    this.asked += 1;
+    this.status.value = null;
+    this.made = null;
+    this.client?.close();
+    this.client = null;
+  }
+}
+
+/** The views of a step. @param {Follower} follower */
+export function createRestViews({ rest, opened }) {
+  const [plane, numbers, pushers] = ['A step of rest', 'Numbers', 'Who pushes'].map((title) => {
+    const id = uniqueId('rest');
+    const body = h('div', { class: 'follow-view' });
+    const head = h('h3', { id, class: 'section-title' }, title);
+    return { body, element: h('section', { class: 'section', 'aria-labelledby': id }, head, body) };
+  });
+  const element = h(
+    'div',
+    { class: 'follow-rest' },
+    [plane, numbers, pushers].map((part) => part.element),
+  );
+  effect(() => {
+    const found = rest.status.value?.rest ?? null;
+    const particle = opened.value;
+    element.hidden = !found || !particle;
+    if (!found || !particle) return;
+    const frame = particle.events.find(({ type }) => type === 'frame');
+    const towards = frame?.type === 'frame' ? frame.u : undefined;
+    const lens = moveLens(found, towards);
+    fill(
+      plane.body,
+      restPlane(particle.subject, found, towards),
+      h(
+        'div',
+        { class: 'follow-key' },
+        h('p', { class: 'quiet' }, SCALE_WORDS),
+        lens
+          ? h(
+              'div',
+              { class: 'lens-box' },
+              lens.svg,
+              h(
+                'p',
+                { class: 'quiet' },
+                `The move and the landing, enlarged about ${formatSignificant(lens.times, 2)} times`,
+              ),
+            )
+          : null,
+      ),
+    );
+    fill(
+      numbers.body,
+      h(
+        'dl',
+        { class: 'facts' },
+        numbersOfRest(found).flatMap(([name, value]) => [h('dt', null, name), h('dd', null, value)]),
+      ),
+      h(
+        'button',
+        { type: 'button', class: 'button', on: { click: () => void rest.openMost() } },
+        'Follow the one that is pushed most',
+      ),
+    );
+    const words = pushersOf(found);
+    fill(
+      pushers.body,
+      h(
+        'ol',
+        { class: 'slots', 'aria-label': `${formatCount(words.length)} particles push` },
+        words.map((text) => h('li', null, text)),
+      ),
+    );
+  });
+  return element;
+}
