@@ -1,6 +1,7 @@
 /** Two runs side by side, seen by one camera. */
 import { fill, h } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
+import { tableOf } from '../ui/table.js';
 import { reasonOf } from './figure.js';
 import { nearestDistances, parentDistances, spread } from './measure.js';
 import { createScale } from './parts.js';
@@ -71,29 +72,10 @@ export function figuresOf(run) {
 }
 
 /** @param {readonly [Side, Side]} sides @param {readonly [Run, Run]} runs */
-function tableOf(sides, runs) {
+function comparisonOf(sides, runs) {
   const [left, right] = runs.map(figuresOf);
-  return h(
-    'table',
-    { class: 'compare' },
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        h('td'),
-        sides.map(({ label }) => h('th', { scope: 'col' }, label)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      left.map(([name, value], k) =>
-        h('tr', null, h('th', { scope: 'row' }, name), h('td', null, value), h('td', null, right[k][1])),
-      ),
-    ),
-  );
+  const rows = left.map(([name, value], k) => [name, value, right[k][1]]);
+  return tableOf({ class: 'compare', head: ['', ...sides.map((side) => side.label)], rows });
 }
 
 /**
@@ -143,7 +125,7 @@ export function createPair(lab, { bare = false } = {}) {
           captions[k].textContent = sides[k].label;
         }
         if (!bare) fill(legend, legendOf(colouring, radii));
-        fill(table, tableOf(sides, this.runs));
+        fill(table, comparisonOf(sides, this.runs));
         status.textContent = '';
       } catch (error) {
         if (mine === asked) status.textContent = reasonOf(error);

@@ -3,6 +3,7 @@ import { opponentOf, Race } from '../engine/lesson/race.js';
 import { s } from '../figures/svg.js';
 import { fill, h } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSeconds, formatSignificant, MISSING } from '../ui/format.js';
+import { tableOf } from '../ui/table.js';
 import { adaptiveRun } from './adaptive.js';
 import { reasonOf } from './figure.js';
 import { USUAL } from './lab.js';
@@ -159,7 +160,7 @@ export function mountRace(host, lab) {
       await own.start(lab.surface, [settings, opponentOf(settings)]);
       const ends = [await own.particles(0), await own.particles(1)];
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
-      fill(result, tableOf(names, own.lanes, ends), marksOf(kind, own.lanes[1].workMs / own.lanes[0].workMs));
+      fill(result, resultOf(names, own.lanes, ends), marksOf(kind, own.lanes[1].workMs / own.lanes[0].workMs));
       stop();
     } catch (error) {
       if (/** @type {any} */ (error)?.kind === 'given_up') return;
@@ -173,7 +174,7 @@ export function mountRace(host, lab) {
 }
 
 /** @param {readonly string[]} names @param {readonly Lane[]} lanes @param {readonly import('../engine/types.js').LessonParticles[]} ends */
-function tableOf(names, lanes, ends) {
+function resultOf(names, lanes, ends) {
   const even = ends.map((particles) => spread(nearestDistances(particles)));
   const of = (/** @type {(k: number) => string} */ write) => [0, 1].map(write);
   const progress = lanes.map((lane) => lane.progress);
@@ -191,32 +192,7 @@ function tableOf(names, lanes, ends) {
     ],
     ['Closest pair, likewise', ...of((k) => formatFixed(even[k].least, 3))],
   ];
-  return h(
-    'table',
-    { class: 'compare' },
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        h('td'),
-        names.map((name) => h('th', { scope: 'col' }, name)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      rows.map(([name, ...values]) =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, name),
-          values.map((value) => h('td', null, value)),
-        ),
-      ),
-    ),
-  );
+  return tableOf({ class: 'compare', head: ['', ...names], rows });
 }
 
 /** Where a ratio stands on the axis, 0 to 1. @param {number} ratio */

@@ -191,6 +191,32 @@ test('the charts are places of the timeline, with tables as their twins', async 
   await clean();
 });
 
+test('distances to the nearest are those of what is shown, and neighbours those of the end', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await page.getByRole('button', { name: 'Charts' }).click();
+  const nearest = page.getByRole('img', { name: /to their nearest, in 2r/ });
+  const degree = page.getByRole('img', { name: /^Particles by their neighbours at the end of the run/ });
+  const six = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.report().quality.six);
+  await expect(degree).toHaveAttribute('aria-label', new RegExp(`six: ${(100 * six).toFixed(1)}`));
+  const deviation = async () => Number(/± ([\d.]+)/.exec((await nearest.getAttribute('aria-label')) ?? '')?.[1]);
+  await expect(nearest).toHaveAttribute('aria-label', /^Distance of all [\d,]+ particles to/);
+  const end = await deviation();
+  // Six particles around a seed: all at 2r from it.
+  await press(page, 'First level');
+  await expect(page.locator('.chart', { hasText: 'Nearest, in 2r' })).toContainText('Known of two to');
+  await press(page, 'Level forward');
+  await expect(nearest).toHaveAttribute('aria-label', /up to level 1 to their nearest, in 2r: (1\.000|0\.99\d)\s±/);
+  await press(page, 'All levels');
+  for (let k = 0; k < 10; k += 1) await press(page, 'Level back');
+  // As they were placed the distances are less even.
+  await expect(nearest).toHaveAttribute('aria-label', /up to level/);
+  expect(await deviation()).toBeGreaterThan(1.2 * end);
+  await page.getByText('As tables').click();
+  await expect(page.getByRole('table', { name: 'Neighbours' }).getByRole('row')).toHaveCount(8);
+  expect((await scan(page)).violations).toEqual([]);
+  await clean();
+});
+
 test('the start of the front is turned to the eye', async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await open(page);

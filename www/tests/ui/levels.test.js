@@ -5,6 +5,7 @@ import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
 import { drawnAt, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
+import { BINS, degreeBins, meanOf, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
 
 beforeAll(() => setLocale('en-GB'));
@@ -150,6 +151,54 @@ describe('the figures of the charts', () => {
     const past = [Float32Array.of(0, 0, 0, 1, 0, 0), Float32Array.of(0.5, 0, 0, 1, 0, 0)];
     expect(movesOf(past, Float32Array.of(0.5, 0, 0, 1, 0, 1), Float32Array.of(1, 2))).toEqual([0.5, 0.5]);
     expect(movesOf([], new Float32Array(0), new Float32Array(0))).toEqual([]);
+  });
+});
+
+describe('how even the particles are', () => {
+  /** A number of its own for each place, the same on every run. */
+  function scattered() {
+    let state = 1;
+    const next = () => {
+      state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+      return state / 2 ** 32;
+    };
+    return Float32Array.from({ length: 600 }, next);
+  }
+
+  test('is the distance to the nearest of those that are shown, as a search of all pairs finds it', () => {
+    const positions = scattered();
+    const radii = Float32Array.from({ length: 200 }, (_, i) => 0.01 + 0.0002 * i);
+    const chosen = Array.from({ length: 200 }, (_, i) => i).filter((i) => i % 3 !== 0);
+    const found = nearestOver(positions, radii, chosen);
+    for (const [k, i] of chosen.entries()) {
+      const far = chosen
+        .filter((j) => j !== i)
+        .map((j) => Math.hypot(...[0, 1, 2].map((c) => positions[3 * i + c] - positions[3 * j + c])));
+      expect(found[k]).toBeCloseTo(Math.min(...far) / (2 * radii[i]), 4);
+    }
+  });
+
+  test('is not known of a particle that is alone', () => {
+    const found = nearestOver(Float32Array.of(0, 0, 0, 99, 0, 0), Float32Array.of(0.5, 0.5), [0, 1]);
+    expect([...found]).toEqual([Infinity, Infinity]);
+    expect(nearestBins(found).reduce((a, b) => a + b)).toBe(0);
+    expect(meanOf(found)).toEqual({ mean: 0, deviation: 0 });
+    expect(meanOf([1, 3, Infinity])).toEqual({ mean: 2, deviation: 1 });
+  });
+
+  test('counts what is beyond the ends in the last bins', () => {
+    const counts = nearestBins([0.1, 0.6, 1, 1.199, 7]);
+    expect(counts).toHaveLength(BINS);
+    expect(counts[0]).toBe(2);
+    expect(counts[BINS - 1]).toBe(2);
+    expect(counts[16]).toBe(1);
+  });
+
+  test('has the share of six among all, also those at a border', () => {
+    expect(degreeBins(null)).toBe(null);
+    const found = degreeBins(Uint8Array.of(6, 6, 5, 12, 1, 0, 255, 6));
+    expect(found?.counts).toEqual([1, 0, 1, 3, 0, 0, 1]);
+    expect(found?.six).toBe(3 / 8);
   });
 });
 

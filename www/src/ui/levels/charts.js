@@ -1,11 +1,13 @@
 /** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
-import { computed, effect } from '@preact/signals-core';
+import { computed, effect, signal } from '@preact/signals-core';
 import { fill, h } from '../dom.js';
-import { formatCount, formatFixed, formatSignificant, MISSING, plural } from '../format.js';
+import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { loadSheet } from '../sheet.js';
+import { tableOf } from '../table.js';
 import sheet from './charts.css?url';
 import { fatesOf, movesOf } from './figures.js';
+import { BINS, degreeBins, meanOf, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('./player.js').Player} Player */
@@ -20,13 +22,21 @@ import { fatesOf, movesOf } from './figures.js';
  * @property {string} value  of that place, or of all
  * @property {string} label  the chart in words
  * @property {(value: number) => string} format
+ * @property {string[]} [ends]  what stands below its ends, in place of the numbers of the places
+ * @property {number} [ideal]  where the ideal is, as a share of the width
+ * @property {string} [missing]  why nothing is known
  */
+/** Distances of the particles that are shown to their nearest, over 2r, and which they are in words. @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread */
+
+/** The most particles whose distances are worked out here, which takes some hundredths of a second. Those of the end of a run are measured by the core. */
+const MOST_MEASURED = 20_000;
 
 /** @param {Engine} engine @param {Player} player */
 export async function createCharts(engine, player) {
   await loadSheet(sheet);
   const { levels } = player;
   const { table, kept, level, newest, relaxed, whole } = levels;
+  const shown = signal(true);
   const moves = computed(() => {
     const { past, positions, radii } = engine.columns;
     // Of many particles only the first positions are kept, and the way from those to the last is no step.
@@ -41,6 +51,16 @@ export async function createCharts(engine, player) {
     if (level.value !== null) return 0;
     return whole.value ? Math.max(0, energy.value.length - 1) : (relaxed.value ?? null);
   });
+  const spread = computed(() => {
+    void [engine.report.value, kept.value, table.value];
+    if (!shown.value) return null;
+    const upTo = followed.value ?? (level.value === null ? null : newest.value);
+    return spreadOf(engine.columns, { upTo, step: upTo === null ? relaxed.value : null });
+  });
+  const degree = computed(() => {
+    void engine.report.value;
+    return degreeBins(engine.columns.valence);
+  });
   /** @param {number} step */
   const seekStep = (step) => player.seekLevel(step === 0 ? table.peek().last : table.peek().last + step);
   const charts = [
@@ -54,18 +74,102 @@ export async function createCharts(engine, player) {
     ),
     chartOf(() => energyChart(energy.value, atStep.value), seekStep),
     chartOf(() => moveChart(moves.value, atStep.value), seekStep),
+    chartOf(() => nearestChart(spread.value), null),
+    chartOf(() => degreeChart(degree.value), null),
   ];
   const twin = h('div', { class: 'charts-tables', role: 'region', 'aria-label': 'Tables of the charts', tabindex: 0 });
   const details = h('details', { class: 'charts-twin' }, h('summary', null, 'As tables'), twin);
-  const write = () => details.open && fill(twin, ...tables(table.value, energy.value, moves.value));
+  const write = () =>
+    details.open &&
+    fill(twin, ...tables(table.value, energy.value, moves.value), ...spreadTables(spread.value, degree.value));
   details.addEventListener('toggle', write);
   effect(() => {
     void table.value;
     void energy.value;
     void moves.value;
+    void spread.value;
+    void degree.value;
     write();
   });
-  return h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, details);
+  const element = h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, details);
+  return { element, shown };
+}
+
+/**
+ * The distances of what is shown: up to a level as it was placed, before a relaxation step, or at the end of the run.
+ * @param {import('../../engine/columns.js').Columns} columns @param {{ upTo: number | null, step: number | null }} place
+ * @returns {Spread}
+ */
+function spreadOf(columns, { upTo, step }) {
+  const { count, levels, positions, radii, placed, past, nearest } = columns;
+  if (count === 0) return null;
+  if (upTo === null && step === null) {
+    if (!nearest) return null;
+    return { nearest: nearest.map((far, i) => far / (2 * radii[i])), words: `all ${plural(count, 'particle')}` };
+  }
+  const chosen = Array.from({ length: count }, (_, i) => i).filter((i) => upTo === null || levels[i] <= upTo);
+  if (chosen.length > MOST_MEASURED || chosen.length < 2) return null;
+  const at = upTo === null ? (past[step ?? 0] ?? positions) : placed;
+  const words =
+    upTo === null
+      ? `all particles after ${plural(step ?? 0, 'step')}`
+      : `the particles up to level ${formatCount(upTo)}`;
+  return { nearest: nearestOver(at, radii, chosen), words };
+}
+
+/** @param {Spread} spread @returns {Chart} */
+function nearestChart(spread) {
+  const counts = spread ? nearestBins(spread.nearest) : [];
+  const { mean, deviation } = meanOf(spread?.nearest ?? []);
+  const value = spread ? `${formatFixed(mean, 3)} ± ${formatFixed(deviation, 3)}` : '';
+  const [low, high] = SPAN;
+  return {
+    title: 'Nearest, in 2r',
+    kind: 'bars',
+    rows: [{ fate: 'new', name: 'particles', counts }],
+    first: 0,
+    at: null,
+    value,
+    label: spread
+      ? `Distance of ${spread.words} to their nearest, in 2r: ${value}; ${formatCount(Math.max(...counts))} at most in one of ${BINS} bars from ${formatFixed(low, 1)} to ${formatFixed(high, 1)}`
+      : '',
+    format: formatCount,
+    ends: [formatFixed(low, 1), formatFixed(high, 1)],
+    ideal: (1 - low) / (high - low),
+    missing: `Known of two to ${formatCount(MOST_MEASURED)} particles, and of all at the end of a run.`,
+  };
+}
+
+/** @param {ReturnType<typeof degreeBins>} degree @returns {Chart} */
+function degreeChart(degree) {
+  const [least, most] = NEIGHBOURS;
+  const counts = degree?.counts ?? [];
+  const six = degree ? `six: ${formatShare(degree.six, 1)}` : '';
+  return {
+    title: 'Neighbours',
+    kind: 'bars',
+    rows: [{ fate: 'new', name: 'particles', counts }],
+    first: least,
+    at: degree ? 6 : null,
+    value: six,
+    label: `Particles by their neighbours at the end of the run: ${counts.map((n, k) => `${formatCount(n)} with ${k + least}`).join(', ')}; ${six}`,
+    format: formatCount,
+    ends: [`≤ ${least}`, 'at the end', `≥ ${most}`],
+    missing: 'Known once a run has ended and been measured.',
+  };
+}
+
+/** @param {Spread} spread @param {ReturnType<typeof degreeBins>} degree */
+function spreadTables(spread, degree) {
+  const [low, high] = SPAN;
+  const at = (/** @type {number} */ k) => formatFixed(low + ((high - low) * k) / BINS, 3);
+  const bins = spread ? nearestBins(spread.nearest) : [];
+  const nearest = bins.flatMap((n, k) => (n > 0 ? [[`${at(k)} to ${at(k + 1)}`, formatCount(n)]] : []));
+  const degrees = (degree?.counts ?? []).map((n, k) => [formatCount(k + NEIGHBOURS[0]), formatCount(n)]);
+  return [
+    ...(nearest.length > 0 ? [tableOf({ caption: 'Nearest', head: ['In 2r', 'Particles'], rows: nearest })] : []),
+    ...(degrees.length > 0 ? [tableOf({ caption: 'Neighbours', head: ['Number', 'Particles'], rows: degrees })] : []),
+  ];
 }
 
 /** @param {import('./table.js').LevelTable} table @param {number | null} at @returns {Chart} */
@@ -140,11 +244,11 @@ const inR = (value) => `${formatFixed(value, 3)}\u00a0r`;
 const NOTHING =
   'Not known. The positions of each step are kept of up to 20,000 particles, once a relaxation has ended.';
 
-/** @param {() => Chart} read @param {(place: number) => void} seek */
+/** @param {() => Chart} read @param {((place: number) => void) | null} seek  null where the places are none of the timeline */
 function chartOf(read, seek) {
   const title = h('span');
   const value = h('span', { class: 'unit' });
-  const plot = h('div', { class: 'chart-plot', role: 'img' });
+  const plot = h('div', { class: 'chart-plot', role: 'img', data: { seeks: String(seek !== null) } });
   const foot = h('div', { class: 'chart-foot', 'aria-hidden': 'true' });
   const element = h('figure', { class: 'chart' }, h('figcaption', null, title, ' ', value), plot, foot);
   let [first, places] = [0, 0];
@@ -159,7 +263,7 @@ function chartOf(read, seek) {
       fill(plot, draw(chart, places), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)));
       fill(foot, ...footOf(chart, places));
     } else {
-      fill(plot, h('p', { class: 'quiet' }, NOTHING));
+      fill(plot, h('p', { class: 'quiet' }, chart.missing ?? NOTHING));
       fill(foot);
     }
   });
@@ -169,12 +273,12 @@ function chartOf(read, seek) {
     return first + clamp(Math.floor(((clientX - left) / Math.max(1, width)) * places), 0, places - 1);
   };
   plot.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0 || places === 0) return;
+    if (event.button !== 0 || places === 0 || !seek) return;
     plot.setPointerCapture(event.pointerId);
     seek(at(event));
   });
   plot.addEventListener('pointermove', (event) => {
-    if (plot.hasPointerCapture(event.pointerId)) seek(at(event));
+    if (seek && plot.hasPointerCapture(event.pointerId)) seek(at(event));
   });
   return element;
 }
@@ -197,7 +301,8 @@ function endsOf({ kind, rows }) {
 const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
 
 /** What stands below: the first and last place, and the fates where there are several. @param {Chart} chart @param {number} places */
-function footOf({ rows, first }, places) {
+function footOf({ rows, first, ends: named }, places) {
+  if (named) return named.map((text) => h('span', null, text));
   const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + places - 1))];
   if (rows.length < 2) return ends;
   const key = rows.map(({ fate, name }) => h('span', null, h('i', { class: `swatch fate-${fate}` }), name));
@@ -215,7 +320,7 @@ function s(tag, attributes) {
 
 /** @param {Chart} chart @param {number} places */
 function draw(chart, places) {
-  const { kind, rows, first, at } = chart;
+  const { kind, rows, first, at, ideal } = chart;
   const [low, high] = endsOf(chart);
   const y = (/** @type {number} */ value) => +(1 - 0.94 * ((value - low) / (high - low))).toFixed(4);
   const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
@@ -236,6 +341,7 @@ function draw(chart, places) {
     });
     svg.append(s('path', { class: `fate-${fate}`, d: d.join('') }));
   }
+  if (ideal !== undefined) svg.append(s('path', { class: 'chart-ideal', d: `M${ideal * places} 0V1` }));
   return svg;
 }
 
@@ -253,36 +359,9 @@ function tables(table, energy, moves) {
     k === 0 || moves[k - 1] === undefined ? MISSING : inR(moves[k - 1]),
   ]);
   return [
-    tableOf('Levels', ['Level', 'New', ...fates.map(({ name }) => name)], levels),
-    ...(steps.length > 0 ? [tableOf('Relaxation', ['Step', 'Energy per particle', 'Largest move'], steps)] : []),
+    tableOf({ caption: 'Levels', head: ['Level', 'New', ...fates.map(({ name }) => name)], rows: levels }),
+    ...(steps.length > 0
+      ? [tableOf({ caption: 'Relaxation', head: ['Step', 'Energy per particle', 'Largest move'], rows: steps })]
+      : []),
   ];
 }
-
-/** @param {string} caption @param {string[]} head @param {string[][]} rows */
-const tableOf = (caption, head, rows) =>
-  h(
-    'table',
-    null,
-    h('caption', null, caption),
-    h(
-      'thead',
-      null,
-      h(
-        'tr',
-        null,
-        head.map((name) => h('th', { scope: 'col' }, name)),
-      ),
-    ),
-    h(
-      'tbody',
-      null,
-      rows.map(([name, ...cells]) =>
-        h(
-          'tr',
-          null,
-          h('th', { scope: 'row' }, name),
-          cells.map((cell) => h('td', null, cell)),
-        ),
-      ),
-    ),
-  );

@@ -233,7 +233,7 @@ function speedOf(player) {
  * @param {HTMLElement} body @param {Engine} engine @param {Player} player @param {(text: string) => void} say
  */
 function chartsOf(body, engine, player, say) {
-  /** @type {HTMLElement | null} */
+  /** @type {Awaited<ReturnType<typeof import('./charts.js')['createCharts']>> | null} */
   let charts = null;
   const toggle = async () => {
     try {
@@ -241,9 +241,11 @@ function chartsOf(body, engine, player, say) {
     } catch {
       return say('The charts did not load. The timeline is not affected.');
     }
-    if (!charts.isConnected) body.before(charts);
-    else charts.remove();
-    button.setAttribute('aria-expanded', String(charts.isConnected));
+    const { element, shown } = charts;
+    if (element.isConnected) element.remove();
+    else body.before(element);
+    shown.value = element.isConnected;
+    button.setAttribute('aria-expanded', String(shown.value));
   };
   const button = h(
     'button',
@@ -256,7 +258,7 @@ function chartsOf(body, engine, player, say) {
     },
     icon('charts'),
   );
-  const text = 'New particles and fates per level, energy and largest move per relaxation step.';
+  const text = 'Particles and fates per level, energy and moves per relaxation step, distances and neighbours.';
   explain(button, () => ({ title: 'Charts', text }), { side: 'above' });
   return button;
 }
