@@ -5,7 +5,7 @@ import { NoSurface } from './lab.js';
 /** How far from the window a figure begins, in pixels. */
 const AHEAD_PX = 500;
 
-/** @typedef {{ load: () => Promise<void> }} Figure */
+/** `ready` is fulfilled once it is live, and never if it cannot be made. @typedef {{ stage: HTMLElement, load: () => Promise<void>, ready: Promise<void> }} Figure */
 
 /**
  * @param {HTMLElement} stage  holds the still @param {() => Promise<(Node | null)[]>} build  @returns {Figure}
@@ -15,6 +15,11 @@ export function mountFigure(stage, build) {
   stage.after(status);
   /** @type {Promise<void> | null} */
   let made = null;
+  let tell = () => {};
+  /** @type {Promise<void>} */
+  const ready = new Promise((resolve) => {
+    tell = resolve;
+  });
   async function make() {
     stage.dataset.state = 'running';
     status.textContent = 'Running the algorithm on the surface';
@@ -23,6 +28,7 @@ export function mountFigure(stage, build) {
       stage.replaceChildren(...parts.filter((part) => part !== null));
       stage.dataset.state = 'live';
       status.textContent = '';
+      tell();
     } catch (error) {
       stage.dataset.state = 'still';
       status.textContent = `${reasonOf(error)} This is a still picture of the ellipsoid.`;
@@ -41,7 +47,7 @@ export function mountFigure(stage, build) {
     { rootMargin: `${AHEAD_PX}px 0px` },
   );
   observer.observe(stage);
-  return { load };
+  return { stage, load, ready };
 }
 
 /** @param {any} error */

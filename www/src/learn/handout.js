@@ -1,47 +1,90 @@
-/** The hand-out: the article on paper, with blanks for the predictions and their answers on the last page. */
+/**
+ * The hand-out: the article on paper, with blanks for the predictions and their answers on the last page. The answers come from the run,
+ * and a browser does not wait for one when it prints: so they are asked for as their figures come to life, and the page's own button
+ * and the keys for printing wait for the rest.
+ */
 import { fill, h } from '../ui/dom.js';
 import { reasonOf } from './figure.js';
 import { PREDICTIONS } from './predictions.js';
+
+const UNKNOWN = 'The run has not been asked yet. Print from the page’s own button to have the answer here.';
 
 /**
  * @param {HTMLElement} host  the last page
  * @param {object} about
  * @param {readonly import('./figure.js').Figure[]} about.figures
  * @param {Promise<import('./lab.js').Lab>} about.lab
+ * @param {() => Promise<void>} about.compare  shows the comparison that stands on the bench
+ * @param {(words: string) => void} about.say
  */
-export function createHandout(host, { figures, lab }) {
+export function createHandout(host, { figures, lab, compare, say }) {
   const title = host.querySelector('h2');
-  const hint = h('p', null, 'The answers come from the run. Print from the page’s own button to have them here.');
-  fill(host, title, hint);
+  /** What the run said, by the id of the question. @type {Map<string, string>} */
+  const known = new Map();
+  const ids = Object.keys(PREDICTIONS);
+
+  function write() {
+    const rows = ids.map((id) => {
+      const question = document.querySelector(`#${id} .predict-question`)?.textContent ?? '';
+      return h('li', null, h('p', { class: 'answer-question' }, question), h('p', null, known.get(id) ?? UNKNOWN));
+    });
+    fill(host, title, h('ol', { class: 'answer-list' }, rows));
+  }
+  write();
   host.hidden = false;
+
+  /** @param {string} id */
+  async function ask(id) {
+    if (known.has(id)) return;
+    const answer = await PREDICTIONS[id].answer(await lab, null);
+    known.set(id, answer.words);
+  }
+  // The figure of a chapter has made the runs that its questions ask.
+  for (const { stage, ready } of figures)
+    void ready.then(async () => {
+      for (const { id } of stage.closest('.chapter')?.querySelectorAll('.predict') ?? []) await ask(id).catch(() => {});
+    });
 
   /** Makes every figure and asks the run for every answer. */
   async function prepare() {
     for (const { load } of figures) await load();
-    const ready = await lab;
-    const list = h('ol', { class: 'answer-list' });
-    for (const [id, prediction] of Object.entries(PREDICTIONS)) {
-      const question = document.querySelector(`#${id} .predict-question`)?.textContent ?? '';
-      const words = await prediction.answer(ready, null).then(
-        (answer) => answer.words,
-        (error) => reasonOf(error),
-      );
-      list.append(h('li', null, h('p', { class: 'answer-question' }, question), h('p', null, words)));
+    for (const id of ids) await ask(id).catch((error) => known.set(id, reasonOf(error)));
+    await compare();
+    // Not on the screen, they have not been asked for.
+    for (const still of document.querySelectorAll('.what-if-stills img')) {
+      const image = /** @type {HTMLImageElement} */ (still);
+      image.loading = 'eager';
+      await image.decode().catch(() => {});
     }
-    fill(host, title, list);
+    write();
   }
 
+  const isWhole = () => known.size === ids.length;
+  let isPreparing = false;
   const button = h('button', { type: 'button', class: 'button plain', on: { click: () => void press() } }, 'Print');
   async function press() {
+    if (isPreparing) return;
+    isPreparing = true;
     button.disabled = true;
     button.textContent = 'Preparing';
     try {
       await prepare();
     } finally {
+      isPreparing = false;
       button.disabled = false;
       button.textContent = 'Print';
     }
     print();
   }
-  return { button, prepare };
+  addEventListener('keydown', (event) => {
+    const isPrint = (event.ctrlKey || event.metaKey) && !event.altKey && !event.shiftKey && event.key === 'p';
+    if (!isPrint || isWhole()) return;
+    event.preventDefault();
+    void press();
+  });
+  addEventListener('beforeprint', write);
+  addEventListener('afterprint', () => {
+    if (!isWhole()) say('Not all answers were known when this was printed. The button “Print” waits for them.');
+  });
+  return { button };
 }

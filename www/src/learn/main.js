@@ -90,7 +90,17 @@ const { present } = mountStops({
 
 /** The dialog for teachers, once it is asked for. @type {ReturnType<typeof createMaker> | null} */
 let maker = null;
-const handout = createHandout(byId('answers'), { figures, lab });
+const handout = createHandout(byId('answers'), {
+  figures,
+  lab,
+  async compare() {
+    const { show, setup } = await bench;
+    await show(setup());
+  },
+  say: (words) => {
+    notice.textContent = words;
+  },
+});
 const tool = (/** @type {string} */ label, /** @type {() => void} */ click) =>
   h('button', { type: 'button', class: 'button plain', on: { click } }, label);
 byId('tools').append(

@@ -144,6 +144,10 @@ test.describe('without JavaScript', () => {
         600,
       );
     }
+    // Every choice of the method, too.
+    const choices = page.locator('.what-if-stills figure');
+    await expect(choices).toHaveCount(12);
+    await expect(choices.first()).toBeVisible();
     await page.getByRole('link', { name: 'Rings', exact: true }).click();
     await expect(page.locator('#rings h2')).toBeInViewport();
   });

@@ -1,11 +1,13 @@
 /**
  * Takes the still pictures of the lesson from its own figures, from the built site: `npm run pictures:lesson [-- address]`.
  *
- * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot be.
+ * Writes learn/stills/*.webp: what stands in a figure's place without JavaScript, before it is live, and if it cannot be; and a still of
+ * each comparison, for paper and for readers without JavaScript.
  */
 import { writeFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
-import { chromium } from '@playwright/test';
+import { chromium, expect } from '@playwright/test';
+import { WHAT_IFS } from '../../src/learn/whatifs.js';
 
 const [base = 'http://localhost:4517/'] = process.argv.slice(2);
 const folder = fileURLToPath(new URL('../../learn/stills/', import.meta.url));
@@ -22,6 +24,7 @@ const page = await browser.newPage({
   colorScheme: 'light',
   reducedMotion: 'reduce',
   bypassCSP: true,
+  serviceWorkers: 'block',
 });
 await page.goto(`${base}learn/`);
 await page.addStyleTag({ content: STYLE });
@@ -33,7 +36,23 @@ for (const stage of await page.locator('[data-figure]').all()) {
     await stage.elementHandle(),
   );
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  const png = await stage.screenshot();
+  await save(name ?? '', await stage.screenshot());
+}
+// Two of them stand beside each other on paper.
+await page.setViewportSize({ width: 640, height: 900 });
+for (const { id } of WHAT_IFS) {
+  await page.goto(`${base}learn/#what-if-${id}`);
+  await page.reload();
+  await page.addStyleTag({ content: STYLE });
+  const bench = page.locator('#bench');
+  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.locator('.figure-status')).toBeEmpty();
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await save(`what-if-${id}`, await bench.locator('.pair').screenshot());
+}
+
+/** @param {string} name @param {Buffer} png */
+async function save(name, png) {
   const bytes = await page.evaluate(
     async (picture) => {
       const bitmap = await createImageBitmap(new Blob([Uint8Array.from(picture)], { type: 'image/png' }));

@@ -74,16 +74,40 @@ test('the hand-out has blanks for the predictions, and every answer on its last 
       document.documentElement.dataset.printed = '';
     };
   });
-  await page.getByRole('button', { name: 'Print' }).click();
+  // The keys for printing wait for the answers as the button does.
+  await page.keyboard.press('ControlOrMeta+p');
   await expect(page.locator('html')).toHaveAttribute('data-printed', '', { timeout: 60_000 });
   await expect(page.locator('.answers')).toBeHidden();
   await page.emulateMedia({ media: 'print' });
   await expect(page.locator('.answer-list > li')).toHaveCount(9);
   await expect(page.locator('.answer-list')).toContainText('Ring 12 of this surface has');
+  await expect(page.locator('.answer-list')).not.toContainText('has not been asked');
+  for (const still of await page.locator('.what-if-stills img').all())
+    await expect.poll(() => still.evaluate((one) => /** @type {HTMLImageElement} */ (one).naturalWidth)).toBe(608);
+  await expect(page.locator('#bench .picture[data-drawn]')).toHaveCount(2);
   await expect(page.locator('.bar')).toBeHidden();
   await expect(page.getByRole('button').filter({ visible: true })).toHaveCount(0);
   for (const name of ['why', 'rest']) await expect(page.locator(`[data-figure="${name}"] canvas`)).toBeVisible();
   expect((await page.pdf({ format: 'A4' })).length).toBeGreaterThan(100_000);
+});
+
+test('what the browser prints by itself has the answers of the figures that are live, and the page says what is missing', async ({
+  page,
+}) => {
+  await openLesson(page, { hash: '#rings' });
+  await live(page, 'rings');
+  const ring = page.locator('.answer-list > li', { hasText: 'On a plane, ring 12 has 72' });
+  // The answer is asked for when its figure has come to life, and written when it is printed.
+  await expect
+    .poll(async () => {
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      return ring.textContent();
+    })
+    .toContain('Ring 12 of this surface has');
+  const last = page.locator('.answer-list > li').last();
+  await expect(last).toContainText('Print from the page’s own button');
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await expect(page.locator('#notice')).toContainText('Not all answers were known');
 });
 
 test('an assignment locks what the teacher chose, and its answers are one file', async ({ page }) => {
