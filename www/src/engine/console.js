@@ -73,16 +73,17 @@ const still = (viewer) =>
   });
 
 /**
- * Resolves with the report once `isOver` holds. `isOver` reads signals.
- * @param {Engine} engine @param {() => boolean} isOver
+ * Resolves with the report once `isOver` holds, or no sampler is there or coming. `isOver` reads signals.
+ * @param {Pick<Parts, 'engine' | 'sampling'>} parts @param {() => boolean} isOver
  */
-const once = (engine, isOver) =>
+const once = ({ engine, sampling }, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
     /** @type {() => void} */
     let stop = () => {};
     stop = effect(() => {
-      const failed = engine.notice.value?.id === 'load' || engine.notice.value?.id === 'safe-mode';
-      if (!isOver() && !failed) return;
+      // The progress is written anew when the sampler ends. The notice about it may have been dismissed since.
+      const isOff = engine.progress.value && ['failed', 'safe'].includes(sampling.supervisor.state);
+      if (!isOff && !isOver()) return;
       resolve(engine.report.peek());
       queueMicrotask(() => stop());
     });
@@ -95,14 +96,12 @@ const atRest = (engine) =>
   !engine.busy.value &&
   engine.progress.value.phase === 'done';
 
-/**
- * Resolves with the report once the sampler is at rest and the picture is up to date.
- * @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer
- */
-async function settled(engine, viewer) {
+/** Resolves with the report once the sampler is at rest and the picture is up to date. @param {Parts} parts */
+async function settled(parts) {
+  const { engine } = parts;
   const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
-  const report = await once(engine, () => atRest(engine) && drawable());
-  await still(viewer);
+  const report = await once(parts, () => atRest(engine) && drawable());
+  await still(parts.viewer);
   return report;
 }
 
@@ -191,14 +190,14 @@ export function installConsole(parts) {
   /** @param {() => void} act */
   const after = (act) => {
     act();
-    return settled(engine, viewer);
+    return settled(parts);
   };
   /** @type {Console} */
   const face = {
     get version() {
       return engine.description.value?.version ?? '';
     },
-    ready: settled(engine, viewer),
+    ready: settled(parts),
     get state() {
       return structuredClone(engine.state.value);
     },
@@ -210,7 +209,7 @@ export function installConsole(parts) {
     run: () => after(() => engine.run()),
     stop() {
       engine.stop();
-      return once(engine, () => atRest(engine));
+      return once(parts, () => atRest(engine));
     },
     open: (file) => after(() => void engine.openFile(file)),
     relax: (steps = 1) => after(() => engine.relax(steps)),

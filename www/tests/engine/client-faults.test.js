@@ -347,6 +347,25 @@ describe('a worker that fails', () => {
     expect(store.notice.value?.id).toBe('hang');
   });
 
+  test('by silence while a file is written leaves nobody waiting for it', async () => {
+    const { client, say, accept, complete } = page();
+    client.sample(request('x'));
+    accept(1);
+    complete(1, 7);
+    const file = client.meshFile('ply');
+    // Nothing else is under way that the silence would break off.
+    vi.advanceTimersByTime(2500);
+    await expect(file).rejects.toThrow('does not hold');
+    expect(workers).toHaveLength(2);
+    // A file that came is waited for no longer.
+    const next = client.meshFile('ply');
+    say({ type: 'ready', description });
+    say({ type: 'file', request: 2, bytes: Uint8Array.of(1) });
+    expect(await next).toEqual(Uint8Array.of(1));
+    vi.advanceTimersByTime(10_000);
+    expect(workers).toHaveLength(2);
+  });
+
   test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
     const { client, store, columns, say, jobs, accept } = page();
     client.sample(request('kept'));

@@ -45,6 +45,17 @@ describe('the keeper of devices', () => {
     expect(log.at(-1)).toBe('open canvas2d');
   });
 
+  test('leaves nobody waiting for the answer of a device that is gone', async () => {
+    const { keeper } = kept();
+    await keeper.start();
+    expect(await keeper.answered(Promise.resolve(7))).toBe(7);
+    await expect(keeper.answered(Promise.reject(new Error('no')))).rejects.toThrow('no');
+    expect(keeper.waiting.size).toBe(0);
+    const never = keeper.answered(new Promise(() => {}));
+    keeper.giveUp('unreachable');
+    await expect(never).rejects.toThrow('lost');
+  });
+
   test('mends a loss with the same kind three times in a minute, then takes the next', async () => {
     const { keeper, log, events, clock, settle } = kept();
     await keeper.start();

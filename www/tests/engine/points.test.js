@@ -1,5 +1,5 @@
-import { describe, expect, test, vi } from 'vitest';
-import { PointsClient, SILENCE_MS } from '../../src/engine/points/client.js';
+import { afterEach, describe, expect, test, vi } from 'vitest';
+import { LOADING_MS, PointsClient, SILENCE_MS } from '../../src/engine/points/client.js';
 import { ModelLoader } from '../../src/engine/points/loader.js';
 import { solve } from '../../src/engine/points/solve.js';
 import { defaultState } from '../../src/engine/share/state.js';
@@ -138,35 +138,23 @@ function scripted() {
 }
 
 describe('the client', () => {
+  afterEach(() => vi.useRealTimers());
   const make = () => {
     const { workers, spawn } = scripted();
-    /** @type {(() => void)[]} */
-    const timers = [];
-    const client = new PointsClient({
-      spawn,
-      onProgress: () => {},
-      clock: {
-        setTimeout: (f, ms) => {
-          expect(ms).toBe(SILENCE_MS);
-          return timers.push(f) - 1;
-        },
-        clearTimeout: (id) => {
-          delete timers[id];
-        },
-      },
-    });
-    return { workers, client, timers };
+    vi.useFakeTimers();
+    const client = new PointsClient({ spawn, onProgress: () => {} });
+    return { workers, client };
   };
 
   test('keeps what was solved, and ends the worker', async () => {
-    const { workers, client, timers } = make();
+    const { workers, client } = make();
     const loading = client.load('bunny', { model: 'bunny', centres: null });
     expect(workers[0].order).toEqual({ model: 'bunny', centres: null });
     workers[0].say({ type: 'solved', solved: solved() });
     expect(await loading).toHaveProperty('solved');
     expect(client.get('bunny')?.info.info.name).toBe('Bunny');
     expect(workers[0].ended).toBe(true);
-    expect(timers.filter(Boolean)).toHaveLength(0);
+    expect(vi.getTimerCount()).toBe(0);
   });
 
   test('gives up an order for the next one', async () => {
@@ -180,13 +168,31 @@ describe('the client', () => {
     expect(workers[1].ended).toBe(true);
   });
 
+  test('waits long for the first word of a worker, and not long for the next', async () => {
+    const { workers, client } = make();
+    const ends = /** @type {string[]} */ ([]);
+    const order = () => void client.load('a', { model: 'a', centres: null }).then(() => ends.push('settled'));
+    order();
+    await vi.advanceTimersByTimeAsync(LOADING_MS - 1);
+    workers[0].say({ type: 'beat' });
+    await vi.advanceTimersByTimeAsync(SILENCE_MS - 1);
+    workers[0].say({ type: 'beat' });
+    await vi.advanceTimersByTimeAsync(SILENCE_MS - 1);
+    expect(ends).toEqual([]);
+    await vi.advanceTimersByTimeAsync(5000 - SILENCE_MS);
+    expect(ends).toEqual(['settled']);
+    order();
+    await vi.advanceTimersByTimeAsync(LOADING_MS + 1000);
+    expect(ends).toEqual(['settled', 'settled']);
+  });
+
   test('names a crash, a silence and a bundle that is not there', async () => {
-    const { workers, client, timers } = make();
+    const { workers, client } = make();
     const crash = client.load('a', { model: 'a', centres: null });
     workers[0].say({ type: 'crashed', message: 'unreachable', stack: 'at wasm' });
     expect(await crash).toMatchObject({ refusal: { kind: 'crashed', details: 'unreachable\nat wasm' } });
     const silent = client.load('a', { model: 'a', centres: null });
-    timers.filter(Boolean)[0]();
+    vi.advanceTimersByTime(LOADING_MS + 1000);
     expect(await silent).toMatchObject({ refusal: { kind: 'silent' } });
     const missing = client.load('a', { model: 'a', centres: null });
     workers[2].onerror({ message: '404' });

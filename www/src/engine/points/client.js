@@ -24,11 +24,17 @@
  * @typedef {{solved: Solved} | {refusal: Refusal} | {givenUp: true}} Outcome
  */
 
+/** Time that the worker's script may take to load, on a slow connection. */
+export const LOADING_MS = 30_000;
 /**
- * Silence after which the worker is terminated. It is long, because reading a large file is one step without messages
- * and the user can cancel at any time.
+ * Silence after which a worker that was heard counts as dead. A step takes some tens of milliseconds, on a slow machine some tenths of
+ * a second, and the worker beats while it loads and reads.
  */
-export const SILENCE_MS = 30_000;
+export const SILENCE_MS = 4000;
+/**
+ * Delay after a silence before it counts. A tab that was suspended first handles the messages that wait.
+ */
+const GRACE_MS = 120;
 
 export class PointsClient {
   /**
@@ -82,12 +88,15 @@ export class PointsClient {
         /** @type {string} */ details = '',
         /** @type {number | null} */ line = null,
       ) => end({ refusal: { kind, message, details, line } });
-      const listen = () => {
+      const silent = () => refuse('silent', 'the solver fell silent and was stopped');
+      const listen = (/** @type {number} */ ms) => {
         this.clock.clearTimeout(timer);
-        timer = this.clock.setTimeout(() => refuse('silent', 'the solver fell silent and was stopped'), SILENCE_MS);
+        timer = this.clock.setTimeout(() => {
+          timer = this.clock.setTimeout(silent, GRACE_MS);
+        }, ms);
       };
       worker.onmessage = ({ data }) => {
-        listen();
+        listen(SILENCE_MS);
         switch (data.type) {
           case 'progress':
             this.onProgress(data);
@@ -109,7 +118,7 @@ export class PointsClient {
       };
       worker.onerror = (event) => refuse('bundle', event.message || 'the solver did not load');
       this.end = end;
-      listen();
+      listen(LOADING_MS);
       worker.postMessage(order);
     });
   }

@@ -21,10 +21,12 @@
  */
 /**
  * @typedef {{type: 'progress', stage: Loading['stage'], label: string, fraction: number}
+ *   | {type: 'beat'}
  *   | {type: 'solved', solved: Solved}
  *   | {type: 'refused', kind: string, message: string, line: number | null}
  *   | {type: 'crashed', message: string, stack: string}
  *   | {type: 'failed', message: string}} FromPoints  `failed`: the bundle did not load
  */
 
-export {};
+/** Largest interval between messages while the worker loads or reads. */
+export const BEAT_MS = 250;

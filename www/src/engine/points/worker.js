@@ -6,6 +6,7 @@
 import init, { Points } from '../../wasm/points/points.js';
 import wasmUrl from '../../wasm/points/points_bg.wasm?url';
 import { loadModule, words } from '../bundle/load.js';
+import { BEAT_MS } from './protocol.js';
 import { solve } from './solve.js';
 
 /**
@@ -25,6 +26,8 @@ console.error = (...parts) => {
 };
 
 self.onmessage = async (/** @type {MessageEvent<Order>} */ { data: order }) => {
+  // The bundle and the file may take long to come. The page sees that the worker is alive.
+  setInterval(() => post({ type: 'beat' }), BEAT_MS);
   post({ type: 'progress', stage: 'starting', label: 'Starting', fraction: 0 });
   let points;
   try {

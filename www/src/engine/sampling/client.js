@@ -124,6 +124,7 @@ export class SamplingClient {
       this.files.set(request, resolve);
       if (this.supervisor.worker) this.supervisor.post({ type: 'export', request, format });
       else this.handOver(request, null);
+      this.attend();
     });
     if (!bytes) throw new Error('The sampler does not hold these particles any more.');
     return bytes;
@@ -133,6 +134,7 @@ export class SamplingClient {
   handOver(request, bytes) {
     this.files.get(request)?.(bytes);
     this.files.delete(request);
+    this.attend();
   }
 
   // ---- requests -------------------------------------------------------------------------------------------------------
@@ -243,10 +245,10 @@ export class SamplingClient {
     this.attend();
   }
 
-  /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
+  /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report and the files have. */
   attend() {
     this.store.busy.value = awaitsParticles(this.runs);
-    this.supervisor.setBusy(awaitsWorker(this.runs));
+    this.supervisor.setBusy(awaitsWorker(this.runs) || this.files.size > 0);
   }
 
   // ---- what the worker sends --------------------------------------------------------------------------------------------

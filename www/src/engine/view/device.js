@@ -56,6 +56,8 @@ export class DeviceKeeper {
     this.inSight = true;
     /** Whether dots stand for a device that was lost out of sight. */
     this.resting = false;
+    /** Those who wait for an answer of the device. @type {Set<(error: Error) => void>} */
+    this.waiting = new Set();
   }
 
   /** Opens the first working device, starting from the present rank. @returns {Promise<void>} */
@@ -120,6 +122,18 @@ export class DeviceKeeper {
     this.epoch += 1;
     this.device?.dispose();
     this.device = null;
+    for (const refuse of this.waiting) refuse(new Error('the graphics device is lost'));
+  }
+
+  /**
+   * Returns what the device answers, unless it is closed before: one that has trapped never answers.
+   * @template T @param {Promise<T>} answer @returns {Promise<T>}
+   */
+  answered(answer) {
+    return new Promise((resolve, reject) => {
+      this.waiting.add(reject);
+      answer.then(resolve, reject).finally(() => this.waiting.delete(reject));
+    });
   }
 
   /** @param {string} message */

@@ -39,6 +39,9 @@ import { ParticleUpload } from './upload.js';
 /** Picking tolerance around small discs, in page pixels. */
 const PICK_PX = 6;
 
+/** Interval of the frames that are drawn while a picture is read back. */
+const LOOK_MS = 1000;
+
 /** Radius around a place that is pointed out, in radii of its rings, that the picture shows. */
 const LOOK_RADII = 14;
 
@@ -412,7 +415,10 @@ export class Viewer {
     renderer.set_style(JSON.stringify({ ...this.style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
     this.restyle();
-    return { width, height, pixels: await picture };
+    // A frame finds out whether the renderer has trapped meanwhile.
+    const look = setInterval(() => this.frames.ask(), LOOK_MS);
+    const pixels = await this.keeper.answered(picture).finally(() => clearInterval(look));
+    return { width, height, pixels };
   }
 }
 
