@@ -11,6 +11,7 @@ mod steps;
 
 use draw::{Colour, View, draw, write_row};
 use glam::Vec3;
+use marching_particles::math::grouped;
 use marching_particles::quality;
 use marching_particles::reference::{self, MAX_PARTICLES, Method, Reference};
 use marching_particles::sampler::{LawKind, Sampling};
@@ -516,19 +517,6 @@ fn figure_12(album: &mut Album, plan: &Plan) -> io::Result<()> {
         "More examples with about 6,000 particles: a figure with sack and hat, which stands in for the paper's Santa, uniform and non-uniform; \
          and the rabbit, non-uniform.",
     )
-}
-
-/// A number with commas between thousands.
-fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// A time of which the clock's ticks may be a large part.

@@ -20,6 +20,20 @@ pub fn shortest_text(value: f64) -> String {
     if plain { value.to_string() } else { format!("{value:e}") }
 }
 
+/// A count with commas between thousands.
+#[must_use]
+pub fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// √3: a hexagonal cell of spacing d has the area √3 d²/2.
 pub(crate) const SQRT_3: f64 = 1.732_050_807_568_877_2;
 
@@ -225,7 +239,7 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounds, shortest_text, sort_few, sort_numbers};
+    use super::{Bounds, grouped, shortest_text, sort_few, sort_numbers};
 
     #[test]
     fn a_text_of_a_number_is_short_and_reads_back() {
@@ -248,6 +262,11 @@ mod tests {
             assert_eq!(text.parse(), Ok(value));
         }
         assert_eq!(shortest_text(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn a_comma_stands_between_thousands() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
     }
 
     #[test]

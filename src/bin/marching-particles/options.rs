@@ -1,12 +1,11 @@
 //! The options that say how a surface is sampled: one for each entry of the table of settings.
 
 use crate::arguments::{Length, length, number};
-use crate::summary::grouped;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, Error, FromArgMatches, value_parser};
-use marching_particles::math::{Bounds, shortest_text};
+use marching_particles::math::{Bounds, grouped, shortest_text};
 use marching_particles::sampler::{COUNT_ROOM, Kind, Setting, Settings, SettingsError, Value};
 use serde_json::{Map, Value as Json};
 

@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 use crate::outcome::Outcome;
 use marching_particles::field::model::{ModelInfo, NormalSource};
-use marching_particles::math::shortest_text;
+use marching_particles::math::{grouped, shortest_text};
 use marching_particles::session::{Cut, ReportRow, describe};
 use serde_json::Value;
 use std::io::{self, Write};
@@ -174,19 +174,6 @@ fn counted(count: usize, name: &str) -> String {
 fn significant(number: f64) -> String {
     let short: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     shortest_text(short)
-}
-
-/// Formats a count with separated thousands.
-pub(crate) fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// Formats a duration in milliseconds or seconds.
