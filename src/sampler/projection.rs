@@ -93,6 +93,14 @@ impl Tolerance {
     }
 }
 
+/// Below this |∇f|, its square is subnormal and has lost digits.
+const FAINT: f32 = 1e-18;
+
+/// ∇f/|∇f|.
+fn unit(gradient: Vec3, slope: f32) -> Vec3 {
+    if slope < FAINT { (gradient / FAINT).normalize_or_zero() } else { gradient / slope }
+}
+
 /// Limits of the projection of a point along the gradient.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Descent {
@@ -214,7 +222,7 @@ impl Projector {
                 let slope = gradient.length();
                 if value.abs() <= tolerance.residual * slope && tolerance.is_slope(slope) {
                     landing[a.circle as usize] =
-                        Landing::On { position: self.points[k], normal: gradient / slope };
+                        Landing::On { position: self.points[k], normal: unit(gradient, slope) };
                     continue;
                 }
                 a.steps += 1;
@@ -349,7 +357,7 @@ impl Projector {
             let slope = gradient.length();
             if value.abs() <= tolerance.residual * slope {
                 return Some(if tolerance.is_slope(slope) {
-                    Landing::On { position, normal: gradient / slope }
+                    Landing::On { position, normal: unit(gradient, slope) }
                 } else {
                     Landing::Undefined
                 });
@@ -418,7 +426,7 @@ impl Projector {
                 if !(slope > min_gradient && slope.is_finite() && value.is_finite()) {
                     continue;
                 }
-                normal[i] = gradient * inverse_slope;
+                normal[i] = if slope < FAINT { unit(gradient, slope) } else { gradient * inverse_slope };
                 let distance = value.abs() * inverse_slope;
                 if distance <= residual {
                     ok[i] = true;
