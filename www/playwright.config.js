@@ -1,4 +1,5 @@
 import { existsSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { defineConfig } from '@playwright/test';
 
 // The browser tests run against the built site (`dist/`), once at the root of a host and once in a folder of one. The
@@ -39,8 +40,8 @@ export default defineConfig({
   // Software rendering is slow and the machines are small: generous limits.
   timeout: 60_000,
   expect: { timeout: 20_000 },
-  // Much of a test is waiting for timers and frames, so two pages share the two processors of a small machine well.
-  workers: 2,
+  // A page for each processor. Much of a test is waiting for timers and frames, so two pages share a single one well.
+  workers: Math.max(2, availableParallelism()),
   fullyParallel: true,
   // A shared machine can stall for seconds. A test that passes only when it is repeated is listed as flaky at the end.
   retries: 1,
