@@ -9,7 +9,7 @@ use marching_particles::math::Sym3;
 use marching_particles::pointcloud::job::Job;
 use marching_particles::pointcloud::read::{ReadError, Reader};
 use marching_particles::sampler::{Search, Settings};
-use marching_particles::session::{FieldRequest, Report, Session};
+use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -110,9 +110,17 @@ fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, random: &mu
         let [a, b] = known.gradient[axis].map(|slope| if way == 0.0 { 0.0 } else { slope * way });
         rise = [rise[0] + a.min(b), rise[1] + a.max(b)];
     }
-    let slack = 1e-11 * (from.abs() + to.abs() + known.value[0].abs() + known.value[1].abs());
+    let slack = 1e-11 * (from.abs() + to.abs() + known.value[0].abs() + known.value[1].abs())
+        + rounding(field, p)
+        + rounding(field, q);
     let is_outside = to - from < rise[0] - slack || to - from > rise[1] + slack;
     assert!(!is_outside, "{}: {from} at {p} and {to} at {q}, but {known:?}", field.text());
+}
+
+/// How far rounding may move the value at a point, by the bounds there: terms may be millions of times as large as their sum.
+fn rounding(field: &mut FormulaField, p: DVec3) -> f64 {
+    let bounds = field.interval(p, p);
+    bounds.hi - bounds.lo
 }
 
 /// Derivatives by transformation of the formula are those of forward jets.
@@ -128,7 +136,7 @@ fn check_derivatives(field: &mut FormulaField, p: DVec3) {
     let is_steady = [1e-12, -1e-12].iter().all(|step| {
         let moved = numbers(field.jet(p * (1.0 + step)));
         exact.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-7 * size)
-    });
+    }) && rounding(field, p) < 1e-7 * size;
     if is_steady && size < 1e9 {
         for (a, b) in exact.iter().zip(&other) {
             // A branch that is not taken may overflow.
@@ -197,34 +205,69 @@ pub fn file(bytes: &[u8]) {
     }
 }
 
-/// A request as the page sends it, `{"field": …, "settings": …}`: it is refused in words, or the run ends within a bounded number of
-/// evaluations with finite particles, and what is proven is whole. The particles do not depend on the size of the steps.
-pub fn request(bytes: &[u8]) {
-    let Ok(mut given) = serde_json::from_slice::<serde_json::Value>(bytes) else { return };
+/// One of so many requests is sampled, which takes a thousand times as long as to read one.
+const SAMPLED: u32 = 16;
+
+/// A request as the page sends it, `{"field": …, "settings": …}`.
+fn parsed(bytes: &[u8]) -> Option<(FieldRequest, Settings)> {
+    let mut given = serde_json::from_slice::<serde_json::Value>(bytes).ok()?;
     let mut take = |name: &str| given.get_mut(name).map(serde_json::Value::take).unwrap_or_default();
-    let Ok(field) = serde_json::from_value::<FieldRequest>(take("field")) else { return };
-    let Ok(settings) = serde_json::from_value::<Settings>(take("settings")) else { return };
-    // Small runs, so that there are many.
-    let settings = Settings {
-        max_particles: settings.max_particles.min(2_000),
-        relax_steps: settings.relax_steps.min(4),
-        radius_share: settings.radius_share.max(0.01),
-        count: settings.count.min(2_000),
-        ..settings
-    };
-    let Some(report) = run(&field, &settings, 20_000) else { return };
-    if Random::of(bytes).0.next_u32().is_multiple_of(8) {
-        let again = run(&field, &settings, 977).map(|report| report.digest);
-        assert_eq!(Some(report.digest), again, "{field:?} {settings:?}");
+    let field = serde_json::from_value(take("field")).ok()?;
+    let settings = serde_json::from_value(take("settings")).ok()?;
+    Some((field, settings))
+}
+
+/// A request: its field and its settings are taken or refused in words, and one of [`SAMPLED`] is checked by [`whole_request`].
+pub fn request(bytes: &[u8]) {
+    if Random::of(bytes).0.next_u32().is_multiple_of(SAMPLED) {
+        return whole_request(bytes);
+    }
+    let Some((field, settings)) = parsed(bytes) else { return };
+    if let Err(error) = Session::new().set_field(&field) {
+        assert!(!error.to_string().is_empty(), "{field:?}");
+    }
+    if let Err(error) = settings.validate() {
+        assert!(!error.to_string().is_empty(), "{settings:?}");
     }
 }
 
+/// A request and its run, which ends within a bounded number of evaluations with finite particles. What is proven is whole, and the
+/// particles depend neither on the size of the steps nor on what the session did before.
+pub fn whole_request(bytes: &[u8]) {
+    let Some((field, settings)) = parsed(bytes) else { return };
+    // Small runs, so that there are many.
+    let settings = Settings {
+        max_particles: settings.max_particles.min(500),
+        relax_steps: settings.relax_steps.min(3),
+        radius_share: settings.radius_share.max(0.02),
+        count: settings.count.min(500),
+        ..settings
+    };
+    let mut session = Session::new();
+    let Some(outcome) = run(&mut session, &field, &settings, 20_000) else { return };
+    if outcome.digest.is_multiple_of(8) {
+        session.report();
+        let again = run(&mut session, &field, &settings, 977).map(|outcome| outcome.digest);
+        assert_eq!(Some(outcome.digest), again, "{field:?} {settings:?}");
+    }
+}
+
+/// What is known of a run without its report.
+pub struct Outcome {
+    pub digest: u64,
+    pub search: Search,
+}
+
 /// Runs a request, in steps of `budget` units, and checks its particles; nothing if it is refused.
-pub fn run(request: &FieldRequest, settings: &Settings, budget: u32) -> Option<Report> {
+pub fn run(
+    session: &mut Session,
+    request: &FieldRequest,
+    settings: &Settings,
+    budget: u32,
+) -> Option<Outcome> {
     /// Evaluations that no run of so few particles needs.
     const MOST: u64 = 20_000_000;
     let context = || format!("{request:?} {settings:?}");
-    let mut session = Session::new();
     if let Err(error) = session.set_field(request) {
         assert!(!error.to_string().is_empty(), "{}", context());
         return None;
@@ -234,14 +277,18 @@ pub fn run(request: &FieldRequest, settings: &Settings, budget: u32) -> Option<R
         assert!(!error.to_string().is_empty(), "{}", context());
         return None;
     }
-    while session.step(budget).stop_reason.is_none() {}
-    let report = session.report();
-    assert!(report.evaluations < MOST, "{}: {} evaluations", context(), report.evaluations);
+    let evaluations = loop {
+        let progress = session.step(budget);
+        if progress.stop_reason.is_some() {
+            break progress.evaluations;
+        }
+    };
+    assert!(evaluations < MOST, "{}: {evaluations} evaluations", context());
     for (p, n) in session.particles().position.iter().zip(&session.particles().normal) {
         assert!(p.is_finite() && (n.length() - 1.0).abs() < 1e-4, "{}: {p} {n}", context());
     }
-    let is_whole =
-        report.search != Search::Proven || report.sampled.missing == Some(report.sampled.without.len());
-    assert!(is_whole, "{}: {:?}", context(), report.sampled);
-    Some(report)
+    let (search, sampled) = (session.sampler().search(), session.sampler().sampled());
+    let is_whole = search != Search::Proven || sampled.missing == Some(sampled.without.len());
+    assert!(is_whole, "{}: {sampled:?}", context());
+    Some(Outcome { digest: session.particles().digest(), search })
 }

@@ -5,7 +5,7 @@ use marching_particles::field::formula::MAX_FORMULA_BYTES;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
-use marching_particles::session::FieldRequest;
+use marching_particles::session::{FieldRequest, Session};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use std::fs;
@@ -83,17 +83,18 @@ fn fuzz(folder: &str, cases: u64, check: impl Fn(&[u8])) {
 
 #[test]
 fn all_readings_of_mutated_formulas_agree() {
-    fuzz("formula", 20_000, harness::formula);
+    fuzz("formula", 40_000, harness::formula);
 }
 
 #[test]
 fn mutated_files_are_read_or_refused() {
-    fuzz("file", 20_000, harness::file);
+    fuzz("file", 200_000, harness::file);
 }
 
 #[test]
 fn mutated_requests_end_with_finite_particles_or_are_refused() {
-    fuzz("request", 200, harness::request);
+    seeds("request").iter().for_each(|seed| harness::whole_request(seed));
+    fuzz("request", 60_000, harness::request);
 }
 
 /// A formula of the gallery in which some pieces are dropped, put in or taken from another formula.
@@ -120,9 +121,13 @@ fn runs_on_damaged_formulas_end_with_finite_particles() {
             ..Settings::default()
         };
         let request = FieldRequest { formula, bounds, ..FieldRequest::default() };
-        if let Some(report) = harness::run(&request, &settings, 20_000) {
+        let mut session = Session::new();
+        if let Some(outcome) = harness::run(&mut session, &request, &settings, 20_000) {
             ran += 1;
-            proven += u32::from(report.search == Search::Proven);
+            proven += u32::from(outcome.search == Search::Proven);
+            if seed % 8 == 0 {
+                session.report();
+            }
         }
     }
     println!("{ran} of {cases} formulas are valid, {proven} of the runs proven");
