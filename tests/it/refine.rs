@@ -127,7 +127,9 @@ fn what_is_cancelled_keeps_the_last_whole_level() {
         );
         seen.push(particles.len());
     }
-    assert!(seen.is_sorted(), "levels come one after the other: {seen:?}");
+    // Surgery changes the number of a level's particles by less than a hundredth.
+    let follows = |pair: &[usize]| 100 * pair[1] >= 99 * pair[0];
+    assert!(seen.windows(2).all(follows), "levels come one after the other: {seen:?}");
     assert!(seen[0] < seen[3], "no level was finished between: {seen:?}");
 }
 

@@ -10,7 +10,8 @@
 //! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even lattice has scars, lines of
 //!   particles with five and seven neighbours in turn, that grow as the spacing shrinks: M. J. Bowick, D. R. Nelson and A.
 //!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and
-//!   removes them where that lowers the energy.
+//!   removes them where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G. Dueck and T.
+//!   Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
 //! * *Lloyd's method*, at the last level and near defects only, evens out the cells that the springs leave too small at fives and
 //!   too large at sevens: Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
 //!
@@ -320,7 +321,9 @@ impl Refinement {
                 mesh.vertex_slots()
             }
             Pass::Centre => self.near.len(),
-            Pass::Size(_) | Pass::Limit { .. } | Pass::Sweep | Pass::Mend | Pass::Land => mesh.vertex_slots(),
+            Pass::Size(_) | Pass::Limit { .. } | Pass::Sweep | Pass::Mend { .. } | Pass::Land => {
+                mesh.vertex_slots()
+            }
         };
         Work::Pass { pass, next: 0, end: end as u32 }
     }
@@ -360,9 +363,9 @@ impl Refinement {
             Pass::Inspect => self.tally.inspect(layer, next..last),
             Pass::Sweep => layer.relax(&mut ground, springs, next..last),
             Pass::Flip => layer.flip(next..last),
-            Pass::Mend => {
+            Pass::Mend { loss } => {
                 let slack = if self.to_come == self.target.levels { SLACK } else { f32::INFINITY };
-                let aim = Aim { springs, delta: self.recipe.delta, faces: self.faces, slack };
+                let aim = Aim { springs, delta: self.recipe.delta, faces: self.faces, slack, loss };
                 for v in next..last {
                     units += TRIAL_UNITS * u32::from(self.surgeon.mend(layer, &mut ground, aim, v));
                 }

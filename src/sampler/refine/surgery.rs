@@ -13,7 +13,7 @@ const RINGS: u32 = 2;
 const SWEEPS: u32 = 4;
 /// Their over-relaxation: less than in sweeps over all particles, since the patch must come to rest within a few.
 const OMEGA: f32 = 1.3;
-/// A trial is kept if it gains more than this, in units of the spacing squared: less is noise of the sweeps.
+/// Where no loss is accepted, a trial is kept if it gains more than this, in units of the spacing squared: less is noise of the sweeps.
 const LEAST_GAIN: f32 = 5e-4;
 /// What a particle costs, in units of the spacing squared, for each share of faces above the wanted number.
 const COUNT_PRICE: f32 = 20.0;
@@ -34,6 +34,8 @@ pub(super) struct Aim {
     pub(super) faces: f32,
     /// Share of faces missing or too many from which on particles without a defect are tried too.
     pub(super) slack: f32,
+    /// Loss that a trial may make and still be kept, in units of the spacing squared.
+    pub(super) loss: f32,
 }
 
 /// What may help at a particle.
@@ -135,7 +137,7 @@ impl Surgeon {
         let potential = 3.0 * theta * (1.0 - theta) + COUNT_PRICE * excess / aim.faces;
         let price = a_sq * (potential * added + aim.delta * defects as f32);
         let gain = before - self.energy(layer, aim.springs) - price;
-        if gain > LEAST_GAIN * a_sq && !is_flat {
+        if gain > (LEAST_GAIN - aim.loss) * a_sq && !is_flat {
             layer.mesh.keep();
             return true;
         }

@@ -132,7 +132,7 @@ proptest! {
         for (place, size) in places {
             let springs = Springs { spacing: SPACING * size, theta: 0.8, omega: 1.5 };
             let faces = layer.mesh.faces() as f32;
-            let aim = Aim { springs, delta: 0.03, faces, slack: f32::INFINITY };
+            let aim = Aim { springs, delta: 0.03, faces, slack: f32::INFINITY, loss: 0.0 };
             let v = place % layer.position.len() as u32;
             surgeon.mend(&mut layer, &mut ground, aim, v);
             layer.relax(&mut ground, springs, 0..v);
