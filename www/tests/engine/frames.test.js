@@ -35,6 +35,27 @@ describe('a frame', () => {
     expect(frames).toHaveLength(0);
   });
 
+  test('after an hour asleep is one short step on, and no burst of frames', () => {
+    const steps = /** @type {number[]} */ ([]);
+    const loop = new FrameLoop((_now, step) => {
+      steps.push(step);
+      return 'drawn';
+    });
+    const [, shown] = page.addEventListener.mock.lastCall ?? [];
+    loop.ask();
+    frames[0]();
+    page.hidden = true;
+    shown();
+    vi.advanceTimersByTime(3_600_000);
+    page.hidden = false;
+    shown();
+    shown();
+    expect(frames).toHaveLength(2);
+    frames[1]();
+    expect(steps[1]).toBeGreaterThan(0);
+    expect(steps[1]).toBeLessThanOrEqual(0.05);
+  });
+
   test('lets go who waits for it, also where there was nothing to draw with', () => {
     const loop = new FrameLoop(() => 'none');
     const seen = vi.fn();

@@ -40,6 +40,27 @@ test('the page forbids itself every other host', async ({ page }) => {
   expect(refused).toBe('connect-src');
 });
 
+test('without storage the page works as ever', async ({ page }) => {
+  await page.addInitScript(() => {
+    for (const name of ['localStorage', 'sessionStorage', 'indexedDB', 'caches']) {
+      Object.defineProperty(window, name, {
+        get() {
+          throw new DOMException('storage is denied', 'SecurityError');
+        },
+      });
+    }
+  });
+  const { errors } = await open(page);
+  await expectSurface(page);
+  // What the page would keep is kept as long as it is open.
+  await page.keyboard.press('?');
+  const shortcuts = page.getByRole('dialog').getByRole('checkbox');
+  await shortcuts.uncheck();
+  await expect(shortcuts).not.toBeChecked();
+  expect(errors).toEqual([]);
+  expect((await status(page)).notice).toBe(null);
+});
+
 test('the same state gives the same particles as the native core', async ({ page }) => {
   const { runs } = JSON.parse(readFileSync(new URL('../../../tests/golden/digests.json', import.meta.url), 'utf8'));
   expect(runs.length).toBeGreaterThan(0);
