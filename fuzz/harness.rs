@@ -67,12 +67,14 @@ pub fn formula(bytes: &[u8]) {
             sum.set_parameter(&name, random.between(-2.0, 2.0)).expect("a finite value");
         }
         let scale = 0.25_f64.powi(random.0.next_u32() as i32 & 15);
-        check_enclosure(&mut sum, random.point(3.0), random.point(1.0).abs() * scale, &mut random);
+        let (lo, size) = (random.point(3.0), random.point(1.0).abs() * scale);
+        let places = [(); 2].map(|()| DVec3::from_array([(); 3].map(|()| random.between(0.0, 1.0))));
+        check_enclosure(&mut sum, lo, size, places);
     }
 }
 
 /// The bounds over a box around a point hold the value there.
-fn check_interval(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3) {
+pub fn check_interval(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3) {
     let bounds = field.interval(p - below, p + above);
     let value = field.jet(p).value;
     let context = || format!("{} at {p}, {below} {above}: {value}, {bounds:?}", field.text());
@@ -84,23 +86,29 @@ fn check_interval(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3
     }
 }
 
-/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes.
-fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, random: &mut Random) {
+/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes between two points, given as shares of its
+/// size.
+pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
     field.enclose(0, &[[lo, lo + size]], &mut out);
     let [known] = out;
     if !(known.defined && known.continuous) {
         return;
     }
-    let [p, q] = [(); 2].map(|()| {
-        let share = DVec3::from_array([(); 3].map(|()| random.between(0.0, 1.0)));
-        (lo + size * share).min(lo + size)
-    });
+    let [p, q] = places.map(|share| (lo + size * share).min(lo + size));
     let gradient = field.transformed_jet(p).gradient;
     for axis in 0..3 {
         let ([least, most], slope) = (known.gradient[axis], gradient[axis]);
+        assert!(least <= most, "{}: {known:?}", field.text());
         let is_within = !slope.is_finite() || least <= slope && slope <= most;
         assert!(is_within, "{}: {gradient} at {p}, not in {known:?}", field.text());
+    }
+    let mut second = [[[0.0; 2]; 6]];
+    field.enclose_second(0, &[[lo, lo + size]], &mut second);
+    let h = field.transformed_jet(p).hessian;
+    for ([least, most], exact) in second[0].into_iter().zip([h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]) {
+        let is_within = !known.smooth || !exact.is_finite() || least <= exact && exact <= most;
+        assert!(is_within, "{}: {h:?} at {p}, not in {second:?}", field.text());
     }
     // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across kinks.
     let (from, to) = (field.jet(p).value, field.jet(q).value);

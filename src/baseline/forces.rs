@@ -20,7 +20,7 @@
 use super::crowd::Particle;
 use super::{Settings, SurfaceContext};
 use crate::math::Bounds;
-use crate::sampler::projection::BATCH;
+use crate::sampler::projection::{Accuracy, BATCH};
 use crate::sampler::relaxation::repulsion::{LandingBatch, Overlap, Repulsion};
 use crate::sampler::relaxation::repulsion::{MAX_MOVE, TRUSTED_CORRECTION};
 use crate::sampler::sizing::Sizing;
@@ -37,7 +37,7 @@ const REST: f32 = 0.12;
 pub(crate) struct Forces {
     pub(crate) sizing: Sizing,
     pub(crate) bounds: Bounds,
-    pub(crate) resolution: f32,
+    pub(crate) accuracy: Accuracy,
     pub(crate) min_gradient: f32,
     /// Σ (overlap / mean radius)² of a particle below which it divides.
     free: f32,
@@ -50,17 +50,17 @@ impl Forces {
         settings: &Settings,
         sizing: Sizing,
         bounds: &Bounds,
-        resolution: f32,
+        accuracy: Accuracy,
         min_gradient: f32,
     ) -> Self {
         // A particle is compressed as much by six neighbours at δ of the spacing 2r.
         let overlap = Overlap::RANGE - 2.0 * settings.death_radius as f32;
         let (free, crowded) = (settings.free_load as f32, 6.0 * overlap * overlap);
-        Self { sizing, bounds: *bounds, resolution, min_gradient, free, crowded }
+        Self { sizing, bounds: *bounds, accuracy, min_gradient, free, crowded }
     }
 
     pub(crate) fn law(&self) -> Overlap<'_> {
-        Overlap { sizing: &self.sizing, resolution: self.resolution, min_gradient: self.min_gradient }
+        Overlap { sizing: &self.sizing, accuracy: self.accuracy, min_gradient: self.min_gradient }
     }
 
     /// Returns the distance at which a particle of this radius repels one that is not larger.

@@ -102,7 +102,7 @@ impl Scheme {
         let lo = survey.position.iter().fold(infinite, |lo, &p| lo.min(p));
         let hi = survey.position.iter().fold(-infinite, |hi, &p| hi.max(p));
         let diameter = (hi - lo).length().max(2.0 * radius);
-        let tolerance = tolerance(radius, survey.resolution, survey.gradient_scale);
+        let tolerance = tolerance(radius, survey.accuracy(), survey.gradient_scale);
         Self::WitkinHeckbert(WitkinHeckbert::new(settings, tolerance, bounds, radius, diameter))
     }
 
@@ -200,8 +200,8 @@ impl Baseline {
                 if sizing.predicted_count() > 0.0 {
                     radius = radius_of(sizing.predicted_count());
                 }
-                let least = tolerance(0.0, 0.0, survey.gradient_scale).min_gradient;
-                Scheme::Forces(Box::new(Forces::new(settings, sizing, bounds, survey.resolution, least)))
+                let least = tolerance(0.0, survey.accuracy(), survey.gradient_scale).min_gradient;
+                Scheme::Forces(Box::new(Forces::new(settings, sizing, bounds, survey.accuracy(), least)))
             }
         };
         let mut random = Pcg32::seed_from_u64(sizes.seed);

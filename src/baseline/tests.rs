@@ -8,7 +8,7 @@ use crate::field::formula::FormulaField;
 use crate::math::Bounds;
 use crate::sampler::Settings as Sizes;
 use crate::sampler::discovery::survey::survey;
-use crate::sampler::projection::{Projector, tolerance};
+use crate::sampler::projection::{Accuracy, Projector, tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{DVec3, Vec3};
 use rand_core::SeedableRng;
@@ -19,7 +19,13 @@ const DIAMETER: f32 = 2.0;
 
 fn witkin_heckbert() -> WitkinHeckbert {
     let bounds = Bounds::cube(1.5);
-    WitkinHeckbert::new(&Settings::default(), tolerance(WANTED, 0.0, 1.0), &bounds, WANTED, DIAMETER)
+    WitkinHeckbert::new(
+        &Settings::default(),
+        tolerance(WANTED, Accuracy::UNLIMITED, 1.0),
+        &bounds,
+        WANTED,
+        DIAMETER,
+    )
 }
 
 /// Particles of many sizes, all over a part of the plane z = 0.
@@ -246,7 +252,7 @@ fn forces(field: &mut FormulaField) -> Forces {
     let mut sizing = Sizing::new(field, &bounds, &Sizes::default(), &survey, &mut 0);
     // 4π / (2√3 r²).
     sizing.scale_to(4.0 * core::f64::consts::PI / (2.0 * 3.0_f64.sqrt() * f64::from(WANTED * WANTED)));
-    Forces::new(&Settings::default(), sizing, &bounds, 0.0, 0.0)
+    Forces::new(&Settings::default(), sizing, &bounds, Accuracy::UNLIMITED, 0.0)
 }
 
 #[test]

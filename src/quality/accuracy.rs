@@ -4,9 +4,9 @@ use super::figures::Figures;
 use super::moments::Moments;
 use glam::{DVec3, Vec3};
 
-/// Returns the first-order distance |f|/|∇f| of a point from the surface.
-pub(super) fn first_order_distance(value: f64, slope: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.abs() / slope }
+/// Returns the first-order height f/|∇f| of a point above the surface; its size is the distance.
+pub(super) fn first_order_height(value: f64, slope: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value / slope }
 }
 
 /// Measures the first-order distances of all points.

@@ -10,8 +10,8 @@ use crate::slices::{pause, ranges};
 /// clip box cuts: triangles across them join points of different components.
 const NEAR: f32 = 2.0;
 
-/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times the
-/// distance of the nearest.
+/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times that of the one before
+/// it. A single neighbour may be far too near.
 const RANK: usize = 3;
 const FARTHEST: f32 = 3.0;
 
@@ -33,8 +33,8 @@ pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize)
             lengths.clear();
             lengths.extend(scene.rings.of(i).map(|j| distance(i, j)));
             sort_few(&mut lengths, |a, b| a < b);
-            let nearest: f32 = lengths.first().copied().unwrap_or(0.0);
-            lengths.get(RANK - 1).map_or(nearest, |&third| third.min(FARTHEST * nearest))
+            let before: f32 = lengths.get(RANK - 2).or(lengths.first()).copied().unwrap_or(0.0);
+            lengths.get(RANK - 1).map_or(before, |&third| third.min(FARTHEST * before))
         }));
         pause().await;
     }

@@ -7,9 +7,9 @@
 //! *Natural neighbours* are defined in the tangent plane. The points of the same sheet are rotated into the tangent
 //! plane of a point, at their true distances, and its natural neighbours are those whose Voronoi cells share an edge
 //! with its own. Two points are on the same sheet if their normals are within 90° and the line between them leaves one
-//! tangent plane about as it arrives at the other, which separates sheets that face the same way. The cell is clipped
-//! by the nearest points until no farther one can matter. The result is the same as from the convex hull of the
-//! inverted points q/|q|², without a hull.
+//! tangent plane about as it arrives at the other, which separates sheets that face the same way; where those are near,
+//! the field between the points decides. The cell is clipped by the nearest points until no farther one can matter. The
+//! result is the same as from the convex hull of the inverted points q/|q|², without a hull.
 //!
 //! The whole report costs a few microseconds for each particle. It is deterministic, with the same bits natively and in
 //! WebAssembly if the field has the same bits.
@@ -29,6 +29,7 @@ mod places;
 mod probe;
 mod projection;
 mod scene;
+mod sheets;
 mod sizes;
 mod spacing;
 mod triangles;
@@ -42,7 +43,7 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_factor};
 use crate::math::{Bounds, SQRT_3};
 use crate::slices::{self, pause, ranges};
-use accuracy::{first_order_distance, residuals};
+use accuracy::{first_order_height, residuals};
 use border::Border;
 use figures::hexagonal_spacing;
 use glam::Vec3;
@@ -138,7 +139,7 @@ pub(crate) async fn in_slices(
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
         let jet = field.jet(position[i].as_dvec3());
-        report.residual[i] = first_order_distance(jet.value, jet.gradient.length()) as f32;
+        report.residual[i] = first_order_height(jet.value, jet.gradient.length()).abs() as f32;
         let (_, equal) = scene.tree.nearest(position[i], u32::MAX, f32::INFINITY);
         report.component[i] = component.get(equal as usize).copied().unwrap_or(components::NO_LABEL);
         if let Some(&twin) = scene.tree.origin.get(equal as usize) {

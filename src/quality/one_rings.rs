@@ -2,6 +2,8 @@
 
 use super::cell::VoronoiCell;
 use super::nearby::Nearby;
+use super::sheets::Sheets;
+use crate::field::Field;
 use crate::math::{LANES, tangent_frame};
 use crate::slices::pause;
 use crate::spatial::tree::{Tree, key, unkey};
@@ -41,9 +43,9 @@ struct Scratch {
 }
 
 impl OneRings {
-    /// Finds the one-rings of the points of `tree`, which have these unit `normal`s in tree order.
-    pub(super) async fn new(tree: &Tree, normal: &[Vec3]) -> Self {
-        let n = tree.len();
+    /// Finds the one-rings of the points. The field tells near sheets apart.
+    pub(super) async fn new(sheets: &Sheets<'_>, field: &mut dyn Field) -> Self {
+        let n = sheets.tree.len();
         let mut rings = Self {
             start: Vec::with_capacity(n + 1),
             neighbour: Vec::with_capacity(6 * n + n / 4),
@@ -52,8 +54,8 @@ impl OneRings {
         };
         rings.start.push(0);
         let mut scratch = Scratch { cell: VoronoiCell::new(), nearby: Nearby::default(), keys: Vec::new() };
-        for leaf in tree.leaves() {
-            rings.add_leaf(tree, normal, leaf, &mut scratch);
+        for leaf in sheets.tree.leaves() {
+            rings.add_leaf(sheets, field, leaf, &mut scratch);
             pause().await;
         }
         rings
@@ -62,17 +64,19 @@ impl OneRings {
     /// Appends the one-rings of the points of a leaf, given by its range and its box.
     fn add_leaf(
         &mut self,
-        tree: &Tree,
-        normal: &[Vec3],
+        sheets: &Sheets,
+        field: &mut dyn Field,
         (range, lo, hi): (Range<usize>, Vec3, Vec3),
         Scratch { cell, nearby, keys }: &mut Scratch,
     ) {
+        let Sheets { tree, normal, .. } = *sheets;
         let reach = BALL * (hi - lo).length();
         let reach_sq = reach * reach;
         nearby.gather(tree, lo - reach, hi + reach);
         for i in range {
             let p = tree.position[i];
             let mut nearest_sq = reach_sq;
+            let mut faces_another = false;
             keys.clear();
             for (indices, distances_sq) in nearby.index.chunks(LANES).zip(nearby.distances_sq(p)) {
                 for (&j, &d) in indices.iter().zip(&distances_sq.0) {
@@ -80,6 +84,8 @@ impl OneRings {
                         nearest_sq = nearest_sq.min(d);
                         if is_one_sheet(tree, normal, i, j as usize, d) {
                             keys.push(key(d, j));
+                        } else {
+                            faces_another |= normal[i].dot(normal[j as usize]) < 0.0;
                         }
                     }
                 }
@@ -89,8 +95,14 @@ impl OneRings {
             }
             self.nearest.push(nearest_sq.sqrt());
             keys.sort_unstable();
+            let facing_away = if faces_another {
+                sheets.facing_away(i, nearby.index.iter().map(|&j| j as usize))
+            } else {
+                f64::INFINITY
+            };
+            let mut is_stranger = |j: usize| sheets.are_two(field, i, j, facing_away);
             let mut known_sq = f64::from(reach_sq);
-            let mut closed = fill(cell, tree, normal[i], i, keys, known_sq);
+            let mut closed = fill(cell, tree, normal[i], i, keys, known_sq, &mut is_stranger);
             for count in TRIES {
                 // The ball may have held more points than this try takes.
                 if closed || count <= keys.len() {
@@ -105,7 +117,7 @@ impl OneRings {
                     Some(&last) if keys.len() == count => f64::from(unkey(last).0),
                     _ => f64::INFINITY, // Every point is known.
                 };
-                closed = fill(cell, tree, normal[i], i, keys, known_sq);
+                closed = fill(cell, tree, normal[i], i, keys, known_sq, &mut is_stranger);
             }
             self.neighbour
                 .extend(cell.edges(known_sq).map(|(j, certain)| if certain { j | PROVEN } else { j }));
@@ -172,9 +184,17 @@ pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Clips the cell of point `i` by the points of the sorted `keys`, until no farther one can matter. Returns whether the
-/// cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
-fn fill(cell: &mut VoronoiCell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64], known_sq: f64) -> bool {
+/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until no farther one can matter. Returns
+/// whether the cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
+fn fill(
+    cell: &mut VoronoiCell,
+    tree: &Tree,
+    normal: Vec3,
+    i: usize,
+    keys: &[u64],
+    known_sq: f64,
+    is_stranger: &mut impl FnMut(usize) -> bool,
+) -> bool {
     let p = tree.position[i].as_dvec3();
     let (u, v) = tangent_frame(normal);
     let (u, v) = (u.as_dvec3(), v.as_dvec3());
@@ -187,6 +207,9 @@ fn fill(cell: &mut VoronoiCell, tree: &Tree, normal: Vec3, i: usize, keys: &[u64
         // Keys are rounded to single precision. The slack costs a few needless cuts only.
         if f64::from(distance_sq) > 4.001 * cell.reach_sq() {
             break;
+        }
+        if is_stranger(j as usize) {
+            continue;
         }
         if let Some(q) = unroll(tree.position[j as usize].as_dvec3() - p, u, v) {
             cell.clip(q, j);

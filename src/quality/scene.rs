@@ -1,8 +1,9 @@
 //! The points to be measured, without duplicates, with their one-rings and triangles.
 
-use super::accuracy::{NormalAngles, first_order_distance};
+use super::accuracy::{NormalAngles, first_order_height};
 use super::figures::hexagonal_spacing;
 use super::one_rings::OneRings;
+use super::sheets::Sheets;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
 use crate::slices::pause;
@@ -39,7 +40,7 @@ impl Scene {
         let kept = position.iter().copied().zip(0..).filter(|&(_, i)| !drop[i as usize]).collect();
         let tree = Tree::in_slices(kept).await;
         let mut normal = Vec::with_capacity(tree.len());
-        let mut residual = Vec::with_capacity(tree.len());
+        let mut height = Vec::with_capacity(tree.len());
         let mut normal_angles = NormalAngles::default();
         for (position, origin) in tree.position.chunks(BATCH).zip(tree.origin.chunks(BATCH)) {
             let (mut value, mut gradient) = ([0.0; BATCH], [DVec3::ZERO; BATCH]);
@@ -50,11 +51,14 @@ impl Scene {
                 normal_angles.add(given, gradient);
                 let unit = Some((gradient / slope).as_vec3()).filter(|unit| unit.is_finite());
                 normal.push(unit.or_else(|| given.try_normalize()).unwrap_or(Vec3::Z));
-                residual.push(first_order_distance(value, slope));
+                height.push(first_order_height(value, slope));
             }
             pause().await;
         }
-        let rings = OneRings::new(&tree, &normal).await;
+        let sheets = Sheets { tree: &tree, normal: &normal, height: &height };
+        let rings = OneRings::new(&sheets, field).await;
+        let mut residual = height;
+        residual.iter_mut().for_each(|height| *height = height.abs());
         let has_duplicate = tree.origin.iter().map(|&i| has_duplicate[i as usize]).collect();
         Self { tree, normal, residual, normal_angles, rings, has_duplicate }
     }

@@ -458,9 +458,27 @@ pub(crate) fn turned([cos, sin]: [f32; 2], t: f32) -> [f32; 2] {
     [cos * c - sin * s, sin * c + cos * s]
 }
 
-/// Returns the tolerance for particles of a radius: |f|/|∇f| ≤ 10⁻⁴ r, but not below `resolution`, the distance that
-/// single precision resolves on this field. The paper stops "when the child has converged" (§4.3) and gives no number.
-/// A gradient below a millionth of the usual `gradient_scale` is cancellation noise at a singular point.
-pub(crate) fn tolerance(radius: f32, resolution: f32, gradient_scale: f32) -> Tolerance {
-    Tolerance { residual: (1e-4 * radius).max(resolution), min_gradient: 1e-6 * gradient_scale }
+/// How near the surface particles have to be. The paper stops "when the child has converged" (§4.3) and gives no number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Accuracy {
+    /// The distance that single precision resolves on this field.
+    pub(crate) finest: f32,
+    /// The distance within which a particle cannot be taken for one of another sheet.
+    pub(crate) coarsest: f32,
+}
+
+impl Accuracy {
+    /// Nothing is known of the field.
+    pub(crate) const UNLIMITED: Self = Self { finest: 0.0, coarsest: f32::INFINITY };
+
+    /// Returns the largest |f|/|∇f| of a particle of a radius: 10⁻⁴ r, within these limits.
+    pub(crate) fn residual(self, radius: f32) -> f32 {
+        (1e-4 * radius).min(self.coarsest).max(self.finest)
+    }
+}
+
+/// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual `gradient_scale` is cancellation noise
+/// at a singular point.
+pub(crate) fn tolerance(radius: f32, accuracy: Accuracy, gradient_scale: f32) -> Tolerance {
+    Tolerance { residual: accuracy.residual(radius), min_gradient: 1e-6 * gradient_scale }
 }

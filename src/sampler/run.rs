@@ -430,13 +430,13 @@ impl Sampler {
                 relaxation::RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance }
             }
             Sampling::Adaptive => relaxation::RepulsionLaw::Overlap {
-                resolution: self.survey.resolution,
+                accuracy: self.survey.accuracy(),
                 min_gradient: tolerance.min_gradient,
             },
         };
-        let (steps, count) = (self.settings.relax_steps, self.particles.len());
-        let sheets = if self.front.active().rule().is_fine() { self.particles.fronts() } else { Vec::new() };
-        self.relaxation.begin(law, &self.bounds, steps, count, &mut self.neighbours, sheets);
+        let steps = self.settings.relax_steps;
+        let limits = (&self.bounds, self.front.active().rule().largest_lift());
+        self.relaxation.begin(law, limits, steps, &self.particles, &mut self.neighbours);
         PhaseState::Relaxation
     }
 

@@ -154,6 +154,21 @@ fn a_component_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
 }
 
 #[test]
+fn each_of_two_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() {
+    // Two balls of radius 0.006: f is flat everywhere else, so that no node leads to them.
+    let [left, right] = [DVec3::new(-0.31, 0.02, 0.01), DVec3::new(0.3, 0.01, -0.02)];
+    let bump = |c: DVec3| format!("exp(-20000*((x-({}))^2+(y-({}))^2+(z-({}))^2))", c.x, c.y, c.z);
+    let formula = format!("0.5 - {} - {}", bump(left), bump(right));
+    let (session, report) = sampled(&formula, 1.0, 0.0005);
+    is_proven(&report, &formula);
+    assert_eq!((report.components, report.sampled.missing), (2, Some(0)), "{:?}", report.warnings);
+    for centre in [left, right] {
+        let is_near = |p: &Vec3| (p.as_dvec3() - centre).length() < 0.01;
+        assert!(session.particles().position.iter().any(is_near), "{centre}");
+    }
+}
+
+#[test]
 fn a_count_is_met_on_a_component_that_the_survey_misses() {
     let settings = Settings {
         size_mode: marching_particles::sampler::SizeMode::Count,
@@ -429,6 +444,35 @@ fn sheets_that_face_the_same_way_hold_particles_each_however_near() {
             counts.iter().all(|&count| (0.9..1.1).contains(&(3.0 * count as f64 / report.count as f64)));
         assert!(alike && counts[0] > 50, "{sampling:?}: {counts:?}");
         is_proven(&report, "planes");
+    }
+}
+
+#[test]
+fn sheets_that_face_the_same_way_are_counted_apart_at_any_distance() {
+    let spheres = |gap: f64| balls(&[0.0, 1.0, 2.0].map(|k| ([0.0; 3], 1.0 + k * gap)));
+    for gap in [3e-2, 1e-3, 1e-4, 3e-5] {
+        let (session, report) = sampled(&spheres(gap), 1.5, 0.01);
+        let context = format!("gap {gap}: {:?}", report.warnings);
+        is_proven(&report, &context);
+        assert_eq!((report.components, report.quality.map(|q| q.euler)), (3, Some(6)), "{context}");
+        let area = report.quality.map_or(0.0, |q| q.area) / (12.0 * core::f64::consts::PI);
+        assert!((0.99..1.06).contains(&area), "{context}: {area}");
+        // Every component is a sphere.
+        for label in 0..3 {
+            let of_it = session.particles().position.iter().zip(&session.measured().component);
+            let distances = of_it.filter(|(_, l)| **l == label).map(|(p, _)| f64::from(p.length()));
+            let [least, most] = distances.fold([2.0, 0.0_f64], |[lo, hi], d| [d.min(lo), d.max(hi)]);
+            assert!(most - least < 0.5 * gap, "{context}: from {least} to {most}");
+        }
+    }
+    for sampling in [Sampling::Uniform, Sampling::Adaptive] {
+        for (planes, gap) in [(3, 1e-3), (3, 1e-4), (5, 1e-3), (7, 1e-3)] {
+            let factors: Vec<String> = (0..planes).map(|k| format!("(z-{})", f64::from(k) * gap)).collect();
+            let settings = Settings { sampling, radius_share: 0.02, ..Settings::default() };
+            let (_, report) = session(&factors.join("*"), Bounds::cube(1.0), &settings);
+            is_proven(&report, &report.warnings.join(" "));
+            assert_eq!(report.components, planes as usize, "{sampling:?}, {planes} planes {gap} apart");
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use std::path::Path;
 
 #[path = "../../fuzz/harness.rs"]
 #[expect(unreachable_pub, reason = "it is a library of its own for libFuzzer")]
-mod harness;
+pub(crate) mod harness;
 
 /// How many times as many cases are asked for as usual.
 fn times() -> u64 {

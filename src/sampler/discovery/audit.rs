@@ -29,6 +29,8 @@ const UNITS: u32 = 64;
 pub(crate) const MOST_NAMED: usize = 256;
 /// Witnesses without a proof after which the others are not looked at, and count as open.
 const MOST_FAILED: u64 = 512;
+/// Distance of a particle from its sheet, over its largest coordinate, that double precision may not tell from 0.
+const ROUNDING: f64 = 1e-12;
 /// Distance, in radii, to which a component without a particle is followed.
 const FOLLOWED: f64 = 4.0;
 
@@ -142,9 +144,12 @@ impl Audit {
             near.iter().map(|&(_, j)| [particles.position[j as usize].as_dvec3(); 2]).collect();
         let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
         field.enclose(part, &boxes, &mut known);
-        let mut place = known.iter().map(|known| {
+        let mut place = known.iter().zip(&boxes).map(|(known, &[p, _])| {
             let steepest = DVec3::from_array(known.gradient.map(|[lo, hi]| hi.max(-lo))).length();
-            known.value[1].max(-known.value[0]) <= 2.0 * *slack * steepest
+            // As near as the particle is to its own sheet: that of another factor may be within the slack too.
+            let jet = field.jet(p);
+            let own = jet.value.abs() / jet.gradient.length() + ROUNDING * p.abs().max_element();
+            known.value[1].max(-known.value[0]) <= 2.0 * own.min(*slack) * steepest
         });
         on_part.retain(|_| place.next() == Some(true));
         let place_of = |j: u32| particles.position[j as usize].as_dvec3();

@@ -7,7 +7,7 @@
 
 use crate::field::{Enclosure, Field};
 use crate::particles::Particles;
-use crate::sampler::projection::Projector;
+use crate::sampler::projection::{Accuracy, Projector};
 use crate::spatial::Neighbour;
 use glam::{DVec3, Vec3};
 
@@ -42,10 +42,15 @@ pub(crate) struct SheetRule {
 impl SheetRule {
     /// The rule for particles of a radius from `smallest` to `largest`, on a surface where another sheet and a third one lie
     /// `crowding` away from a point.
-    pub(crate) fn new(crowding: f32, [smallest, largest]: [f32; 2], resolution: f32) -> Self {
+    pub(crate) fn new(crowding: f32, [smallest, largest]: [f32; 2], accuracy: Accuracy) -> Self {
         let is_crowded = crowding <= MAX_LIFT * 2.0 * largest;
-        // A particle may be a ten-thousandth of its radius away from the surface, and so may each of a pair.
-        Self { resolved: is_crowded.then_some(4.0 * (1e-4 * smallest).max(resolution)) }
+        // Both particles of a pair may be a residual away from the surface.
+        Self { resolved: is_crowded.then_some(4.0 * accuracy.residual(smallest)) }
+    }
+
+    /// Lift above which a particle that has moved is on another sheet; infinite where sheets are not as near.
+    pub(crate) fn largest_lift(self) -> f32 {
+        self.resolved.unwrap_or(f32::INFINITY)
     }
 
     /// Whether sheets may be nearer than the usual rule tells apart.

@@ -4,7 +4,7 @@
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
-use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance, tolerance};
+use crate::sampler::projection::{Accuracy, BATCH, Descent, Projector, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
@@ -400,8 +400,10 @@ fn project(
     let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
     // Two units in the last place of the largest coordinate; positions themselves are rounded to half of one.
     let ulps = 2.0 * f32::EPSILON * reach;
-    let coarse =
-        Tolerance { residual: (1e-4 * spacing).max(ulps), ..tolerance(0.0, 0.0, out.gradient_scale) };
+    let coarse = Tolerance {
+        residual: (1e-4 * spacing).max(ulps),
+        ..tolerance(0.0, Accuracy::UNLIMITED, out.gradient_scale)
+    };
     let mut normal = [Vec3::ZERO; BATCH];
     let mut ok = [false; BATCH];
     for (chunk, areas) in start.chunks_mut(BATCH).zip(areas.chunks(BATCH)) {
@@ -430,9 +432,17 @@ fn project(
 }
 
 impl Survey {
+    /// How near this surface particles have to be.
+    pub(crate) fn accuracy(&self) -> Accuracy {
+        /// Share of the crowding: of three sheets it is the distance of the third, or up to twice that.
+        const SHARE: f32 = 0.1;
+        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding }
+    }
+
     /// What counts as being on the surface before there is a radius.
     pub(crate) fn tolerance(&self) -> Tolerance {
-        tolerance(0.0, self.residual.max(self.resolution), self.gradient_scale)
+        let residual = self.residual.max(self.resolution);
+        Tolerance { residual, ..tolerance(0.0, Accuracy::UNLIMITED, self.gradient_scale) }
     }
 
     /// Takes over the points that another search has `found`, where the survey has none, or its proof that there are none.
@@ -514,7 +524,29 @@ fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, s
     let stride = survey.position.len().div_ceil(SAMPLES).max(1);
     let distances: [f32; DISTANCES] = core::array::from_fn(|k| LARGEST * spacing / (1_u32 << k) as f32);
     let mut least = f32::INFINITY;
-    for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
+    let selected = survey.position.iter().copied().zip(survey.normal.iter().copied()).step_by(stride);
+    let (mut points, mut normals): (Vec<Vec3>, Vec<Vec3>) = selected.unzip();
+    // The points may be as far from their sheets as those are from each other. One that cannot come nearer tells nothing.
+    let mut ok = [false; SAMPLES];
+    let limits = Descent { residual: 2.0 * survey.resolution, reach: survey.residual, trust: 0.0 };
+    for first in (0..points.len()).step_by(BATCH) {
+        let batch = first..points.len().min(first + BATCH);
+        let (normals, ok) = (&mut normals[batch.clone()], &mut ok[batch.clone()]);
+        let least = survey.tolerance().min_gradient;
+        projector.land_along_gradient(
+            field,
+            &mut points[batch],
+            normals,
+            ok,
+            least,
+            &mut { limits },
+            MAX_STEPS,
+        );
+    }
+    for (k, (&p, &n)) in points.iter().zip(&normals).enumerate() {
+        if !ok[k] {
+            continue;
+        }
         let mut nearest = [f32::INFINITY; 2];
         let mut is_between = false;
         for (side, nearest) in [1.0, -1.0].into_iter().zip(&mut nearest) {

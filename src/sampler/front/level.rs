@@ -58,7 +58,7 @@ pub(crate) struct FrontSetup<'a> {
 impl FrontSetup<'_> {
     /// How particles with radii in this range tell sheets apart.
     pub(crate) fn rule(&self, radii: [f32; 2]) -> SheetRule {
-        SheetRule::new(self.survey.crowding, radii, self.survey.resolution)
+        SheetRule::new(self.survey.crowding, radii, self.survey.accuracy())
     }
 }
 

@@ -26,6 +26,7 @@
 mod forces;
 mod grading;
 pub(crate) mod repulsion;
+mod sheets;
 mod stepper;
 
 use crate::field::Field;
@@ -33,7 +34,7 @@ use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::projection::{Projector, Tolerance};
+use crate::sampler::projection::{Accuracy, Projector, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
 use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
 use crate::sampler::relaxation::stepper::{Stepper, batches};
@@ -41,7 +42,7 @@ use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
 /// No correction is trusted: near a bend the energy depends on the normal, so the normal is evaluated again at the
-/// final position.
+/// final position; and near another sheet a short correction may lead far away.
 const TRUST_NONE: f32 = f32::MIN_POSITIVE;
 
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
@@ -84,8 +85,8 @@ enum Purpose {
 pub(crate) enum RepulsionLaw {
     /// For particles of this radius.
     Gaussian { radius: f32, tolerance: Tolerance },
-    /// For particles of many radii, on a surface that single precision resolves to `resolution`.
-    Overlap { resolution: f32, min_gradient: f32 },
+    /// For particles of many radii.
+    Overlap { accuracy: Accuracy, min_gradient: f32 },
 }
 
 impl RepulsionLaw {
@@ -149,17 +150,23 @@ impl Relaxation {
         self.stepper.clear();
     }
 
-    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. Particles with
-    /// different numbers in `sheets` do not repel each other; it is empty where the normals alone tell sheets apart.
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. A particle that moves
+    /// by more than `largest_lift` has left its sheet; if that is finite, particles of different sheets that face the same way do not
+    /// repel each other.
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
-        bounds: &Bounds,
+        (bounds, largest_lift): (&Bounds, f32),
         target: u32,
-        particles: usize,
+        particles: &Particles,
         pairs: &mut PackedNeighbours,
-        sheets: Vec<u32>,
     ) {
+        let sheets = if largest_lift < f32::INFINITY {
+            sheets::numbers(largest_lift, particles, pairs)
+        } else {
+            Vec::new()
+        };
+        let particles = particles.len();
         self.law = law;
         self.target = target;
         self.purpose = if target == 0 && law.resizes() { Purpose::End } else { Purpose::Step };
@@ -168,7 +175,7 @@ impl Relaxation {
         self.is_steep = false;
         // A first step that was cancelled has moved particles, so the lists of the front no longer hold.
         let is_first = self.stepper.energy().is_empty();
-        self.stepper.begin(bounds, particles, law.first_step(), law.resizes());
+        self.stepper.begin((bounds, largest_lift), particles, law.first_step(), law.resizes());
         self.lists.reset(particles);
         let are_told = sheets.is_empty();
         self.lists.sheets = sheets;
@@ -225,8 +232,8 @@ impl Relaxation {
             (RepulsionLaw::Gaussian { radius, tolerance }, _) => {
                 self.run(&Gaussian::new(radius, tolerance), surface, pairs, particles, budget)
             }
-            (RepulsionLaw::Overlap { resolution, min_gradient }, Some(sizing)) => {
-                let law = Overlap { sizing, resolution, min_gradient };
+            (RepulsionLaw::Overlap { accuracy, min_gradient }, Some(sizing)) => {
+                let law = Overlap { sizing, accuracy, min_gradient };
                 self.run(&law, surface, pairs, particles, budget)
             }
             (RepulsionLaw::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
@@ -331,7 +338,8 @@ impl Relaxation {
         let Self { phase, lists, stepper, .. } = self;
         let mut landing = LandingBatch::new();
         for range in batches(range) {
-            landing.trust = if pairs.any_weighted(&range) { TRUST_NONE } else { TRUSTED_CORRECTION };
+            let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
+            landing.trust = if is_checked { TRUST_NONE } else { TRUSTED_CORRECTION };
             match phase {
                 Phase::Move => stepper.advance(law, particles, range.clone(), &mut landing),
                 Phase::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),

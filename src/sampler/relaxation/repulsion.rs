@@ -6,7 +6,7 @@ use crate::field::Field;
 use crate::math::Sym3;
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
-use crate::sampler::projection::{BATCH, Descent, Descents, Projector, Tolerance, tolerance};
+use crate::sampler::projection::{Accuracy, BATCH, Descent, Descents, Projector, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
@@ -197,8 +197,8 @@ pub(crate) fn gaussian(x: Vec4) -> Vec4 {
 /// * A radius is brought up to date once its particle has travelled a tenth of it, and at the end.
 pub(crate) struct Overlap<'a> {
     pub(crate) sizing: &'a Sizing,
-    /// Distance that single precision resolves on this surface.
-    pub(crate) resolution: f32,
+    /// How near the surface particles have to be.
+    pub(crate) accuracy: Accuracy,
     /// Smallest length of a gradient that has a direction.
     pub(crate) min_gradient: f32,
 }
@@ -255,7 +255,7 @@ impl Repulsion for Overlap<'_> {
         let mut position = [Vec3::ZERO; BATCH];
         let mut descents = CurvatureDescents {
             radius: [0.0; BATCH],
-            resolution: self.resolution,
+            accuracy: self.accuracy,
             trust,
             needs_curvature: true,
             hessian: [Sym3::default(); BATCH],
@@ -303,7 +303,7 @@ const RADIUS_LASTS: f32 = 0.1;
 /// A batch of descents to the surface that notes the curvature at each evaluation.
 struct CurvatureDescents {
     radius: [f32; BATCH],
-    resolution: f32,
+    accuracy: Accuracy,
     trust: f32,
     /// Whether evaluations include the Hessian.
     needs_curvature: bool,
@@ -317,7 +317,7 @@ impl Descents for CurvatureDescents {
     fn of(&self, i: usize) -> Descent {
         let radius = self.radius[i];
         Descent {
-            residual: tolerance(radius, self.resolution, 0.0).residual,
+            residual: self.accuracy.residual(radius),
             reach: MAX_MOVE * radius,
             trust: self.trust * radius,
         }

@@ -2,6 +2,7 @@
 
 use crate::math::{Bounds, larger, refill};
 use crate::particles::Particles;
+use crate::sampler::discovery::sheets::lift;
 use crate::sampler::neighbours::constants::MAX_TURN;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::projection::BATCH;
@@ -13,6 +14,8 @@ use glam::Vec3;
 
 /// Factor by which the step size grows after a step that stands; it is halved after one that does not.
 const GROWTH: f32 = 1.05;
+/// Times that the way of a particle that has come to another sheet is halved.
+const HALVINGS: u32 = 4;
 /// The configuration counts as being at its minimum after more than this many rejected steps in a row.
 const MAX_FAILURES: u32 = 6;
 
@@ -20,6 +23,8 @@ const MAX_FAILURES: u32 = 6;
 #[derive(Clone)]
 pub(super) struct Stepper {
     bounds: Bounds,
+    /// Lift above which a particle has left its sheet; infinite where no others are near.
+    largest_lift: f32,
     pub(super) forces: Forces,
     /// Positions before the step under judgement.
     previous: Vec<Vec3>,
@@ -41,6 +46,7 @@ impl Stepper {
     pub(super) fn new() -> Self {
         Self {
             bounds: Bounds::cube(1.0),
+            largest_lift: f32::INFINITY,
             forces: Forces::new(),
             previous: Vec::new(),
             previous_radius: Vec::new(),
@@ -58,9 +64,16 @@ impl Stepper {
         self.energy.clear();
     }
 
-    /// Prepares for more steps of particles in `bounds`; `first_size` is the size of the first step of a run.
-    pub(super) fn begin(&mut self, bounds: &Bounds, particles: usize, first_size: f32, resizes: bool) {
-        self.bounds = *bounds;
+    /// Prepares for more steps of particles in `bounds`, which have left their sheet above `largest_lift`; `first_size` is the size of
+    /// the first step of a run.
+    pub(super) fn begin(
+        &mut self,
+        (bounds, largest_lift): (&Bounds, f32),
+        particles: usize,
+        first_size: f32,
+        resizes: bool,
+    ) {
+        (self.bounds, self.largest_lift) = (*bounds, largest_lift);
         self.failures = 0;
         if self.done == 0 {
             self.step_size = first_size;
@@ -80,6 +93,11 @@ impl Stepper {
 
     pub(super) fn energy(&self) -> &[f64] {
         &self.energy
+    }
+
+    /// Returns whether particles may come to another sheet.
+    pub(super) fn may_stray(&self) -> bool {
+        self.largest_lift < f32::INFINITY
     }
 
     /// Returns whether the energy has been measured where the particles were when the relaxation began.
@@ -171,8 +189,8 @@ impl Stepper {
     /// Moves the particles of `range` to where the positions in `landing` come to the surface, and gives them the
     /// normals and radii there.
     ///
-    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, and at a fold,
-    /// across which its normal would turn by more than 90°.
+    /// A particle stays where it is if it cannot go: beyond the border of the box, where the field ends, at a fold, across
+    /// which its normal would turn by more than 90°, and where only another sheet is near.
     pub(super) fn land<L: Repulsion>(
         &mut self,
         law: &L,
@@ -190,7 +208,11 @@ impl Stepper {
                 landing.radius_travel[k] = self.radius_travel[i] + distance;
             }
         }
+        let goal = landing.position;
         law.land(surface.field, surface.projector, landing);
+        if self.may_stray() {
+            self.land_nearer(law, surface, particles, (range.start, &goal), landing);
+        }
         for (k, i) in range.enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
             let cosine = normal.dot(particles.normal[i]);
@@ -210,6 +232,52 @@ impl Stepper {
                 particles.position[i] = position;
                 particles.normal[i] = normal;
             }
+        }
+    }
+
+    /// Lands those particles from `first` on, that have not come to the surface or to another sheet of it, nearer to where they were, on the
+    /// way to the `goal`. Those that still leave their sheet then are not ok.
+    fn land_nearer<L: Repulsion>(
+        &self,
+        law: &L,
+        surface: &mut SurfaceContext,
+        particles: &Particles,
+        (first, goal): (usize, &[Vec3; BATCH]),
+        landing: &mut LandingBatch,
+    ) {
+        let has_left = |landing: &LandingBatch, k: usize| {
+            let (p, n) = (particles.position[first + k], particles.normal[first + k]);
+            !landing.ok[k] || lift(landing.position[k] - p, n, landing.normal[k]) > self.largest_lift
+        };
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            share *= 0.5;
+            let mut again = LandingBatch::new();
+            again.trust = landing.trust;
+            let mut which = [0; BATCH];
+            for k in (0..landing.count).filter(|&k| has_left(landing, k)) {
+                let (m, i) = (again.count, first + k);
+                let p = particles.position[i];
+                which[m] = k;
+                again.position[m] = p.lerp(goal[k], share);
+                if L::RESIZES {
+                    again.radius[m] = particles.radius[i];
+                    again.radius_travel[m] = self.radius_travel[i] + (again.position[m] - p).length();
+                }
+                again.count += 1;
+            }
+            if again.count == 0 {
+                return;
+            }
+            law.land(surface.field, surface.projector, &mut again);
+            for (m, &k) in which[..again.count].iter().enumerate() {
+                (landing.position[k], landing.normal[k]) = (again.position[m], again.normal[m]);
+                (landing.radius[k], landing.radius_travel[k]) = (again.radius[m], again.radius_travel[m]);
+                landing.ok[k] = again.ok[m];
+            }
+        }
+        for k in 0..landing.count {
+            landing.ok[k] = !has_left(landing, k);
         }
     }
 }

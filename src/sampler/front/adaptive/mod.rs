@@ -31,7 +31,7 @@ use crate::sampler::front::level::{
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
-use crate::sampler::projection::{Landing, Projector, Tolerance, tolerance};
+use crate::sampler::projection::{Accuracy, Landing, Projector, Tolerance, tolerance};
 use crate::sampler::settings::Placement;
 use crate::spatial::Neighbour;
 use core::ops::Range;
@@ -82,7 +82,7 @@ struct Rules {
     match_tolerance: f32,
     /// Distance from a parent within which others are gathered, in its radii.
     reach: f32,
-    resolution: f32,
+    accuracy: Accuracy,
     gradient_scale: f32,
     sheets: SheetRule,
 }
@@ -90,7 +90,7 @@ struct Rules {
 impl Rules {
     /// What counts as being on the surface for a particle of this radius.
     fn tolerance(&self, radius: f32) -> Tolerance {
-        tolerance(radius, self.resolution, self.gradient_scale)
+        tolerance(radius, self.accuracy, self.gradient_scale)
     }
 }
 
@@ -124,7 +124,7 @@ impl AdaptiveFront {
                 grading: 0.2,
                 match_tolerance: 0.7,
                 reach: REACH,
-                resolution: 0.0,
+                accuracy: Accuracy::UNLIMITED,
                 gradient_scale: 1.0,
                 sheets: SheetRule::default(),
             },
@@ -238,7 +238,7 @@ impl LevelFront for AdaptiveFront {
             grading,
             match_tolerance: settings.match_tolerance as f32,
             reach: REACH.max(LISTED * (1.0 + ratio)),
-            resolution: survey.resolution,
+            accuracy: survey.accuracy(),
             gradient_scale: survey.gradient_scale,
             sheets: setup.rule(radii),
         };

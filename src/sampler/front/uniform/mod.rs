@@ -222,7 +222,7 @@ impl LevelFront for UniformFront {
         let &FrontSetup { settings, bounds, survey, radius, .. } = setup;
         self.radius = radius;
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
-        self.tolerance = tolerance(radius, survey.resolution, survey.gradient_scale);
+        self.tolerance = tolerance(radius, survey.accuracy(), survey.gradient_scale);
         self.rule = setup.rule([radius; 2]);
         self.level = Level::new(*bounds, settings.max_particles as usize);
         self.parents = 0..0;
