@@ -94,7 +94,7 @@ fn mutated_files_are_read_or_refused() {
 #[test]
 fn mutated_requests_end_with_finite_particles_or_are_refused() {
     seeds("request").iter().for_each(|seed| harness::whole_request(seed));
-    fuzz("request", 60_000, harness::request);
+    fuzz("request", 15_000, harness::request);
 }
 
 /// A formula of the gallery in which some pieces are dropped, put in or taken from another formula.
