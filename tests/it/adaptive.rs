@@ -3,7 +3,9 @@
 
 use crate::smooth::smooth;
 use marching_particles::field::Field;
+use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
+use marching_particles::math::Bounds;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures, Sizes};
 use marching_particles::sampler::{
@@ -43,6 +45,23 @@ fn figures(surface: &str, particles: &Particles) -> Figures {
     let options = quality::Options { sizes: Sizes::Given(&particles.radius), ..Default::default() };
     quality::measure(&particles.position, &particles.normal, &mut field, Some(&surface.bounds), &options)
         .figures
+}
+
+#[test]
+fn on_ripples_about_as_wide_as_particles_they_do_not_crowd() {
+    let bounds = Bounds::cube(1.5);
+    let settings = Settings { sampling: Sampling::Adaptive, chord_error: 5e-4, ..Settings::default() };
+    for (ripple, most) in [("0.004*sin(50x)", 10), ("0.003*sin(80x)", 20)] {
+        let mut field = FormulaField::parse(&format!("x^2+y^2+z^2-1+{ripple}"), &[]).expect("a formula");
+        let mut sampler = Sampler::new();
+        sampler.start(&mut field, &bounds, &settings).expect("valid settings");
+        while sampler.step(&mut field, 100_000).stop_reason.is_none() {}
+        let Particles { position, normal, radius, .. } = sampler.particles();
+        let options = quality::Options { sizes: Sizes::Given(radius), ..Default::default() };
+        let figures = quality::measure(position, normal, &mut field, Some(&bounds), &options).figures;
+        assert!(figures.overlap_min > 0.6, "{ripple}: {}", figures.overlap_min);
+        assert!(figures.crowded.is_some_and(|crowded| crowded <= most), "{ripple}: {:?}", figures.crowded);
+    }
 }
 
 /// Largest circumradius of a triangle of neighbours, relative to that of three touching discs of their mean radius.

@@ -458,7 +458,8 @@ impl Ring {
     }
 
     /// Returns two limits that the neighbours set to a particle at `offset` with the radius `radius`: the least distance beyond
-    /// `share` (r_i + r_j), negative where one is nearer, and the largest radius that the slope `grading` allows.
+    /// `share` (r_i + r_j), negative where one is nearer, and the largest radius that the slope `grading` allows beside those whose
+    /// radius is exact. A predicted one may be far too small: a limit by it would be handed on from child to child.
     pub(crate) fn limits(&self, offset: Vec3, radius: f32, share: f32, grading: f32) -> (f32, f32) {
         let [ox, oy, oz] = offset.to_array().map(Lanes::splat);
         let mut room = Lanes::splat(f32::INFINITY);
@@ -469,7 +470,8 @@ impl Ring {
             let beyond = distance - (chunk.radius + Lanes::splat(radius)) * Lanes::splat(share);
             let allowed = chunk.radius + distance * Lanes::splat(grading);
             for lane in 0..LANES {
-                let (a, b) = (beyond.0[lane], allowed.0[lane]);
+                let is_exact = chunk.weight.0[lane] > 0.0;
+                let (a, b) = (beyond.0[lane], if is_exact { allowed.0[lane] } else { f32::INFINITY });
                 room.0[lane] = if a < room.0[lane] { a } else { room.0[lane] };
                 largest.0[lane] = if b < largest.0[lane] { b } else { largest.0[lane] };
             }

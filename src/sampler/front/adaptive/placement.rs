@@ -51,8 +51,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// Limits the radius that the sizing law gives to what the particles around allow. Final particles never ask for less than
-    /// `least`, the smallest radius of the law, but siblings may, because their radii are predictions.
+    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest radius of
+    /// the law.
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.
