@@ -5,9 +5,10 @@
 import { fill, h, uniqueId } from '../ui/dom.js';
 import { download } from '../ui/share.js';
 import { createBench } from './bench.js';
+import { lockParts } from './locks.js';
 import { ringsOf } from './measure.js';
 import { figuresOf } from './pair.js';
-import { CONTROLS, LONGEST_TITLE, packTask, tableOf } from './task.js';
+import { CONTROLS, LONGEST_TITLE, lockedWords, packTask, tableOf } from './task.js';
 import { WHAT_IFS } from './whatifs.js';
 
 /**
@@ -49,7 +50,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
       assignment: task.title,
       surface,
       answers: answers.map(({ question, box }) => ({ question, answer: box.value })),
-      predictions: [...stops.outcomes.values()],
+      predictions: stops.predictions(),
       runs: (pair.runs ?? []).map((run, k) => recordOf(labels[k], run)),
     };
     const text = format === 'json' ? `${JSON.stringify(work, null, 2)}\n` : tableOf(work);
@@ -59,6 +60,7 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   fill(
     host,
     h('h2', { id }, task.title || 'Assignment'),
+    task.locks.length > 0 ? h('p', { class: 'quiet' }, lockedWords(task.locks)) : null,
     benchHost,
     answers.map(({ question, box, id: own }) =>
       h('div', { class: 'answer-row' }, h('label', { for: own }, question), box),
@@ -75,14 +77,15 @@ export function mountAssignment(host, task, { lab, surface, stops }) {
   host.hidden = false;
   const bench = createBench(benchHost, lab, { setup: task.setup, locks: task.locks });
   void bench.show(task.setup);
+  lockParts(document.body, task.locks);
 }
 
 /** The dialog in which a teacher makes an assignment. @param {{ setup: () => Setup, linkOf: (task: string) => string }} about */
 export function createMaker({ setup, linkOf }) {
   const title = h('input', { class: 'box wide', id: uniqueId('title'), maxlength: LONGEST_TITLE });
   const questions = h('textarea', { class: 'answer-box', id: uniqueId('questions'), rows: 4 });
-  const locks = CONTROLS.map(({ value, label }) => {
-    const box = h('input', { type: 'checkbox', value, checked: true });
+  const locks = CONTROLS.map(({ value, label, usual = false }) => {
+    const box = h('input', { type: 'checkbox', value, checked: usual });
     return { box, element: h('label', { class: 'check' }, box, label) };
   });
   const what = h('p', { class: 'quiet' });

@@ -30,6 +30,15 @@ export class Stops {
     this.picks = new Map();
     /** @type {Map<string, Outcome>} */
     this.outcomes = new Map();
+    /** What a learner has entered so far, by the stop. @type {Map<string, { question: string, get: () => string | number | null }>} */
+    this.entries = new Map();
+  }
+
+  /** What has been guessed: with the answer where it is out, and with none where it is not. @returns {Outcome[]} */
+  predictions() {
+    const open = [...this.entries].filter(([stop]) => !this.outcomes.has(stop));
+    const waiting = open.map(([stop, { question, get }]) => ({ stop, question, guess: get(), answer: '' }));
+    return [...this.outcomes.values(), ...waiting.filter(({ guess }) => guess !== null)];
   }
 
   /** @param {string} stop */
@@ -70,6 +79,7 @@ export function mountPrediction(host, prediction, { lab, stops }) {
   const { id } = host;
   const question = host.querySelector('.predict-question')?.textContent?.trim() ?? '';
   const input = inputOf(prediction, question, stops.pickOf(id));
+  stops.entries.set(id, { question, get: input.get });
   const result = h('div', { class: 'predict-result', role: 'status' });
   const reveal = h('button', { type: 'submit', class: 'button primary' }, 'Reveal');
   const skip = h('button', { type: 'button', class: 'button plain', on: { click: () => void answer(null) } }, 'Skip');

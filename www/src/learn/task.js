@@ -12,12 +12,26 @@ import { setupOf, WHAT_IFS } from './whatifs.js';
 export const LONGEST_TITLE = 120;
 const LONGEST_QUESTION = 500;
 const MOST_QUESTIONS = 20;
-/** @type {readonly { value: Control, label: string }[]} */
+/** What may be locked; `words` name it to a learner, `usual` is locked unless the teacher says otherwise. @type {readonly { value: Control, label: string, words: string, usual?: boolean }[]} */
 export const CONTROLS = [
-  { value: 'what', label: 'What changes' },
-  { value: 'left', label: 'Left' },
-  { value: 'right', label: 'Right' },
+  { value: 'what', label: 'What changes', words: 'what is compared here', usual: true },
+  { value: 'left', label: 'Left', words: 'the picture on the left', usual: true },
+  { value: 'right', label: 'Right', words: 'the picture on the right', usual: true },
+  { value: 'figures', label: 'Sliders and buttons of the figures', words: 'the sliders and buttons of the figures' },
+  {
+    value: 'questions',
+    label: 'Answers of the questions',
+    words: 'the answers of the questions; your guesses are saved',
+  },
+  { value: 'bench', label: 'Other comparisons', words: 'the other comparisons' },
+  { value: 'race', label: 'The race', words: 'the race' },
 ];
+
+/** What is locked, in words for the learner; empty if nothing is. @param {readonly Control[]} locks */
+export const lockedWords = (locks) => {
+  const names = CONTROLS.filter(({ value }) => locks.includes(value)).map(({ words }) => words);
+  return names.length > 0 ? `Locked: ${names.join('; ')}.` : '';
+};
 
 /** @param {Task} task */
 export const packTask = (task) => packed(task);

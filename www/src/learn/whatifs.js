@@ -7,7 +7,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
  * @typedef {import('./pair.js').Colouring} Colouring
  * @typedef {import('../engine/lesson/protocol.js').LessonSettings} LessonSettings
  */
-/** What may be locked on the bench. @typedef {'what' | 'left' | 'right'} Control */
+/** What an assignment may lock: on its bench, then on the rest of the page. @typedef {'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race'} Control */
 /** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
 /**
  * One choice. `makes` is given a value and makes the run; the first two values are shown first.

@@ -116,7 +116,7 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
   const task = {
     title: 'Seams',
     setup: { what: 'tolerance', left: '0.7', right: '0.95' },
-    locks: /** @type {import('../../src/learn/whatifs.js').Control[]} */ (['what', 'right']),
+    locks: /** @type {import('../../src/learn/whatifs.js').Control[]} */ (['what', 'right', 'figures', 'race']),
     questions: ['Why?', 'Where?'],
   };
   expect(unpackTask(packTask(task))).toEqual(task);

@@ -118,6 +118,8 @@ test('an assignment locks what the teacher chose, and its answers are one file',
   await dialog.getByLabel('Title').fill('Seams');
   await dialog.getByLabel('Questions, one on each line').fill('Which run has closer pairs?');
   await dialog.getByRole('checkbox', { name: 'Right' }).uncheck();
+  for (const name of ['Sliders and buttons of the figures', 'Answers of the questions', 'The race'])
+    await dialog.getByRole('checkbox', { name }).check();
   const link = await dialog.getByLabel('Link of the assignment').inputValue();
   await page.goto('about:blank');
   await page.goto(link);
@@ -138,6 +140,18 @@ test('an assignment locks what the teacher chose, and its answers are one file',
     surface: '(sqrt(x^2 + y^2) - R)^2 + z^2 = 0.09, R = 0.7',
     answers: [{ question: 'Which run has closer pairs?', answer: 'The left one, "clearly".' }],
   });
+  // What is locked elsewhere on the page is locked, and what is not stays open.
+  await expect(task.getByText(/^Locked: what is compared here; the picture on the left; the sliders/)).toBeVisible();
+  const rings = await live(page, 'rings');
+  await expect(rings.locator('.controls')).toHaveJSProperty('inert', true);
+  await expect(page.locator('#race-box > .controls')).toHaveJSProperty('inert', true);
+  await expect(page.locator('#bench > .controls')).toHaveJSProperty('inert', false);
+  const ring = page.locator('#predict-ring');
+  await ring.getByLabel('Particles in ring 12').fill('70');
+  await page.keyboard.press('Enter');
+  await expect(ring).not.toHaveAttribute('data-state', 'open');
+  const guesses = JSON.parse(await saved('Save as JSON')).predictions;
+  expect(guesses).toMatchObject([{ stop: 'predict-ring', guess: 70, answer: '' }]);
   expect(work.runs.map((/** @type {any} */ { settings }) => settings.match_tolerance)).toEqual([0.7, 0.95]);
   expect(work.runs[0].new_per_level.slice(0, 2)).toEqual([1, 6]);
   expect(await saved('Save as CSV')).toContain('answer,Which run has closer pairs?,"The left one, ""clearly""."');
