@@ -232,6 +232,28 @@ test('the start of the front is turned to the eye', async ({ page }) => {
   await expect.poll(facing).toBeGreaterThan(0.8);
 });
 
+test('a link to an early level from behind turns to it, and one that goes too far says so', async ({ page }) => {
+  const link = (/** @type {object} */ view) => `#v1.j.${Buffer.from(JSON.stringify({ view })).toString('base64url')}`;
+  await open(page, { hash: link({ level: 1 }) });
+  const facing = () =>
+    page.evaluate(() => {
+      const { state, particles } = /** @type {any} */ (window).marchingParticles;
+      const { yaw, pitch } = state.view.camera;
+      const [x, y, z] = particles().normals;
+      return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
+    });
+  await expect.poll(facing).toBeGreaterThan(0.3);
+  const { camera } = (await state(page)).view;
+  await page.goto('about:blank');
+  await open(page, {
+    hash: link({ level: 1, camera: { ...camera, fit: false, yaw: camera.yaw + Math.PI, pitch: -camera.pitch } }),
+  });
+  await expect.poll(facing).toBeGreaterThan(0.3);
+  await page.goto('about:blank');
+  await open(page, { hash: link({ level: 999 }) });
+  await expect(page.getByText(/^The link names level 999\. The last one, \d+, is shown\.$/)).toBeVisible();
+});
+
 for (const [width, height] of /** @type {const} */ ([
   [1440, 900],
   [820, 1180],

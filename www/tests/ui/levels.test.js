@@ -4,7 +4,7 @@ import { facing } from '../../src/engine/view/facing.js';
 import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
-import { drawnAt, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
+import { drawnAt, isOutOfSight, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
 import { BINS, degreeBins, meanOf, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
 
@@ -227,6 +227,21 @@ describe('a key', () => {
     expect(moveOf({ ...none, key: 'Home' }, panel)).toEqual({ grain: 'chosen', to: 'first' });
     expect(moveOf({ ...none, key: 'ArrowRight', ctrlKey: true }, panel)).toBe(null);
     expect(moveOf({ ...none, key: 'x' }, range)).toBe(null);
+  });
+});
+
+describe('a level out of sight', () => {
+  const particles = {
+    count: 3,
+    levels: Uint32Array.of(0, 1, 2),
+    normals: Float32Array.of(-1, 0, 0, -0.8, 0.6, 0, 1, 0, 0),
+  };
+  test('is one whose particles all face away', () => {
+    const camera = { yaw: 0, pitch: 0 };
+    expect(isOutOfSight(particles, camera, 1)).toBe(true);
+    expect(isOutOfSight(particles, camera, 2)).toBe(false);
+    expect(isOutOfSight(particles, { yaw: Math.PI / 2, pitch: 0 }, 1)).toBe(false);
+    expect(isOutOfSight({ ...particles, count: 0 }, camera, 1)).toBe(false);
   });
 });
 

@@ -37,6 +37,23 @@ export function placeOf({ level, step }, { last, steps }) {
   return step !== null && step < steps ? last + Math.max(1, step) : last + steps;
 }
 
+/** Cosine of the angle to the eye above which a particle is seen. */
+const SEEN = 0.1;
+
+/**
+ * Returns whether every particle up to a level faces away from the camera, so that the faint surface still to come would hide them all.
+ * @param {Pick<import('../../engine/columns.js').Columns, 'count' | 'levels' | 'normals'>} particles
+ * @param {{ yaw: number, pitch: number }} camera @param {number} level
+ */
+export function isOutOfSight({ count, levels, normals }, { yaw, pitch }, level) {
+  const [x, y, z] = [Math.cos(yaw) * Math.cos(pitch), Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch)];
+  for (let i = 0; i < count; i += 1) {
+    const facing = x * normals[3 * i] + y * normals[3 * i + 1] + z * normals[3 * i + 2];
+    if (levels[i] <= level && facing > SEEN) return false;
+  }
+  return count > 0;
+}
+
 /** @param {Engine} engine */
 export function createLevels(engine) {
   const table = signal(levelTable(engine.columns));
@@ -62,9 +79,14 @@ export function createLevels(engine) {
   function show(place) {
     if (!some.peek() || place === at.peek()) return;
     const to = drawnAt(place, about.peek());
-    const [x, y, z] = engine.columns.normals;
-    if (whole.peek() && to.level !== null) engine.turnTo([x, y, z]);
+    if (to.level !== null) turnTo(to.level, whole.peek());
     engine.setView(to);
+  }
+  /** Turns the seed to the eye: on the way back from the whole, and where nothing of a level would be seen. @param {number} to @param {boolean} [isBack] */
+  function turnTo(to, isBack = false) {
+    const { columns, state } = engine;
+    const [x, y, z] = columns.normals;
+    if (isBack || isOutOfSight(columns, state.peek().view.camera, to)) engine.turnTo([x, y, z]);
   }
   const some = computed(() => table.value.count > 0 && !engine.empty.value);
   /** @type {import('../track.js').Track} */
@@ -100,7 +122,7 @@ export function createLevels(engine) {
       return true;
     },
   };
-  return { ...track, table, kept, level, newest, relaxed };
+  return { ...track, table, kept, level, newest, relaxed, turnTo };
 }
 
 /** Calls `act` at most once per frame, however many column messages a run sends. @param {Engine} engine @param {() => void} act */

@@ -193,6 +193,7 @@ function restore(engine, player, { levels, say }) {
   function go() {
     const { level, follow } = engine.state.peek().view;
     const { last } = levels.table.peek();
+    if (isNew && level !== null && !follow) levels.turnTo(level);
     if (isNew && level !== null && level > last)
       say(`The link names level ${formatCount(level)}. The last one, ${formatCount(last)}, is shown.`);
     const isOther =
