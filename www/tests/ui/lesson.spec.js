@@ -245,6 +245,29 @@ test('of an adaptive particle every push and every free angle is an event', asyn
   await clean();
 });
 
+test('a screen reader hears where the steps come to rest, and not every one of them', async ({ page }) => {
+  const { clean } = await open(page, { width: 1280, height: 800 });
+  await followSeed(page);
+  await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 0: taken/);
+  const spoken = panel(page).locator('.follow-stepper [aria-live=polite]');
+  await expect(spoken).toHaveText('Particle 0 is taken from the queue. Its children are to be placed.');
+  await spoken.evaluate((element) => {
+    const heard = /** @type {string[]} */ ([]);
+    /** @type {any} */ (window).heard = heard;
+    new MutationObserver(() => heard.push(element.textContent ?? '')).observe(element, { childList: true });
+  });
+  for (let k = 0; k < 20; k += 1) await page.keyboard.press('ArrowRight');
+  const told = panel(page).locator('.follow-told');
+  await expect(spoken).toHaveText((await told.textContent()) ?? '');
+  const heard = await page.evaluate(() => /** @type {any} */ (window).heard);
+  // However slow the machine is: fewer than the steps, and the last of them is among what is heard.
+  expect(heard.length).toBeLessThan(20);
+  expect(heard.at(-1)).toBe(await told.textContent());
+  // The sentence for the eye is not read out a second time.
+  await expect(told).toHaveAttribute('aria-hidden', 'true');
+  await clean();
+});
+
 test('a surface that changes is told, and its particle at the same place is offered', async ({ page }) => {
   const { clean } = await open(page, { width: 1280, height: 800 });
   await followSeed(page);

@@ -15,8 +15,10 @@ export function bindLessonLink(link, engine) {
     link.href = `${PAGE}#surface=${packCarried({ surface: formula, from: location.hash })}`;
   };
   for (const type of ['pointerdown', 'focus', 'click']) link.addEventListener(type, write);
-  explain(link, () => ({
-    title: 'The lesson',
-    text: 'The paper’s idea in nine short chapters, with figures on this surface.',
-  }));
+  explain(link, () => {
+    // A model from points is too large for a link.
+    const isOwn = engine.field.peek()?.kind !== 'points';
+    const on = isOwn ? 'this surface' : 'an ellipsoid: a link cannot hold a model from points';
+    return { title: 'The lesson', text: `The paper’s idea in nine short chapters, with figures on ${on}.` };
+  });
 }
