@@ -217,6 +217,28 @@ impl Reference {
         })
     }
 
+    /// Prepares a run as [`Reference::new`] does that goes on from particles that are there, of which those from number `first` on wait
+    /// to be treated, in their order. A front in single precision can so be followed level by level without its rounding adding up.
+    ///
+    /// # Errors
+    ///
+    /// As [`Reference::new`].
+    pub fn going_on(
+        field: Box<dyn Field>,
+        bounds: &Bounds,
+        settings: &Settings,
+        particles: Vec<Particle>,
+        first: u32,
+    ) -> Result<Self, ReferenceError> {
+        let mut run = Self::new(field, bounds, settings)?;
+        let mut place = Place::new(settings.seed);
+        place.waiting = (first..particles.len() as u32).collect();
+        place.fronts = 1;
+        run.lives = vec![Life::default(); particles.len()];
+        run.walk = Walk::at(&run.setup, place, particles);
+        Ok(run)
+    }
+
     /// Goes on with the run by up to `budget` units of work: a particle that is treated, or moved. How a run is divided into
     /// steps does not change it.
     pub fn step(&mut self, budget: u32) -> Progress {

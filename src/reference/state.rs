@@ -34,13 +34,19 @@ pub struct Particle {
 impl Particle {
     /// A particle on the surface that no other has placed.
     pub(super) fn seed(position: DVec3, normal: DVec3, radius: f64, front: u32) -> Self {
+        Self { front, ..Self::placed(position, normal, radius, None, 0) }
+    }
+
+    /// A particle of the first front that is not treated yet.
+    #[must_use]
+    pub fn placed(position: DVec3, normal: DVec3, radius: f64, parent: Option<u32>, level: u32) -> Self {
         Self {
             position: position.to_array(),
             normal: normal.to_array(),
             radius,
-            parent: None,
-            level: 0,
-            front,
+            parent,
+            level,
+            front: 0,
             slots: Slots::default(),
             is_done: false,
             height: 0.0,

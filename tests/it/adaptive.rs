@@ -359,3 +359,56 @@ fn levels_increase_along_the_columns() {
         assert!(particles.parent[1..].is_sorted());
     }
 }
+
+/// The reference pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there are
+/// as many, and they are as large.
+#[test]
+fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_reference() {
+    use marching_particles::reference::{self, Reference};
+    for id in ["sphere", "ellipsoid", "torus"] {
+        let surface = gallery::find(id).expect("a gallery surface");
+        let diagonal = surface.bounds.diagonal();
+        let (least, largest, scale) = (0.008, 0.04, 0.12);
+        for placement in PLACEMENTS {
+            let settings = Settings {
+                size_mode: SizeMode::Radius,
+                radius_law: LawKind::MaxCurvature,
+                curvature_scale: scale,
+                radius_min_share: least,
+                radius_max_share: largest,
+                grading: 0.5,
+                gaps: GapPolicy::Leave,
+                ..settings(placement)
+            };
+            let sampler = sampled(id, &settings);
+            let fast = sampler.particles();
+            let same = reference::Settings {
+                sampling: Sampling::Adaptive,
+                law: LawKind::MaxCurvature,
+                law_scale: scale,
+                radius_min: least * diagonal,
+                radius_max: largest * diagonal,
+                seeds: vec![fast.position[0].as_dvec3().to_array()],
+                matched: reference::Matched::Stay,
+                relax_steps: 0,
+                ..reference::Settings::default()
+            };
+            let mut run =
+                Reference::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
+            while !run.step(1_000).is_done {}
+            run.seek(u32::MAX);
+            let of_reference = run.particles();
+            let mean = |sum: f64, count: usize| sum / count as f64;
+            let radius = mean(fast.radius.iter().map(|&r| f64::from(r)).sum(), fast.len());
+            let wanted = mean(of_reference.iter().map(|p| p.radius).sum(), of_reference.len());
+            let count = fast.len() as f64 / of_reference.len() as f64;
+            let context = format!(
+                "{id}, {placement:?}: {} particles of mean radius {radius:.5}, the reference {} of {wanted:.5}",
+                fast.len(),
+                of_reference.len()
+            );
+            assert!((count - 1.0).abs() < 0.06, "{context}");
+            assert!((radius / wanted - 1.0).abs() < 0.03, "{context}");
+        }
+    }
+}
