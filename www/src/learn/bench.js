@@ -2,7 +2,7 @@
 import { fill, h } from '../ui/dom.js';
 import { createPair } from './pair.js';
 import { createSelect } from './parts.js';
-import { setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
+import { seedAt, setupOf, sidesOf, WHAT_IFS, whatIfOf } from './whatifs.js';
 
 /**
  * @typedef {import('./lab.js').Lab} Lab
@@ -39,7 +39,7 @@ export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id),
     const sides = /** @type {const} */ (['left', 'right']).map((side, k) => {
       const control = createSelect({
         name: k === 0 ? 'Left' : 'Right',
-        choices: whatIf.values,
+        choices: withOwn(whatIf.values, setup[side]),
         value: setup[side],
         change: (value) => void show({ ...setup, [side]: value }),
       });
@@ -47,12 +47,19 @@ export function createBench(host, lab, { setup: first = setupOf(WHAT_IFS[0].id),
       return control.element;
     });
     fill(chosen, what.element, sides);
+    // The picture on the right begins where one of the two is pressed.
+    const seeds = (/** @type {number[]} */ place) => void show({ ...setup, right: seedAt(place) });
+    pair.pickWith(setup.what === 'seed' && !locks.includes('right') ? seeds : null);
     await pair.show(sidesOf(whatIf, [setup.left, setup.right]), whatIf.colouring);
   }
 
   fill(host, chosen, look, pair.element);
   return { show, pair, setup: () => setup };
 }
+
+/** The values to choose from, with one that was found otherwise. @param {readonly { value: string, label: string }[]} values @param {string} own */
+const withOwn = (values, own) =>
+  values.some(({ value }) => value === own) ? values : [...values, { value: own, label: own }];
 
 /** Gives each card that has one a button that shows both. @param {HTMLElement} cards @param {Lab} lab */
 export function mountCards(cards, lab) {

@@ -74,7 +74,9 @@ export function figuresOf(run) {
 /** @param {readonly [Side, Side]} sides @param {readonly [Run, Run]} runs */
 function comparisonOf(sides, runs) {
   const [left, right] = runs.map(figuresOf);
-  const rows = left.map(([name, value], k) => [name, value, right[k][1]]);
+  // Of particles of one size more is said; where the other run has many, what both have is compared under its names.
+  const names = left.length < right.length ? left : right;
+  const rows = names.map(([name], k) => [name, left[k][1], right[k][1]]);
   return tableOf({ class: 'compare', head: ['', ...sides.map((side) => side.label)], rows });
 }
 
@@ -86,6 +88,11 @@ export function createPair(lab, { bare = false } = {}) {
   const pictures = ['left', 'right'].map(
     (side) => new Picture(orbit, { name: `The picture on the ${side}; both turn together` }),
   );
+  /** @param {number} k @param {number} particle */
+  function placeOf(k, particle) {
+    const { positions = new Float32Array(0) } = pictures[k].scene.peek()?.particles ?? {};
+    return [...positions.subarray(3 * particle, 3 * particle + 3)];
+  }
   const captions = pictures.map(() => h('figcaption', null));
   const legend = h('div');
   const table = h('div', { class: 'compare-box' });
@@ -107,6 +114,11 @@ export function createPair(lab, { bare = false } = {}) {
     element,
     /** @type {readonly [Run, Run] | null} */
     runs: null,
+    /** Tells where a particle is pressed; null for no one. @param {((place: number[]) => void) | null} onPick */
+    pickWith(onPick) {
+      for (const [k, picture] of pictures.entries())
+        picture.pickWith(onPick && ((particle) => onPick(placeOf(k, particle))));
+    },
     /** @param {readonly [Side, Side]} sides @param {Colouring} colouring */
     async show(sides, colouring) {
       asked += 1;

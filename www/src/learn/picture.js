@@ -99,15 +99,13 @@ export class Picture {
    */
   constructor(orbit, { name, onPick }) {
     this.orbit = orbit;
-    this.onPick = onPick;
+    this.name = name;
+    /** @type {((particle: number) => void) | null} */
+    this.onPick = null;
     this.scene = signal(/** @type {Scene | null} */ (null));
     this.canvas = h('canvas', { class: 'picture-canvas' });
-    const keys = onPick ? 'Arrow keys turn it, Enter chooses the particle in the middle.' : 'Arrow keys turn it.';
-    this.element = h(
-      'div',
-      { class: 'picture', role: 'application', tabindex: 0, 'aria-label': `${name}. ${keys}` },
-      this.canvas,
-    );
+    this.element = h('div', { class: 'picture', role: 'application', tabindex: 0 }, this.canvas);
+    this.pickWith(onPick ?? null);
     const context = this.canvas.getContext('2d');
     this.painter = context ? new Painter(this.canvas, context) : null;
     this.size = signal({ width: 0, height: 0 });
@@ -120,6 +118,13 @@ export class Picture {
       else this.ask();
     });
     this.listen();
+  }
+
+  /** @param {((particle: number) => void) | null} onPick */
+  pickWith(onPick) {
+    this.onPick = onPick;
+    const keys = onPick ? 'Arrow keys turn it, Enter chooses the particle in the middle.' : 'Arrow keys turn it.';
+    this.element.setAttribute('aria-label', `${this.name}. ${keys}`);
   }
 
   measure() {

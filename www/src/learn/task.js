@@ -1,6 +1,6 @@
 /** Assignments as plain data: in a link, and as what a learner hands in. */
 import { packed, unpacked } from '../ui/surface-link.js';
-import { setupOf, WHAT_IFS } from './whatifs.js';
+import { hasValue, setupOf, WHAT_IFS } from './whatifs.js';
 
 /**
  * @typedef {import('./whatifs.js').Setup} Setup
@@ -44,7 +44,7 @@ export function unpackTask(text) {
   if (!whatIf) return null;
   const usual = setupOf(whatIf.id);
   const sideOf = (/** @type {'left' | 'right'} */ side) =>
-    whatIf.values.some(({ value }) => value === raw.setup[side]) ? raw.setup[side] : usual[side];
+    hasValue(whatIf, raw.setup[side]) ? raw.setup[side] : usual[side];
   return {
     title: String(raw.title ?? '').slice(0, LONGEST_TITLE),
     setup: { what: whatIf.id, left: sideOf('left'), right: sideOf('right') },

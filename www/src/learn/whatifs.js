@@ -23,8 +23,29 @@ import { adaptiveRun, LAWS } from './adaptive.js';
 /** Runs whose particles are counted and drawn, and not asked for events. @param {(value: string) => Partial<LessonSettings>} settings */
 const even = (settings) => (/** @type {Lab} */ lab, /** @type {string} */ value) => lab.run(settings(value));
 
+/** How a seed that was pressed is named: its place. */
+const AT = 'at ';
+
+/** @param {readonly number[]} place */
+export const seedAt = (place) => AT + place.map((v) => Number(v.toPrecision(4))).join(' ');
+
+/** @param {string} value */
+const isPlace = (value) => value.startsWith(AT) && placeOf(value).every(Number.isFinite);
+
+/** Whether a choice has a value, which may be anything. @param {WhatIf} whatIf @param {unknown} value */
+export const hasValue = ({ id, values: all }, value) =>
+  all.some((known) => known.value === value) || (id === 'seed' && typeof value === 'string' && isPlace(value));
+
+/** @param {string} value @returns {[number, number, number]} */
+function placeOf(value) {
+  const [x, y, z] = value.slice(AT.length).split(' ').map(Number);
+  return [x, y, z];
+}
+
 /** @param {readonly (readonly [string, string])[]} pairs */
 const values = (pairs) => pairs.map(([value, label]) => ({ value, label }));
+
+const ONE_SIZE = 'one_size';
 
 /** @type {readonly WhatIf[]} */
 export const WHAT_IFS = [
@@ -67,7 +88,7 @@ export const WHAT_IFS = [
   {
     id: 'seed',
     name: 'Another seed',
-    look: 'Where the front begins moves the rings and the seams. The number of particles and the spacing hardly change.',
+    look: 'Where the front begins moves the rings and the seams. The number of particles and the spacing hardly change. Press a particle of a picture to begin there.',
     colouring: 'level',
     values: values([
       ['0', 'Seed 0'],
@@ -75,7 +96,7 @@ export const WHAT_IFS = [
       ['2', 'Seed 2'],
       ['3', 'Seed 3'],
     ]),
-    make: even((seed) => ({ seed: Number(seed) })),
+    make: even((seed) => (isPlace(seed) ? { seeds: [placeOf(seed)] } : { seed: Number(seed) })),
   },
   {
     id: 'steps',
@@ -148,10 +169,10 @@ export const WHAT_IFS = [
   {
     id: 'law',
     name: 'Laws of the radius',
-    look: 'Where the two curvatures have opposite signs their sum is small, and the paper’s law gives large particles there.',
+    look: 'Where the two curvatures have opposite signs their sum is small, and the paper’s law gives large particles there. With one size for all, small particles are spent on flat places.',
     colouring: 'radius',
-    values: LAWS,
-    make: (lab, law) => adaptiveRun(lab, /** @type {LessonSettings['law']} */ (law)),
+    values: [...LAWS, { value: ONE_SIZE, label: 'One size for all' }],
+    make: (lab, law) => (law === ONE_SIZE ? lab.run({}) : adaptiveRun(lab, /** @type {LessonSettings['law']} */ (law))),
   },
   {
     id: 'fit',

@@ -4,6 +4,7 @@ import { nearestStop, readAddress, writeAddress } from '../../src/learn/address.
 import { asFineEverywhere, nearestDistances, ringsOf, sharpestBend, stepOfRest } from '../../src/learn/measure.js';
 import { subjectOf } from '../../src/learn/surface.js';
 import { packTask, tableOf, unpackTask } from '../../src/learn/task.js';
+import { seedAt } from '../../src/learn/whatifs.js';
 import { packCarried, packed, unpackCarried, unpacked } from '../../src/ui/surface-link.js';
 
 const SURFACE = {
@@ -123,6 +124,11 @@ test('an assignment comes out of a link as it went in, and what is damaged of it
   const odd = unpackTask(
     packed({ setup: { what: 'seed', left: 9, right: '2' }, locks: 'all', questions: [3, 'x'.repeat(999)] }),
   );
+  const pressed = { what: 'seed', left: '0', right: seedAt([0.123456, -1, 1e-7]) };
+  expect(pressed.right).toBe('at 0.1235 -1 1e-7');
+  expect(unpackTask(packed({ setup: pressed, questions: [] }))?.setup).toEqual(pressed);
+  const damaged = { ...pressed, right: 'at 1 x 2' };
+  expect(unpackTask(packed({ setup: damaged, questions: [] }))?.setup.right).toBe('1');
   expect(odd).toMatchObject({ title: '', setup: { what: 'seed', left: '0', right: '2' }, locks: [] });
   expect(odd?.questions.map(({ length }) => length)).toEqual([1, 500]);
   for (const bad of [

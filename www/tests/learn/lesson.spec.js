@@ -105,6 +105,29 @@ test('one camera turns both pictures of a comparison', async ({ page }) => {
   await expect(bench.getByRole('columnheader', { name: 'Ten steps' })).toBeVisible({ timeout: 60_000 });
 });
 
+test('a press on a picture sets the seed of the one on the right', async ({ page }) => {
+  const { clean } = await openLesson(page, { hash: `#what-if-seed&surface=${TORUS}` });
+  const bench = page.locator('#bench');
+  await expect(bench.locator('.picture[data-drawn]')).toHaveCount(2, { timeout: 60_000 });
+  await expect(bench.getByRole('columnheader', { name: 'Seed 1' })).toBeVisible();
+  const right = bench.locator('.picture').last();
+  const before = await fingerprint(right);
+  const box = await bench.locator('.picture').first().boundingBox();
+  if (!box) throw new Error('the picture has no box');
+  // A particle of the near side of the torus.
+  await page.mouse.click(box.x + 0.5 * box.width, box.y + 0.62 * box.height);
+  await expect(bench.getByLabel('Right', { exact: true })).toHaveValue(/^at( -?[\d.e-]+){3}$/);
+  await expect(bench.getByRole('columnheader', { name: /^at / })).toBeVisible({ timeout: 60_000 });
+  expect(await fingerprint(right)).not.toBe(before);
+  // Elsewhere a press chooses nothing.
+  await bench.getByLabel('What changes').selectOption('law');
+  await bench.getByLabel('Right', { exact: true }).selectOption('one_size');
+  await expect(bench.getByRole('columnheader', { name: 'One size for all' })).toBeVisible({ timeout: 60_000 });
+  await expect(bench.getByRole('row', { name: /^Nearest neighbour, over the sum of both radii/ })).toBeVisible();
+  await expect(right).toHaveAttribute('aria-label', /Arrow keys turn it\.$/);
+  clean();
+});
+
 test('a card shows what the paper says and what the program does', async ({ page }) => {
   await openLesson(page, { hash: '#differences' });
   await page.getByRole('button', { name: 'Show both: Who comes next' }).click();
