@@ -21,7 +21,7 @@ export const CONTROLS = [
   {
     value: 'questions',
     label: 'Answers of the questions',
-    words: 'the answers of the questions; your guesses are saved',
+    words: 'the answers of the questions (your guesses are saved)',
   },
   { value: 'bench', label: 'Other comparisons', words: 'the other comparisons' },
   { value: 'race', label: 'The race', words: 'the race' },
