@@ -252,6 +252,9 @@ test('a link to an early level from behind turns to it, and one that goes too fa
   await page.goto('about:blank');
   await open(page, { hash: link({ level: 999 }) });
   await expect(page.getByText(/^The link names level 999\. The last one, \d+, is shown\.$/)).toBeVisible();
+  await page.goto('about:blank');
+  await open(page, { hash: link({ step: 99 }) });
+  await expect(page.getByText('The link names relaxation step 99. The last one, 10, is shown.')).toBeVisible();
 });
 
 for (const [width, height] of /** @type {const} */ ([

@@ -191,11 +191,14 @@ function restore(engine, player, { levels, say }) {
   });
 
   function go() {
-    const { level, follow } = engine.state.peek().view;
+    const { level, step, follow } = engine.state.peek().view;
     const { last } = levels.table.peek();
+    const steps = levels.last.peek() - last;
     if (isNew && level !== null && !follow) levels.turnTo(level);
     if (isNew && level !== null && level > last)
       say(`The link names level ${formatCount(level)}. The last one, ${formatCount(last)}, is shown.`);
+    if (isNew && level === null && step !== null && step > steps)
+      say(`The link names relaxation step ${formatCount(step)}. The last one, ${formatCount(steps)}, is shown.`);
     const isOther =
       named.peek() !== seen && named.peek() !== JSON.stringify(player.lesson.peek()?.place.peek() ?? null);
     if (follow && (isNew || isOther)) void player.prepare().then((lesson) => lesson?.goTo(follow));
