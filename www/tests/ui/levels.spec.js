@@ -196,6 +196,11 @@ test('distances to the nearest are those of what is shown, and neighbours those 
   await page.getByRole('button', { name: 'Charts' }).click();
   const nearest = page.getByRole('img', { name: /to their nearest, in 2r/ });
   const degree = page.getByRole('img', { name: /^Particles by their neighbours at the end of the run/ });
+  await expect(
+    page.getByText(
+      /^[\d,]+ particles\. A hexagonal lattice of these discs would have [\d,]+ on this area.* there are 1\d\d\.\d% of that\.$/,
+    ),
+  ).toBeVisible();
   const six = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.report().quality.six);
   await expect(degree).toHaveAttribute('aria-label', new RegExp(`six: ${(100 * six).toFixed(1)}`));
   const deviation = async () => Number(/± ([\d.]+)/.exec((await nearest.getAttribute('aria-label')) ?? '')?.[1]);

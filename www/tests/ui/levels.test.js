@@ -5,7 +5,7 @@ import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
 import { drawnAt, isOutOfSight, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
-import { BINS, degreeBins, meanOf, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
+import { BINS, degreeBins, hexagonalCount, meanOf, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
 
 beforeAll(() => setLocale('en-GB'));
@@ -192,6 +192,12 @@ describe('how even the particles are', () => {
     expect(counts[0]).toBe(2);
     expect(counts[BINS - 1]).toBe(2);
     expect(counts[16]).toBe(1);
+  });
+
+  test('is compared with a hexagonal lattice, of which each disc has the hexagon around it', () => {
+    // Three discs at mutual distances 2r share a triangle of half a hexagon's area.
+    const [r, side] = [0.3, 0.6];
+    expect(hexagonalCount(2 * (Math.sqrt(3) / 4) * side ** 2, r)).toBeCloseTo(1);
   });
 
   test('has the share of six among all, also those at a border', () => {

@@ -1,13 +1,13 @@
 /** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
 import { computed, effect, signal } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { bindText, fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { loadSheet } from '../sheet.js';
 import { tableOf } from '../table.js';
 import sheet from './charts.css?url';
 import { fatesOf, movesOf } from './figures.js';
-import { BINS, degreeBins, meanOf, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
+import { BINS, degreeBins, hexagonalCount, meanOf, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('./player.js').Player} Player */
@@ -91,8 +91,18 @@ export async function createCharts(engine, player) {
     void degree.value;
     write();
   });
-  const element = h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, details);
+  const bound = h('p', { class: 'charts-bound quiet' });
+  bindText(bound, () => boundWords(engine.report.value, engine.columns.adaptive));
+  const element = h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, bound, details);
   return { element, shown };
+}
+
+/** The particles beside those of a perfect lattice at 2r: there are more where neighbours are nearer than that, and fewer where holes are left. @param {import('../../engine/types.js').Report | null} report @param {boolean} adaptive */
+function boundWords(report, adaptive) {
+  const area = report?.quality?.area ?? 0;
+  if (!report || adaptive || !(area > 0)) return '';
+  const bound = hexagonalCount(area, report.radius);
+  return `${plural(report.count, 'particle')}. A hexagonal lattice of these discs would have ${formatCount(Math.round(bound))} on this area, A/(2√3 r²): there are ${formatShare(report.count / bound, 1)} of that.`;
 }
 
 /**

@@ -80,6 +80,12 @@ export function degreeBins(valence) {
   return { counts, six: counts[6 - least] / valence.length };
 }
 
+/**
+ * Returns how many particles of one radius a perfect hexagonal lattice would have on an area: A/(2√3 r²).
+ * @param {number} area @param {number} radius
+ */
+export const hexagonalCount = (area, radius) => area / (2 * Math.sqrt(3) * radius ** 2);
+
 /** Mean and standard deviation of the finite ones. @param {ArrayLike<number>} values */
 export function meanOf(values) {
   const finite = Array.from(values).filter(Number.isFinite);
