@@ -154,15 +154,18 @@ fn a_component_between_the_nodes_of_the_survey_is_found_beside_a_large_one() {
 }
 
 #[test]
-fn each_of_two_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() {
-    // Two balls of radius 0.006: f is flat everywhere else, so that no node leads to them.
-    let [left, right] = [DVec3::new(-0.31, 0.02, 0.01), DVec3::new(0.3, 0.01, -0.02)];
-    let bump = |c: DVec3| format!("exp(-20000*((x-({}))^2+(y-({}))^2+(z-({}))^2))", c.x, c.y, c.z);
-    let formula = format!("0.5 - {} - {}", bump(left), bump(right));
+fn each_of_many_pieces_of_one_factor_between_the_nodes_of_the_survey_is_found() {
+    // Balls of radius 0.006: f is flat everywhere else, so that no node leads to them. Their witnesses face the same way.
+    let place = |k: i32| {
+        DVec3::new(f64::from(k % 4) - 1.47, f64::from(k / 4 % 2) - 0.53, f64::from(k / 8) - 0.98) * 0.4
+    };
+    let centres: Vec<DVec3> = (0..24).map(place).collect();
+    let bump = |c: &DVec3| format!(" - exp(-20000*((x-({}))^2+(y-({}))^2+(z-({}))^2))", c.x, c.y, c.z);
+    let formula = format!("0.5{}", centres.iter().map(bump).collect::<String>());
     let (session, report) = sampled(&formula, 1.0, 0.0005);
     is_proven(&report, &formula);
-    assert_eq!((report.components, report.sampled.missing), (2, Some(0)), "{:?}", report.warnings);
-    for centre in [left, right] {
+    assert_eq!((report.components, report.sampled.missing), (24, Some(0)), "{:?}", report.warnings);
+    for centre in centres {
         let is_near = |p: &Vec3| (p.as_dvec3() - centre).length() < 0.01;
         assert!(session.particles().position.iter().any(is_near), "{centre}");
     }
