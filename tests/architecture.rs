@@ -107,6 +107,7 @@ const ROOMS: [Room; 4] = [
             ("order", &["figures", "moments", "one_rings", "scene"]),
             ("spacing", &["figures", "moments", "places", "scene"]),
             ("sizes", &["options", "moments", "places", "scene"]),
+            ("energy", &["scene", "sizes"]),
             ("holes", &["nearby", "border", "places", "projection", "probe", "triangles", "sizes"]),
         ],
     ),

@@ -18,6 +18,7 @@ mod accuracy;
 mod border;
 mod cell;
 mod components;
+mod energy;
 mod figures;
 mod holes;
 mod moments;
@@ -78,6 +79,9 @@ pub struct Report {
     pub nearest: Vec<f32>,
     /// First-order distance to the surface |f|/|∇f|, in the field's units; NaN where that is undefined.
     pub residual: Vec<f32>,
+    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance; NaN for a duplicate or a non-finite
+    /// position.
+    pub energy: Vec<f32>,
     /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is
     /// on the component of the particle that it equals; a non-finite position has `u32::MAX`.
     pub component: Vec<u32>,
@@ -119,7 +123,7 @@ pub(crate) async fn in_slices(
     let factor = comfortable_factor(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, options.area).await;
-    let Measured { mut figures, component, mut pairs, holes } =
+    let Measured { mut figures, component, energy, mut pairs, holes } =
         figures_of(&prepared, field, bounds, options).await;
     let Prepared { scene, drop, .. } = &prepared;
     let n = position.len();
@@ -127,6 +131,7 @@ pub(crate) async fn in_slices(
         valence: vec![0; n],
         nearest: (0..n).map(|i| if drop[i] && position[i].is_finite() { 0.0 } else { f32::NAN }).collect(),
         residual: vec![f32::NAN; n],
+        energy: vec![f32::NAN; n],
         component: vec![components::NO_LABEL; n],
         ..Report::default()
     };
@@ -135,6 +140,7 @@ pub(crate) async fn in_slices(
         report.valence[i] = scene.rings.valence(k).min(255) as u8;
         report.nearest[i] = scene.nearest(k);
         report.residual[i] = scene.residual[k] as f32;
+        report.energy[i] = energy[k];
         report.component[i] = component[k];
     }
     for i in (0..n).filter(|&i| drop[i] && position[i].is_finite()) {
@@ -173,6 +179,8 @@ struct Measured {
     figures: Figures,
     /// Connected component of each point.
     component: Vec<u32>,
+    /// Energy of each point.
+    energy: Vec<f32>,
     pairs: Pairs,
     holes: Vec<Hole>,
 }
@@ -208,6 +216,7 @@ async fn figures_of(
     pause().await;
     let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
     measured.pairs = measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
+    measured.energy = energy::of_points(scene, wanted.as_ref(), figures.d_hex).await;
     measured.component = measure_triangles(prepared, &inner, options.euler, &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());

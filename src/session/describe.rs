@@ -490,6 +490,18 @@ const COLOURS: &[Colour] = &[
         unit: "× 2r",
     },
     Colour {
+        id: "energy",
+        label: "Energy",
+        help: "Repulsion of a particle by its natural neighbours, over that by six at the ideal distance: less beside a hole, more in a crowd.",
+        unit: "",
+    },
+    Colour {
+        id: "residual",
+        label: "Residual",
+        help: "Distance to the surface to first order, |f|/|∇f|, over the radius. The ramp goes by powers of ten.",
+        unit: "× r",
+    },
+    Colour {
         id: "radius",
         label: "Radius",
         help: "Repulsion radius, from the smallest particle to the largest.",

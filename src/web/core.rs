@@ -144,6 +144,11 @@ impl Core {
         self.session.measured().residual.clone()
     }
 
+    /// Energy of each particle among its natural neighbours, over that of six at the ideal distance, as of the last report.
+    pub fn energy(&self) -> Vec<f32> {
+        self.session.measured().energy.clone()
+    }
+
     /// Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
     pub fn component(&self) -> Vec<u32> {
         self.session.measured().component.clone()

@@ -580,6 +580,35 @@ fn crowded_pairs_are_those_of_a_search_of_all_pairs() {
 }
 
 #[test]
+fn the_energy_is_one_in_a_lattice_less_beside_a_hole_and_more_in_a_crowd() {
+    let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
+    let middle = (0..whole.len())
+        .min_by(|&a, &b| whole[a].length_squared().total_cmp(&whole[b].length_squared()))
+        .expect("a point");
+    let radii = vec![1.0 / 64.0; whole.len()];
+    let energy_of = |points: &[Vec3], p: usize, sizes| {
+        let options = Options { sizes, ..with_area(whole.len(), HEXAGONAL[1] / 1024.0) };
+        measure(points, &[], &mut plane(), Some(&bounds), &options).energy[p]
+    };
+    let neighbour = (0..whole.len())
+        .find(|&i| i != middle && whole[i].distance(whole[middle]) < 1.1 / 32.0)
+        .expect("a neighbour");
+    for sizes in [Sizes::None, Sizes::Given(&radii)] {
+        close("lattice", f64::from(energy_of(&whole, middle, sizes)), 1.0, 1e-4);
+        // Half a spacing nearer: exp(−1/2) instead of exp(−2) from one of six, and less from others.
+        let mut crowd = whole.clone();
+        crowd[neighbour] = 0.5 * (whole[neighbour] + whole[middle]);
+        let energy = energy_of(&crowd, middle, sizes);
+        assert!((1.2..1.8).contains(&energy), "{sizes:?}: {energy}");
+    }
+    let mut gap = whole.clone();
+    gap.remove(middle);
+    let beside = neighbour - usize::from(neighbour > middle);
+    let energy = energy_of(&gap, beside, Sizes::None);
+    assert!((0.8..0.95).contains(&energy), "{energy}");
+}
+
+#[test]
 fn a_missing_and_a_moved_particle_are_found_where_they_are() {
     let (whole, bounds) = lattice(HEXAGONAL, 1.0 / 32.0, 0.5);
     let of = |points: &[Vec3], sizes| {

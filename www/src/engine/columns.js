@@ -49,6 +49,8 @@ export class Columns {
     this.nearest = null;
     /** @type {Float32Array | null} */
     this.residual = null;
+    /** @type {Float32Array | null} */
+    this.energy = null;
     /** Index of the particle's component; 0 is the largest. @type {Uint32Array | null} */
     this.component = null;
     /**
@@ -98,6 +100,7 @@ export class Columns {
     this.valence = null;
     this.nearest = null;
     this.residual = null;
+    this.energy = null;
     this.component = null;
     this.mesh = null;
   }
@@ -161,13 +164,15 @@ export class Columns {
 
   /**
    * Writes the figures of the report, one value per particle. Figures for another number of particles are ignored.
-   * @param {{valence: Uint8Array, nearest: Float32Array, residual: Float32Array, component: Uint32Array}} figures
+   * @param {{valence: Uint8Array, nearest: Float32Array, residual: Float32Array, energy: Float32Array,
+   *   component: Uint32Array}} figures
    */
-  writeFigures({ valence, nearest, residual, component }) {
+  writeFigures({ valence, nearest, residual, energy, component }) {
     if (valence.length !== this.count) return;
     this.valence = valence;
     this.nearest = nearest;
     this.residual = residual;
+    this.energy = energy;
     this.component = component.length === this.count ? component : null;
   }
 

@@ -77,7 +77,7 @@
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
 /** @typedef {'level' | 'particle' | 'event'} Grain */
-/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
+/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'energy' | 'residual' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
 /**
  * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
  * the camera follows the surface. A zoom or pan by the user ends that, and the fit command starts it again.

@@ -81,6 +81,7 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
   valence: new Uint8Array(n),
   nearest: new Float32Array(n),
   residual: new Float32Array(n),
+  energy: new Float32Array(n),
   component: new Uint32Array(n),
 });
 

@@ -286,6 +286,38 @@ describe('colours of particles', () => {
     });
   });
 
+  test('by energy and by residual follow the figures of the report, the residual by powers of ten', () => {
+    const few = new Columns();
+    few.write({
+      first: 0,
+      total: 3,
+      positions: new Float32Array(9),
+      normals: new Float32Array(9),
+      radii: new Float32Array(3).fill(0.1),
+      levels: new Uint32Array(3),
+      parents: new Uint32Array(3),
+    });
+    for (const mode of /** @type {const} */ (['energy', 'residual'])) {
+      expect(new Set(coloursOf(mode, 'light', few, 0, 3))).toEqual(new Set([PALETTES.light.plain]));
+      expect(legendOf(mode, 'light', few).pending).toBe(true);
+    }
+    few.writeFigures({
+      valence: new Uint8Array(3).fill(6),
+      nearest: new Float32Array(3),
+      residual: Float32Array.of(0, 1e-6, 1),
+      energy: Float32Array.of(0.2, 1, 1.4),
+      component: new Uint32Array(3),
+    });
+    const ramp = PALETTES.light.sequential;
+    const [first, middle, last] = [ramp[0], ramp[Math.round((ramp.length - 1) / 2)], ramp[ramp.length - 1]];
+    expect([...coloursOf('energy', 'light', few, 0, 3)]).toEqual([first, middle, last]);
+    const [none, some, most] = coloursOf('residual', 'light', few, 0, 3);
+    expect([none, most]).toEqual([first, last]);
+    expect(ramp.indexOf(some)).toBeGreaterThan(ramp.length / 3);
+    expect(legendOf('energy', 'light', few)).toMatchObject({ range: [0.6, 1.4], mark: 1, pending: false });
+    expect(legendOf('residual', 'light', few)).toMatchObject({ unit: '× r', pending: false });
+  });
+
   test('by component repeat after twelve, and the legend counts the particles of each', () => {
     const many = new Columns();
     const n = 30;
@@ -321,6 +353,8 @@ describe('colours of particles', () => {
       'fate',
       'valence',
       'nearest',
+      'energy',
+      'residual',
       'radius',
       'curvature',
       'component',

@@ -209,5 +209,6 @@ export function fakeCore({
     valence: () => new Uint8Array(count).fill(6),
     nearest: () => new Float32Array(count),
     residual: () => new Float32Array(count),
+    energy: () => new Float32Array(count).fill(1),
   };
 }

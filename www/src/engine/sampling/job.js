@@ -42,6 +42,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  * @property {() => Uint8Array} valence
  * @property {() => Float32Array} nearest
  * @property {() => Float32Array} residual
+ * @property {() => Float32Array} energy
  * @property {() => Uint32Array} component
  */
 /**
@@ -404,6 +405,7 @@ class JobRun {
       valence: core.valence(),
       nearest: core.nearest(),
       residual: core.residual(),
+      energy: core.energy(),
       component: core.component(),
     };
     env.post(

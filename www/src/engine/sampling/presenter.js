@@ -180,9 +180,9 @@ export class Presenter {
   }
 
   /** @param {import('./protocol.js').ReportMessage} message */
-  report({ report, valence, nearest, residual, component }) {
+  report({ report, valence, nearest, residual, energy, component }) {
     const { store, columns } = this;
-    columns.writeFigures({ valence, nearest, residual, component });
+    columns.writeFigures({ valence, nearest, residual, energy, component });
     batch(() => {
       store.report.value = report;
       store.revision.value += 1;

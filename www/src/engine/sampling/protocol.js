@@ -107,6 +107,7 @@
  * @property {Uint8Array} valence
  * @property {Float32Array} nearest
  * @property {Float32Array} residual
+ * @property {Float32Array} energy
  * @property {Uint32Array} component
  */
 /** @typedef {import('../bundle/load.js').LoadFault} LoadFault */

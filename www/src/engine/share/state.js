@@ -30,6 +30,8 @@ export const COLOUR_MODES = [
   'fate',
   'valence',
   'nearest',
+  'energy',
+  'residual',
   'radius',
   'curvature',
   'component',

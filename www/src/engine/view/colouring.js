@@ -48,6 +48,12 @@ export function classOfValence(valence) {
 /** Range of nearest distances that the ramp covers, as shares of the ideal distance 2r. */
 const NEAREST_SHARE = /** @type {const} */ ([0.6, 1.2]);
 
+/** Range of energies that the ramp covers; 1 is that of a perfect lattice. */
+const ENERGY_RANGE = /** @type {const} */ ([0.6, 1.4]);
+
+/** Range of residuals over the radius that the ramp covers, by powers of ten. */
+const RESIDUAL_SHARE = /** @type {const} */ ([1e-8, 1e-2]);
+
 /** Component index of a particle that the report excludes. */
 const NO_COMPONENT = 0xffffffff;
 
@@ -119,7 +125,7 @@ function onRamp(ramp, v, low, high) {
 export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
   const out = new Uint32Array(last - first);
-  const { levels, slots, normals, valence, nearest, radii, component, curved, adaptive } = columns;
+  const { levels, slots, normals, valence, nearest, energy, residual, radii, component, curved, adaptive } = columns;
   switch (mode) {
     case 'level':
       for (let i = first; i < last; i += 1) out[i - first] = palette.levels[levels[i] % CYCLE];
@@ -136,6 +142,17 @@ export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mod
       for (let i = first; i < last; i += 1)
         out[i - first] = onRamp(palette.sequential, nearest[i] / (2 * radii[i]), ...NEAREST_SHARE);
       return out;
+    case 'energy':
+      if (!energy) break;
+      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, energy[i], ...ENERGY_RANGE);
+      return out;
+    case 'residual': {
+      if (!residual) break;
+      const [low, high] = RESIDUAL_SHARE.map(Math.log10);
+      for (let i = first; i < last; i += 1)
+        out[i - first] = onRamp(palette.sequential, Math.log10(residual[i] / radii[i]), low, high);
+      return out;
+    }
     case 'radius':
       if (!range) break;
       for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, radii[i], ...range);
@@ -212,6 +229,18 @@ function categories(labels, colours, count, classOf) {
  */
 export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
   const palette = PALETTES[theme];
+  /**
+   * The legend of a sequential ramp, pending while there are no `values`.
+   * @param {Pick<Legend, 'title' | 'range' | 'mark'> & {unit?: string}} legend @param {unknown} values
+   * @returns {Legend}
+   */
+  const ramp = (legend, values) => ({
+    unit: '',
+    kind: 'sequential',
+    colours: [...palette.sequential].map(hexFromPacked),
+    pending: values === null,
+    ...legend,
+  });
   switch (mode) {
     case 'level':
       return {
@@ -242,24 +271,13 @@ export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
       return { title: 'Neighbours', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
     }
     case 'nearest':
-      return {
-        title: 'Nearest distance',
-        unit: '× 2r',
-        kind: 'sequential',
-        range: [...NEAREST_SHARE],
-        mark: 1,
-        colours: [...palette.sequential].map(hexFromPacked),
-        pending: columns.nearest === null,
-      };
+      return ramp({ title: 'Nearest distance', unit: '× 2r', range: [...NEAREST_SHARE], mark: 1 }, columns.nearest);
+    case 'energy':
+      return ramp({ title: 'Energy', range: [...ENERGY_RANGE], mark: 1 }, columns.energy);
+    case 'residual':
+      return ramp({ title: 'Residual', unit: '× r', range: [...RESIDUAL_SHARE] }, columns.residual);
     case 'radius':
-      return {
-        title: 'Radius',
-        unit: '',
-        kind: 'sequential',
-        range: range ?? undefined,
-        colours: [...palette.sequential].map(hexFromPacked),
-        pending: range === null,
-      };
+      return ramp({ title: 'Radius', range: range ?? undefined }, range);
     case 'curvature':
       return {
         title: 'Mean curvature',
