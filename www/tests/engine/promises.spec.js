@@ -79,7 +79,7 @@ async function attack({ state, worker, death }) {
     };
     engine.progress.subscribe(look);
     engine.loading.subscribe(look);
-    setTimeout(() => reject(new Error(`${state} was not seen`)), 20_000);
+    setTimeout(() => reject(new Error(`${state} was not seen`)), 60_000);
   });
 
   if (death === 'panic') p.debug.panic();
