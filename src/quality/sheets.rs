@@ -1,8 +1,8 @@
 //! Tells sheets apart that face the same way and lie near each other, by the field between them.
 //!
-//! Such sheets always have a third one between them that faces the other way. Only beside points of a sheet that faces the other way is
-//! a pair of points doubtful, therefore, and only if its *lift*, the mean height of each point above the tangent plane at the other, is
-//! comparable with the distance of that sheet: on one sheet the lift is of third order in the distance of the points.
+//! Two sheets that face the same way always have a third sheet between them, which faces the other way. A pair of points is therefore
+//! doubtful only if such a third sheet is near, and if the *lift* of the pair is comparable with the distance to it. The lift is the mean
+//! height of each point above the tangent plane at the other. On one sheet it is of third order in the distance of the points.
 //!
 //! The points are taken to lie where their residuals say, so that the lift does not suffer from their distances from the surface.
 

@@ -350,8 +350,8 @@ impl Reference {
         &self.view.particles
     }
 
-    /// What the particles around push a particle with, at the moment that was sought; nothing if there is no such particle. The part of
-    /// their sum in the tangent plane is the force of [`Event::Moved`].
+    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought; none if there is no such particle. The
+    /// tangential part of the sum is the force of [`Event::Moved`].
     #[must_use]
     pub fn pushes(&self, particle: u32) -> Vec<Push> {
         if particle as usize >= self.view.particles.len() {

@@ -9,7 +9,7 @@ use crate::sampler::Sampling;
 use glam::DVec3;
 use serde::Serialize;
 
-/// What one particle pushes another with.
+/// The repulsion of a particle by one neighbour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonPush"))]
 pub struct Push {
@@ -98,7 +98,7 @@ impl Walk {
         energy / self.particles.len() as f64
     }
 
-    /// What the particles around push a particle with, where all of them are now.
+    /// Returns the repulsion of a particle by each of its neighbours at their present positions.
     pub(super) fn pushes(&self, setup: &Setup, particle: u32) -> impl Iterator<Item = Push> {
         let own = &self.particles[particle as usize];
         let reach = match setup.settings.sampling {

@@ -125,7 +125,7 @@ impl Lesson {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
     }
 
-    /// What pushes a particle in a relaxation, at the moment that was sought: an array of `LessonPush`.
+    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought: an array of `LessonPush`.
     pub fn pushes(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().map(|run| run.pushes(particle)).unwrap_or_default())
     }

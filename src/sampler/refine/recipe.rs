@@ -82,7 +82,7 @@ const LAST: Plan =
     Plan { sweeps: 4, rounds: 0, calm: 0, centre: 3, theta: 0.98, omega: 1.5, delta: 0.0, loss: 0.0 };
 /// Where a front is refined so many times at most, the surface bends much between neighbours. Defects are then dearer, and the first level
 /// accepts losses, since there is no level between: on the decocube with 20,000 particles, refined once, 96.6 % instead of 96.5 % have six
-/// neighbours and the smallest angle is 39° instead of 38°. Defects lie nearer to each other on the last level, where Lloyd's method would
+/// neighbours and the mean smallest angle is 55.9° instead of 55.8°, but the closest pair is at 0.75 instead of 0.78. Defects lie nearer to each other on the last level, where Lloyd's method would
 /// stretch the triangles between them: two steps do, and a stiffer lattice.
 const FEW_LEVELS: u32 = 2;
 const FIRST_OF_FEW: Plan = Plan { delta: 0.03, loss: 0.03, ..FIRST };

@@ -634,7 +634,7 @@ export type LessonProgress = {
 /** How a child is moved onto the surface (§4.3). */
 export type LessonProjection = "circle" | "newton";
 
-/** What one particle pushes another with. */
+/** The repulsion of a particle by one neighbour. */
 export type LessonPush = {
   /** Its repulsion, along the offset between the two. */
   force: [number, number, number],

@@ -222,38 +222,33 @@ test('distances to the nearest are those of what is shown, and neighbours those 
   await clean();
 });
 
+/** Cosine between the normal of the first particle and the direction to the eye. @param {import('@playwright/test').Page} page */
+const facing = (page) =>
+  page.evaluate(() => {
+    const { state, particles } = /** @type {any} */ (window).marchingParticles;
+    const { yaw, pitch } = state.view.camera;
+    const [x, y, z] = particles().normals;
+    return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
+  });
+
 test('the start of the front is turned to the eye', async ({ page }) => {
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await open(page);
-  const facing = () =>
-    page.evaluate(() => {
-      const { state, particles } = /** @type {any} */ (window).marchingParticles;
-      const { yaw, pitch } = state.view.camera;
-      const [x, y, z] = particles().normals;
-      return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
-    });
-  expect(await facing()).toBeLessThan(0.3);
+  expect(await facing(page)).toBeLessThan(0.3);
   await press(page, 'First level');
-  await expect.poll(facing).toBeGreaterThan(0.8);
+  await expect.poll(() => facing(page)).toBeGreaterThan(0.8);
 });
 
 test('a link to an early level from behind turns to it, and one that goes too far says so', async ({ page }) => {
   const link = (/** @type {object} */ view) => `#v1.j.${Buffer.from(JSON.stringify({ view })).toString('base64url')}`;
   await open(page, { hash: link({ level: 1 }) });
-  const facing = () =>
-    page.evaluate(() => {
-      const { state, particles } = /** @type {any} */ (window).marchingParticles;
-      const { yaw, pitch } = state.view.camera;
-      const [x, y, z] = particles().normals;
-      return x * Math.cos(yaw) * Math.cos(pitch) + y * Math.sin(yaw) * Math.cos(pitch) + z * Math.sin(pitch);
-    });
-  await expect.poll(facing).toBeGreaterThan(0.3);
+  await expect.poll(() => facing(page)).toBeGreaterThan(0.3);
   const { camera } = (await state(page)).view;
   await page.goto('about:blank');
   await open(page, {
     hash: link({ level: 1, camera: { ...camera, fit: false, yaw: camera.yaw + Math.PI, pitch: -camera.pitch } }),
   });
-  await expect.poll(facing).toBeGreaterThan(0.3);
+  await expect.poll(() => facing(page)).toBeGreaterThan(0.3);
   await page.goto('about:blank');
   await open(page, { hash: link({ level: 999 }) });
   await expect(page.getByText(/^The link names level 999\. The last one, \d+, is shown\.$/)).toBeVisible();
