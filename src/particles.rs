@@ -3,13 +3,15 @@
 //! last.
 
 use crate::math::Bounds;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 /// Particle columns. Index `i` of every column belongs to particle `i`.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
-    /// Position on the surface.
+    /// The point from which positions are counted, in the coordinates of the formula. See [`Bounds::local_origin`].
+    pub origin: DVec3,
+    /// Position on the surface, counted from `origin`.
     pub position: Vec<Vec3>,
     /// Unit outward normal.
     pub normal: Vec<Vec3>,
@@ -100,6 +102,12 @@ impl Particles {
         self.position.len()
     }
 
+    /// Returns the position of particle `i` in the coordinates of the formula.
+    #[must_use]
+    pub fn place(&self, i: usize) -> DVec3 {
+        self.origin + self.position[i].as_dvec3()
+    }
+
     /// Returns whether there are no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -182,6 +190,7 @@ impl Particles {
     /// Takes the first `len` particles of others in place of its own.
     pub(crate) fn copy_first(&mut self, len: usize, others: &Self) {
         self.clear();
+        self.origin = others.origin;
         self.position.extend_from_slice(&others.position[..len]);
         self.normal.extend_from_slice(&others.normal[..len]);
         self.radius.extend_from_slice(&others.radius[..len]);
@@ -200,7 +209,7 @@ impl Particles {
         self.slots.clear();
     }
 
-    /// Returns the FNV-1a hash of the bits of all columns. Equal digests mean equal runs, on any machine.
+    /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs, on any machine.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -209,6 +218,12 @@ impl Particles {
                 hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
             }
         };
+        if self.origin != DVec3::ZERO {
+            for bits in self.origin.to_array().map(f64::to_bits) {
+                word(bits as u32);
+                word((bits >> 32) as u32);
+            }
+        }
         for i in 0..self.len() {
             for v in [self.position[i], self.normal[i]] {
                 for c in v.to_array() {

@@ -3,7 +3,7 @@
 //! The specification is Khronos', <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
 use crate::particles::Particles;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::io::{self, Write};
 
 /// Numbers of the specification: types of components and kinds of buffers.
@@ -34,7 +34,7 @@ struct Column {
 pub(super) fn write(particles: &Particles, triangles: &[[u32; 3]], out: &mut dyn Write) -> io::Result<()> {
     let columns = columns(particles, triangles);
     let length: usize = columns.iter().map(|column| column.bytes.len()).sum();
-    let mut text = document(&columns, length).into_bytes();
+    let mut text = document(&columns, length, particles.origin).into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     // The header, then each part after its length and its kind.
     let whole = 12 + 8 + text.len() + if length > 0 { 8 + length } else { 0 };
@@ -94,7 +94,7 @@ fn columns(particles: &Particles, triangles: &[[u32; 3]]) -> Vec<Column> {
 }
 
 /// The text part, JSON: a scene with one mesh, and where its columns are in the buffer.
-fn document(columns: &[Column], length: usize) -> String {
+fn document(columns: &[Column], length: usize, origin: DVec3) -> String {
     let asset = r#""asset":{"version":"2.0","generator":"Marching Particles"},"scene":0"#;
     if columns.is_empty() {
         return format!(r#"{{{asset},"scenes":[{{}}]}}"#);
@@ -114,10 +114,15 @@ fn document(columns: &[Column], length: usize) -> String {
     let indices = columns.len() - 1;
     // A quarter turn about x: z becomes y.
     let half = core::f32::consts::FRAC_1_SQRT_2;
+    let translation = if origin == DVec3::ZERO {
+        String::new()
+    } else {
+        format!(r#","translation":[{},{},{}]"#, origin.x, origin.z, -origin.y)
+    };
     let members = [
         asset.to_owned(),
         r#""scenes":[{"nodes":[0]}]"#.to_owned(),
-        format!(r#""nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]}}]"#),
+        format!(r#""nodes":[{{"mesh":0,"rotation":[-{half},0,0,{half}]{translation}}}]"#),
         format!(
             r#""meshes":[{{"primitives":[{{"attributes":{{{attributes}}},"indices":{indices},"material":0}}]}}]"#
         ),

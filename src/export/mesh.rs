@@ -92,8 +92,13 @@ fn obj(
     }
     let n = particles.len();
     for row in rows {
-        if let Some(p) = particles.position.get(row) {
-            writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+        if row < n {
+            out.write_all(b"v")?;
+            for axis in 0..3 {
+                out.write_all(b" ")?;
+                super::coordinate(particles, row, axis).write_text(out)?;
+            }
+            out.write_all(b"\n")?;
         } else if let Some(normal) = particles.normal.get(row - n) {
             writeln!(out, "vn {} {} {}", normal.x, normal.y, normal.z)?;
         } else {
@@ -120,11 +125,11 @@ fn stl(
         out.write_all(&count.to_le_bytes())?;
     }
     for triangle in &triangles[rows] {
-        let [a, b, c] = triangle.map(|v| particles.position[v as usize]);
-        let normal = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+        let [a, b, c] = triangle.map(|v| particles.place(v as usize));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
         // Four vectors, and two bytes that nobody uses.
         let mut record = [0; 50];
-        let floats = [normal, a, b, c].into_iter().flat_map(|v| v.to_array());
+        let floats = [normal, a, b, c].into_iter().flat_map(|v| v.as_vec3().to_array());
         for (bytes, value) in record.chunks_exact_mut(4).zip(floats) {
             bytes.copy_from_slice(&value.to_le_bytes());
         }

@@ -10,6 +10,7 @@ pub(crate) use mesh::{rows, write_rows};
 use crate::particles::Particles;
 use crate::quality;
 use core::ops::Range;
+use glam::DVec3;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -22,7 +23,7 @@ pub enum Format {
     Csv,
     /// Text, one `x y z nx ny nz` per line.
     Xyz,
-    /// NumPy array of shape (N, 6), `<f4`: position and normal.
+    /// NumPy array of shape (N, 6), `<f4`, or `<f8` where the particles have an origin of their own: position and normal.
     Npy,
 }
 
@@ -43,6 +44,8 @@ impl Format {
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnKind {
+    /// A coordinate: in double precision where the particles have an origin of their own, else in single precision.
+    Coordinate,
     /// Single precision.
     Float,
     /// 32 bits with a sign.
@@ -71,6 +74,7 @@ pub struct Column {
 /// A value of a column.
 #[derive(Clone, Copy)]
 enum Cell {
+    Double(f64),
     Float(f32),
     Int(i32),
     Uint(u32),
@@ -80,6 +84,7 @@ enum Cell {
 impl Cell {
     fn write_binary(self, out: &mut dyn Write) -> io::Result<()> {
         match self {
+            Self::Double(value) => out.write_all(&value.to_le_bytes()),
             Self::Float(value) => out.write_all(&value.to_le_bytes()),
             Self::Int(value) => out.write_all(&value.to_le_bytes()),
             Self::Uint(value) => out.write_all(&value.to_le_bytes()),
@@ -89,11 +94,26 @@ impl Cell {
 
     fn write_text(self, out: &mut dyn Write) -> io::Result<()> {
         match self {
+            Self::Double(value) => write!(out, "{value}"),
             Self::Float(value) => write!(out, "{value}"),
             Self::Int(value) => write!(out, "{value}"),
             Self::Uint(value) => write!(out, "{value}"),
             Self::Uchar(value) => write!(out, "{value}"),
         }
+    }
+}
+
+/// Whether coordinates take double precision.
+fn is_double(particles: &Particles) -> bool {
+    particles.origin != DVec3::ZERO
+}
+
+/// A coordinate of a particle in those of the formula.
+fn coordinate(particles: &Particles, i: usize, axis: usize) -> Cell {
+    if is_double(particles) {
+        Cell::Double(particles.place(i)[axis])
+    } else {
+        Cell::Float(particles.position[i][axis])
     }
 }
 
@@ -105,9 +125,9 @@ const fn float(name: &'static str, read: Read) -> Column {
 
 /// The columns of PLY and CSV files, in their order.
 pub const COLUMNS: &[Column] = &[
-    float("x", |particles, _, i| Cell::Float(particles.position[i].x)),
-    float("y", |particles, _, i| Cell::Float(particles.position[i].y)),
-    float("z", |particles, _, i| Cell::Float(particles.position[i].z)),
+    Column { kind: ColumnKind::Coordinate, ..float("x", |particles, _, i| coordinate(particles, i, 0)) },
+    Column { kind: ColumnKind::Coordinate, ..float("y", |particles, _, i| coordinate(particles, i, 1)) },
+    Column { kind: ColumnKind::Coordinate, ..float("z", |particles, _, i| coordinate(particles, i, 2)) },
     float("nx", |particles, _, i| Cell::Float(particles.normal[i].x)),
     float("ny", |particles, _, i| Cell::Float(particles.normal[i].y)),
     float("nz", |particles, _, i| Cell::Float(particles.normal[i].z)),
@@ -168,7 +188,7 @@ fn ply(
 ) -> io::Result<()> {
     let n = particles.len();
     if rows.start == 0 {
-        ply_header(n, triangles, out)?;
+        ply_header(particles, triangles, out)?;
     }
     for i in rows.start.min(n)..rows.end.min(n) {
         for column in COLUMNS {
@@ -186,12 +206,13 @@ fn ply(
     Ok(())
 }
 
-fn ply_header(count: usize, triangles: Option<&[[u32; 3]]>, out: &mut dyn Write) -> io::Result<()> {
+fn ply_header(particles: &Particles, triangles: Option<&[[u32; 3]]>, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "ply\nformat binary_little_endian 1.0\ncomment Marching Particles\n")?;
-    writeln!(out, "element vertex {count}")?;
+    writeln!(out, "element vertex {}", particles.len())?;
     for column in COLUMNS {
         let kind = match column.kind {
-            ColumnKind::Float => "float",
+            ColumnKind::Coordinate if is_double(particles) => "double",
+            ColumnKind::Coordinate | ColumnKind::Float => "float",
             ColumnKind::Int => "int",
             ColumnKind::Uint => "uint",
             ColumnKind::Uchar => "uchar",
@@ -218,15 +239,20 @@ fn csv(particles: &Particles, measured: &quality::Report, out: &mut dyn Write) -
 }
 
 fn xyz(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
-    for (p, n) in particles.position.iter().zip(&particles.normal) {
-        writeln!(out, "{} {} {} {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z)?;
+    for (i, n) in particles.normal.iter().enumerate() {
+        for axis in 0..3 {
+            coordinate(particles, i, axis).write_text(out)?;
+            out.write_all(b" ")?;
+        }
+        writeln!(out, "{} {} {}", n.x, n.y, n.z)?;
     }
     Ok(())
 }
 
 fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
+    let kind = if is_double(particles) { "<f8" } else { "<f4" };
     let mut header =
-        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, 6), }}", particles.len());
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, 6), }}", particles.len());
     // Magic, version and length take 10 bytes. A line feed ends the header, and the data starts at a multiple of 64.
     let padding = 64 - (10 + header.len() + 1) % 64;
     header.extend(core::iter::repeat_n(' ', padding % 64));
@@ -235,12 +261,14 @@ fn npy(particles: &Particles, out: &mut dyn Write) -> io::Result<()> {
     let length = u16::try_from(header.len()).map_err(io::Error::other)?;
     out.write_all(&length.to_le_bytes())?;
     out.write_all(header.as_bytes())?;
-    for (p, n) in particles.position.iter().zip(&particles.normal) {
-        let mut record = [0_u8; 24];
-        for (bytes, value) in record.chunks_exact_mut(4).zip(p.to_array().into_iter().chain(n.to_array())) {
-            bytes.copy_from_slice(&value.to_le_bytes());
+    for (i, n) in particles.normal.iter().enumerate() {
+        for axis in 0..3 {
+            coordinate(particles, i, axis).write_binary(out)?;
         }
-        out.write_all(&record)?;
+        for value in n.to_array() {
+            let cell = if is_double(particles) { Cell::Double(value.into()) } else { Cell::Float(value) };
+            cell.write_binary(out)?;
+        }
     }
     Ok(())
 }
@@ -253,6 +281,7 @@ mod tests {
 
     fn two() -> Particles {
         Particles {
+            origin: DVec3::ZERO,
             position: vec![Vec3::new(0.1, -2.0, 1e-9), Vec3::new(1.0 / 3.0, 4.0, 5.0)],
             normal: vec![Vec3::Z, Vec3::new(0.6, 0.8, 0.0)],
             radius: vec![0.25, 0.5],

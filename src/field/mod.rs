@@ -131,6 +131,11 @@ pub trait Field: Send {
         false
     }
 
+    /// The point from which the points and boxes that the other methods take are counted, in the coordinates of the formula.
+    fn origin(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
     /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come again.
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]

@@ -122,6 +122,10 @@ impl Field for Scaled<'_> {
         self.field.has_bounds()
     }
 
+    fn origin(&self) -> DVec3 {
+        self.field.origin()
+    }
+
     fn parts(&mut self) -> usize {
         self.field.parts()
     }

@@ -78,6 +78,30 @@ impl Bounds {
         (self.hi() - self.lo()).length()
     }
 
+    /// Corners of boxes that need no origin of their own are no farther from the origin than so many diagonals. There, rounding to
+    /// single precision moves a particle of the default radius by a fifty-thousandth of it.
+    const NEAR: f64 = 4.0;
+
+    /// The point from which the particles in this box are best counted: the origin of the coordinates, unless the box is so far from
+    /// it that single precision would round the places of particles noticeably; then a point near the middle of the box.
+    ///
+    /// Its coordinates have few digits, so that adding it to a particle's place in double precision is all but exact.
+    #[must_use]
+    pub fn local_origin(&self) -> DVec3 {
+        let diagonal = self.diagonal();
+        if self.lo().abs().max(self.hi().abs()).max_element() <= Self::NEAR * diagonal {
+            return DVec3::ZERO;
+        }
+        let grid = libm::exp2(libm::floor(libm::log2(diagonal)) - 2.0);
+        (0.5 * (self.lo() + self.hi()) / grid).round() * grid
+    }
+
+    /// The same box in coordinates that are counted from `origin`.
+    #[must_use]
+    pub fn relative_to(&self, origin: DVec3) -> Self {
+        Self { min: (self.lo() - origin).to_array(), max: (self.hi() - origin).to_array() }
+    }
+
     /// Whether `p` lies in the closed box. Non-finite points do not.
     #[must_use]
     pub fn contains(&self, p: Vec3) -> bool {
@@ -88,11 +112,11 @@ impl Bounds {
     /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
     pub const DIAGONALS: RangeInclusive<f64> = 1e-12..=1e12;
 
-    /// Largest coordinate of a corner relative to the diagonal. There, rounding to single precision moves a particle of the
-    /// default radius by a hundredth of it.
+    /// Largest coordinate of a corner relative to the diagonal. There, the single precision in which a picture is drawn moves a
+    /// particle of the default radius by a hundredth of it.
     pub const FARTHEST_CORNER: f64 = 1e3;
 
-    /// Whether particles, whose places are in single precision, can be put in the box: every side has positive length,
+    /// Whether particles can be put in the box and drawn there: every side has positive length,
     /// the diagonal is one of [`Bounds::DIAGONALS`], and no coordinate is larger than [`Bounds::FARTHEST_CORNER`] diagonals.
     #[must_use]
     pub fn is_valid(&self) -> bool {

@@ -240,6 +240,7 @@ impl Sampler {
         self.settings = *settings;
         self.bounds = *bounds;
         self.particles.clear();
+        self.particles.origin = field.origin();
         self.inside = None;
         self.corners = Vec::new();
         self.fronts = Fronts::default();
@@ -369,6 +370,8 @@ impl Sampler {
         if matches!(self.phase, PhaseState::Marking(_)) {
             self.next(Input::Work { field, left: &mut left });
         }
+        // The refinement makes its particles anew.
+        self.particles.origin = field.origin();
         self.look_inside();
         let progress = self.progress();
         self.moved = false;

@@ -5,6 +5,7 @@ use crate::extent::{BoxFit, Extent, Reach};
 use crate::field::formula::FormulaField;
 use crate::math::Bounds;
 use crate::sampler::{BoxMode, Sampling, Settings, SizeMode};
+use glam::DVec3;
 use serde::Serialize;
 
 /// Why particles lie at the border of the box.
@@ -69,8 +70,12 @@ impl Session {
             }
         };
         if self.fitting.found.is_none() {
-            let search =
-                self.fitting.search.get_or_insert_with(|| BoxFit::new(formula.clone(), formula.operations()));
+            let search = self.fitting.search.get_or_insert_with(|| {
+                let mut formula = formula.clone();
+                formula.set_origin(DVec3::ZERO);
+                let operations = formula.operations();
+                BoxFit::new(formula, operations)
+            });
             self.fitting.found = Some(search.step(budget)?);
             self.fitting.search = None;
         }

@@ -95,7 +95,7 @@ impl Session {
                 let particles = self.sampler.particles();
                 let (position, normal) =
                     (particles.position[..count].to_vec(), particles.normal[..count].to_vec());
-                let bounds = self.bounds;
+                let bounds = self.local_bounds();
                 Box::pin(async move {
                     let options = Options { bounds: Some(&bounds), ..Options::default() };
                     build::in_slices(&position, &normal, &options).await

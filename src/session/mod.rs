@@ -28,7 +28,7 @@ use crate::sampler::{
 };
 use crate::slices::{self, Work};
 use fitting::Fitting;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use mesh::Mesh;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -190,6 +190,13 @@ impl Source {
         }
     }
 
+    /// Counts the coordinates of a formula from `origin`. Those of a model from points stay as they are.
+    fn set_origin(&mut self, origin: DVec3) {
+        if let Self::Formula(field) = self {
+            field.set_origin(origin);
+        }
+    }
+
     fn formula(&self) -> Option<&FormulaField> {
         match self {
             Self::Formula(field) => Some(field),
@@ -289,15 +296,21 @@ impl Session {
         }
     }
 
-    /// The present field.
+    /// The present field. Its [`origin`](Field::origin) is that of the particles.
     pub fn field(&mut self) -> &mut dyn Field {
         self.source.field()
     }
 
-    /// The clip box.
+    /// The clip box, in the coordinates of the formula.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
+    }
+
+    /// The clip box, counted from the origin of the particles.
+    #[must_use]
+    pub fn local_bounds(&self) -> Bounds {
+        self.bounds.relative_to(self.particles().origin)
     }
 
     /// The sampler.
@@ -438,6 +451,7 @@ impl Session {
         if is_same {
             field.use_double(self.sampler.double());
         }
+        field.set_origin(self.particles().origin);
         self.source = Source::Formula(field);
         self.measuring = None;
         self.declared = declared;
@@ -508,7 +522,10 @@ impl Session {
         let start = if self.is_surveyed {
             self.sampler.start_again(self.source.field(), settings)?
         } else {
-            self.sampler.start(self.source.field(), &self.bounds, settings)?
+            self.source.set_origin(self.bounds.local_origin());
+            let field = self.source.field();
+            let bounds = self.bounds.relative_to(field.origin());
+            self.sampler.start(field, &bounds, settings)?
         };
         self.is_surveyed = true;
         self.warnings.clone_from(&start.warnings);
@@ -577,10 +594,10 @@ impl Session {
     /// each; the report, once it is complete. Call it when the run has ended. A measurement that anything comes between is
     /// given up, and the next call begins anew.
     pub fn measure(&mut self, budget: u32) -> Option<Report> {
+        let bounds = self.local_bounds();
         let work = self.measuring.get_or_insert_with(|| {
             let front = self.front.clone().filter(|_| self.front_figures.is_none());
-            let (now, mut source, bounds) =
-                (Kept::of(self.sampler.particles()), self.source.clone(), self.bounds);
+            let (now, mut source) = (Kept::of(self.sampler.particles()), self.source.clone());
             let sampling = self.sampler.settings().sampling;
             Box::pin(async move {
                 let front = match front {
@@ -626,7 +643,9 @@ impl Session {
         let sizes = particles.radius.iter().map(|&radius| f64::from(radius));
         let radius_max = sizes.clone().fold(0.0, f64::max);
         let radius_min = sizes.fold(radius_max, f64::min);
-        let counts = self.sampler.counts();
+        let origin = particles.origin;
+        let mut counts = self.sampler.counts();
+        counts.refusal = counts.refusal.map(|refusal| refusal.counted_from_zero(origin));
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
         let stop_reason = self.last.as_ref().and_then(|progress| progress.stop_reason);
@@ -637,7 +656,14 @@ impl Session {
         {
             warnings.extend(warnings::about_count(count, settings.count));
         }
-        let sampled = self.sampler.sampled();
+        let mut sampled = self.sampler.sampled();
+        for witness in &mut sampled.without {
+            witness.position = (origin + DVec3::from_array(witness.position)).to_array();
+        }
+        let mut places = self.measured.places.clone();
+        for hole in &mut places.holes {
+            hole.position = (origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
+        }
         warnings.extend(warnings::about(count, facing, &counts, sampled.missing.is_some()));
         warnings.extend(warnings::about_components(&sampled.without, self.sampler.radius()));
         let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
@@ -669,7 +695,7 @@ impl Session {
             quality: (count > 0).then_some(self.measured.figures),
             quality_before: self.front_figures,
             nearest_histogram: self.measured.histogram.clone(),
-            places: self.measured.places.clone(),
+            places,
         }
     }
 

@@ -5,7 +5,7 @@ use crate::export::MeshFormat;
 use crate::field::model::SolvedModel;
 use crate::field::rbf::RbfData;
 use crate::session::{Fault, FaultKind, FieldRequest, Session, describe};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -94,9 +94,22 @@ impl Core {
         self.session.count()
     }
 
-    /// Positions from particle `from` on.
+    /// Positions from particle `from` on, rounded to single precision.
     pub fn positions(&self, from: usize) -> Vec<f32> {
-        self.vectors(&self.session.particles().position, from)
+        let particles = self.session.particles();
+        if particles.origin == DVec3::ZERO {
+            return self.vectors(&particles.position, from);
+        }
+        self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
+    }
+
+    /// Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere nothing.
+    pub fn exact_positions(&self, from: usize) -> Vec<f64> {
+        let particles = self.session.particles();
+        if particles.origin == DVec3::ZERO {
+            return Vec::new();
+        }
+        (from..self.session.count()).flat_map(|i| particles.place(i).to_array()).collect()
     }
 
     /// Unit normals from particle `from` on.

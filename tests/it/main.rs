@@ -9,6 +9,7 @@ mod box_fit;
 mod cli;
 mod components;
 mod differential;
+mod far;
 mod faults;
 mod formula;
 mod formula_functions;

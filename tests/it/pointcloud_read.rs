@@ -282,6 +282,7 @@ fn files_of_our_own_are_read_back_to_the_same_bits() {
     let count = 100;
     let point = |i: usize| Vec3::new((i as f32).sqrt(), 1.0 / (i + 1) as f32, i as f32 * 1e-9);
     let particles = Particles {
+        origin: glam::DVec3::ZERO,
         position: (0..count).map(point).collect(),
         normal: (0..count).map(|i| Vec3::new(1.0, i as f32, -0.3).normalize_or(Vec3::Z)).collect(),
         radius: vec![0.25; count],

@@ -186,7 +186,7 @@ fn sample_other(
     settings: &baseline::Settings,
     bar: &ProgressBar,
 ) -> Result<Other, Failure> {
-    let bounds = session.bounds();
+    let bounds = session.local_bounds();
     let field = session.field();
     let mut seconds = OtherSeconds::default();
     let clock = Clock::start();

@@ -25,6 +25,9 @@ pub(super) struct Compiled {
     pub(super) value_program: Program,
     pub(super) gradient_program: Program,
     hessian_program: Option<Program>,
+    /// The nodes that f needs, and those that f and ∇f need, in the order of the graph.
+    value_nodes: Vec<Id>,
+    gradient_nodes: Vec<Id>,
     /// Empty until it is compiled.
     parts: Vec<interval::Part>,
 }
@@ -53,6 +56,8 @@ impl Compiled {
         let has_zero_gradient = gradient.iter().all(|&id| graph.as_constant(id) == Some(0.0));
         let mut compiled = Self {
             is_constant: graph.is_uniform(root) || (has_zero_gradient && !has_steps),
+            value_nodes: graph.needed_by(&[root]),
+            gradient_nodes: graph.needed_by(&[root, gradient[0], gradient[1], gradient[2]]),
             graph,
             root,
             gradient,
@@ -106,6 +111,19 @@ impl Compiled {
             }
         }
         &mut self.parts
+    }
+
+    /// f at `p` in double precision. `scratch` keeps the values of the nodes.
+    pub(super) fn value(&self, values: &[f64], p: DVec3, scratch: &mut Vec<f64>) -> f64 {
+        self.graph.evaluate(&self.value_nodes, values, p, scratch);
+        scratch[self.root as usize]
+    }
+
+    /// f and ∇f at `p` in double precision, from the graphs of the derivatives.
+    pub(super) fn gradient(&self, values: &[f64], p: DVec3, scratch: &mut Vec<f64>) -> (f64, DVec3) {
+        self.graph.evaluate(&self.gradient_nodes, values, p, scratch);
+        let gradient = self.gradient.map(|id| scratch[id as usize]);
+        (scratch[self.root as usize], DVec3::from_array(gradient))
     }
 
     /// f, ∇f and ∇∇f at `p`, as jets carried forward through the graph of f.

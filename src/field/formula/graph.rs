@@ -4,6 +4,7 @@
 //! constants are folded.
 
 use super::operations::{Binary, Unary};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Index of a node. Operands have smaller indices than their uses.
@@ -147,6 +148,31 @@ impl Graph {
     /// Whether the node depends on no coordinate.
     pub(super) fn is_uniform(&self, id: Id) -> bool {
         self.axes(id) == 0
+    }
+
+    /// The nodes that `outputs` need, in the order of the graph.
+    pub(super) fn needed_by(&self, outputs: &[Id]) -> Vec<Id> {
+        let mut needed = vec![false; self.nodes.len()];
+        for &output in outputs {
+            needed[output as usize] = true;
+        }
+        // Operands have smaller indices than their uses.
+        for (id, node) in self.nodes.iter().enumerate().rev() {
+            if needed[id] {
+                node.operands(|operand| needed[operand as usize] = true);
+            }
+        }
+        (0..).zip(needed).filter(|&(_, is_needed)| is_needed).map(|(id, _)| id).collect()
+    }
+
+    /// Evaluates `nodes` at a point: `results` gets the value of each at its index. The operands of each have to be among them.
+    pub(super) fn evaluate(&self, nodes: &[Id], parameters: &[f64], point: DVec3, results: &mut Vec<f64>) {
+        let point = point.to_array();
+        results.resize(self.nodes.len().max(results.len()), 0.0);
+        for &id in nodes {
+            let value = self.nodes[id as usize].evaluate(parameters, point, |id| results[id as usize]);
+            results[id as usize] = value;
+        }
     }
 
     pub(super) fn as_constant(&self, id: Id) -> Option<f64> {

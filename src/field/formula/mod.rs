@@ -138,8 +138,13 @@ pub struct FormulaField {
     compiled: Compiled,
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
+    doubles: Vec<f64>,
     /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
     double: Option<f64>,
+    /// See [`Field::origin`].
+    origin: DVec3,
+    /// Boxes in the coordinates of the formula.
+    boxes: Vec<[DVec3; 2]>,
 }
 
 impl FormulaField {
@@ -173,7 +178,10 @@ impl FormulaField {
             parameters,
             scratch: eval::Scratch::default(),
             jets: Vec::new(),
+            doubles: Vec::new(),
             double: None,
+            origin: DVec3::ZERO,
+            boxes: Vec::new(),
         })
     }
 
@@ -273,14 +281,48 @@ impl FormulaField {
         Ok(())
     }
 
-    fn compressed(&mut self, p: Vec3, scale: f64) -> (f32, Vec3, Sym3<f32>) {
-        double::compressed(&self.compiled.jet(&self.values, p.as_dvec3(), &mut self.jets), scale)
+    /// Counts the points and boxes that the methods of [`Field`] take from `origin`.
+    ///
+    /// With another origin than zero the batched methods compute in double precision, which takes several times as long: the
+    /// coordinates of the formula have more digits than single precision holds.
+    pub fn set_origin(&mut self, origin: DVec3) {
+        self.origin = origin;
+    }
+
+    /// Whether the batched methods compute in double precision.
+    fn is_double(&self) -> bool {
+        self.double.is_some() || self.origin != DVec3::ZERO
+    }
+
+    /// A point in the coordinates of the formula.
+    fn place(&self, p: Vec3) -> DVec3 {
+        self.origin + p.as_dvec3()
+    }
+
+    /// Runs `enclose` on boxes in the coordinates of the formula that hold these boxes.
+    fn on_formula_boxes<R>(
+        &mut self,
+        boxes: &[[DVec3; 2]],
+        enclose: impl FnOnce(&mut Self, &[[DVec3; 2]]) -> R,
+    ) -> R {
+        if self.origin == DVec3::ZERO {
+            return enclose(self, boxes);
+        }
+        let mut moved = core::mem::take(&mut self.boxes);
+        moved.clear();
+        moved.extend(boxes.iter().map(|&[lo, hi]| {
+            let [lo, hi] = [lo, hi].map(|corner| (self.origin + corner).to_array());
+            [DVec3::from_array(lo.map(f64::next_down)), DVec3::from_array(hi.map(f64::next_up))]
+        }));
+        let result = enclose(self, &moved);
+        self.boxes = moved;
+        result
     }
 
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
     /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
-        self.compiled.transformed_jet(&self.values, p)
+        self.compiled.transformed_jet(&self.values, self.origin + p)
     }
 }
 
@@ -389,9 +431,10 @@ impl Field for FormulaField {
     }
 
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
-        if let Some(scale) = self.double {
+        if self.is_double() {
             for (&p, value) in points.iter().zip(value) {
-                (*value, _, _) = self.compressed(p, scale);
+                let exact = self.compiled.value(&self.values, self.place(p), &mut self.doubles);
+                *value = double::value(exact, self.double);
             }
             return;
         }
@@ -400,9 +443,10 @@ impl Field for FormulaField {
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
-        if let Some(scale) = self.double {
+        if self.is_double() {
             for (k, &p) in points.iter().enumerate() {
-                (value[k], gradient[k], _) = self.compressed(p, scale);
+                let exact = self.compiled.gradient(&self.values, self.place(p), &mut self.doubles);
+                (value[k], gradient[k]) = double::gradient(exact, self.double);
             }
             return;
         }
@@ -418,9 +462,10 @@ impl Field for FormulaField {
         gradient: &mut [Vec3],
         hessian: &mut [Sym3<f32>],
     ) {
-        if let Some(scale) = self.double {
+        if self.is_double() {
             for (k, &p) in points.iter().enumerate() {
-                (value[k], gradient[k], hessian[k]) = self.compressed(p, scale);
+                let jet = self.compiled.jet(&self.values, self.place(p), &mut self.jets);
+                (value[k], gradient[k], hessian[k]) = double::hessian(&jet, self.double);
             }
             return;
         }
@@ -433,7 +478,7 @@ impl Field for FormulaField {
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        let jet = self.compiled.jet(&self.values, p, &mut self.jets);
+        let jet = self.compiled.jet(&self.values, self.origin + p, &mut self.jets);
         self.double.map_or(jet, |scale| double::scaled(jet, scale))
     }
 
@@ -442,11 +487,17 @@ impl Field for FormulaField {
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        self.compiled.parts(&self.values)[0].first.whole([lo, hi])
+        self.on_formula_boxes(&[[lo, hi]], |field, boxes| {
+            field.compiled.parts(&field.values)[0].first.whole(boxes[0])
+        })
     }
 
     fn has_bounds(&self) -> bool {
         true
+    }
+
+    fn origin(&self) -> DVec3 {
+        self.origin
     }
 
     fn parts(&mut self) -> usize {
@@ -454,13 +505,17 @@ impl Field for FormulaField {
     }
 
     fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        self.compiled.parts(&self.values)[part].first.enclose(boxes, out);
+        self.on_formula_boxes(boxes, |field, boxes| {
+            field.compiled.parts(&field.values)[part].first.enclose(boxes, out);
+        });
     }
 
     fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        match &mut self.compiled.parts(&self.values)[part].second {
-            Some(program) => program.enclose_second(boxes, out),
-            None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
-        }
+        self.on_formula_boxes(boxes, |field, boxes| {
+            match &mut field.compiled.parts(&field.values)[part].second {
+                Some(program) => program.enclose_second(boxes, out),
+                None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
+            }
+        });
     }
 }

@@ -1,7 +1,7 @@
 //! Why a surface is not refined.
 
 use core::fmt;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 /// Why the particles of a run were not refined, and near which place.
@@ -110,6 +110,25 @@ impl fmt::Display for Place {
 }
 
 impl Refusal {
+    /// The same reason, with a place that was counted from `origin` in the coordinates of the formula.
+    #[must_use]
+    pub(crate) fn counted_from_zero(mut self, origin: DVec3) -> Self {
+        match &mut self {
+            Self::Few => {}
+            Self::Bent { at }
+            | Self::Singular { at }
+            | Self::Border { at }
+            | Self::Cut { at }
+            | Self::Missed { at }
+            | Self::Narrow { at }
+            | Self::Small { at }
+            | Self::Doubtful { at }
+            | Self::Sharp { at }
+            | Self::Folded { at } => *at = (origin + Vec3::from(at.0).as_dvec3()).as_vec3().into(),
+        }
+        self
+    }
+
     /// Whether a finer front may do.
     pub(crate) fn is_coarse(self) -> bool {
         !matches!(self, Self::Few | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. })

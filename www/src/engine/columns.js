@@ -20,6 +20,7 @@ export const NO_LEVEL = 0xffffffff;
  * @property {number} first
  * @property {number} total  number of particles after this range is written
  * @property {Float32Array} positions
+ * @property {Float64Array} [exact]  the positions in double precision, in a box far from the origin; else empty
  * @property {Float32Array} normals
  * @property {Float32Array} radii
  * @property {Uint32Array} levels
@@ -38,6 +39,8 @@ export class Columns {
     /** Whether the run was adaptive. The number of slots of a particle depends on it. */
     this.adaptive = false;
     this.positions = new Float32Array(0);
+    /** The positions in double precision, in a box so far from the origin that single precision rounds them; else empty. */
+    this.exact = new Float64Array(0);
     this.normals = new Float32Array(0);
     this.radii = new Float32Array(0);
     this.levels = new Uint32Array(0);
@@ -80,6 +83,7 @@ export class Columns {
     this.curved = 0;
     this.adaptive = adaptive;
     this.past = [];
+    this.exact = new Float64Array(0);
     this.forget();
   }
 
@@ -109,13 +113,14 @@ export class Columns {
   reserve(n) {
     if (n <= this.radii.length) return;
     const room = Math.max(n, 2 * this.radii.length, 1024);
-    /** @template {Float32Array | Uint32Array} T @param {T} old @param {number} width @returns {T} */
+    /** @template {Float32Array | Float64Array | Uint32Array} T @param {T} old @param {number} width @returns {T} */
     const grown = (old, width) => {
       const next = /** @type {T} */ (new /** @type {any} */ (old.constructor)(room * width));
       next.set(old);
       return next;
     };
     this.positions = grown(this.positions, 3);
+    if (this.exact.length > 0) this.exact = grown(this.exact, 3);
     this.normals = grown(this.normals, 3);
     this.radii = grown(this.radii, 1);
     this.levels = grown(this.levels, 1);
@@ -135,6 +140,10 @@ export class Columns {
       return false;
     this.reserve(total);
     this.positions.set(range.positions, 3 * first);
+    if (range.exact?.length) {
+      if (this.exact.length === 0) this.exact = new Float64Array(this.positions.length);
+      this.exact.set(range.exact, 3 * first);
+    }
     this.normals.set(range.normals, 3 * first);
     this.radii.set(range.radii, first);
     this.levels.set(range.levels, first);

@@ -35,6 +35,7 @@ export const CAMERA_MS = 120;
  * @typedef {object} Particles
  * @property {number} count
  * @property {Float32Array} positions
+ * @property {Float64Array | null} exact  the positions in double precision, in a box far from the origin
  * @property {Float32Array} normals
  * @property {Float32Array} radii
  * @property {Uint32Array} levels
@@ -111,6 +112,7 @@ function copyOf(columns) {
   return {
     count,
     positions: columns.positions.slice(0, 3 * count),
+    exact: columns.exact.length > 0 ? columns.exact.slice(0, 3 * count) : null,
     normals: columns.normals.slice(0, 3 * count),
     radii: columns.radii.slice(0, count),
     levels: columns.levels.slice(0, count),

@@ -43,7 +43,7 @@ export type Column = {
 };
 
 /** What the values of a column are, by the name of the type in PLY. */
-export type ColumnKind = "float" | "int" | "uint" | "uchar";
+export type ColumnKind = "coordinate" | "float" | "int" | "uint" | "uchar";
 
 /** What has to hold of another setting. */
 export type Condition = {

@@ -223,6 +223,34 @@ describe('picking', () => {
 });
 
 describe('exports', () => {
+  test('hold the coordinates of a box far from the origin in double precision', async () => {
+    const columns = sphere(20);
+    const exact = Float64Array.from(columns.positions.subarray(0, 60), (v, i) => v + [100, -200, 300][i % 3] + 1e-9);
+    const range = { positions: Float32Array.from(exact), normals: columns.normals.slice(0, 60) };
+    const [radii, levels, parents] = [columns.radii, columns.levels, columns.parents].map((c) => c.slice(0, 20));
+    columns.clear();
+    for (const [first, total] of [
+      [0, 12],
+      [12, 20],
+    ]) {
+      const part = (/** @type {any} */ column, width = 1) => column.slice(width * first, width * total);
+      const [positions, normals, places] = [range.positions, range.normals, exact].map((c) => part(c, 3));
+      const rest = { radii: part(radii), levels: part(levels), parents: part(parents) };
+      columns.write({ first, total, positions, normals, exact: places, ...rest });
+    }
+    const lines = (await csv(columns, description.columns).text()).trimEnd().split('\n').slice(1);
+    expect(lines.flatMap((line) => line.split(',').slice(0, 3).map(Number))).toEqual([...exact]);
+    const file = Buffer.from(await ply(columns, description.columns, { comment: '' }).arrayBuffer());
+    const header = file.subarray(0, file.indexOf('end_header\n') + 'end_header\n'.length);
+    expect(header.toString()).toContain('property double x\nproperty double y\nproperty double z\nproperty float nx');
+    const stride = (file.length - header.length) / 20;
+    const first = (/** @type {number} */ i) => file.readDoubleLE(header.length + i * stride);
+    expect([0, 7, 19].map(first)).toEqual([0, 7, 19].map((i) => exact[3 * i]));
+    // The next run may be near the origin.
+    columns.clear();
+    expect(columns.exact).toHaveLength(0);
+  });
+
   test('PLY: header and body agree, to the byte', async () => {
     const columns = sphere(50);
     columns.valence = Uint8Array.from({ length: 50 }, (_, i) => 4 + (i % 4));

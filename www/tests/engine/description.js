@@ -76,7 +76,8 @@ export const description = {
   functions: [],
   colours: [],
   columns: [
-    ...['x', 'y', 'z', 'nx', 'ny', 'nz', 'radius'].map((name) => column(name, 'float')),
+    ...['x', 'y', 'z'].map((name) => column(name, 'coordinate')),
+    ...['nx', 'ny', 'nz', 'radius'].map((name) => column(name, 'float')),
     column('level', 'uint'),
     column('parent', 'int'),
     column('valence', 'uchar', true),

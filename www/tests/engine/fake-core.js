@@ -172,6 +172,7 @@ export function fakeCore({
     },
     count: () => count,
     positions: (/** @type {number} */ from) => column(from, 3, Float32Array),
+    exact_positions: () => new Float64Array(0),
     normals: (/** @type {number} */ from) => column(from, 3, Float32Array),
     radii: (/** @type {number} */ from) => column(from, 1, Float32Array),
     levels: (/** @type {number} */ from) => column(from, 1, Uint32Array),

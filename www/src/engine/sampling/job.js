@@ -29,6 +29,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  * @property {() => CoreProgress} cancel
  * @property {() => number} count
  * @property {(from: number) => Float32Array} positions
+ * @property {(from: number) => Float64Array} exact_positions
  * @property {(from: number) => Float32Array} normals
  * @property {(from: number) => Float32Array} radii
  * @property {(from: number) => Uint32Array} levels
@@ -327,6 +328,7 @@ class JobRun {
     sent.curved += curvature.length / 2;
     const columns = {
       positions: core.positions(first),
+      exact: core.exact_positions(first),
       normals: core.normals(first),
       radii: core.radii(first),
       levels: core.levels(first),

@@ -73,6 +73,7 @@
  * @property {number} first
  * @property {number} total
  * @property {Float32Array} positions
+ * @property {Float64Array} [exact]  the positions in double precision, in a box far from the origin; else empty
  * @property {Float32Array} normals
  * @property {Float32Array} radii
  * @property {Uint32Array} levels

@@ -13,14 +13,20 @@ const ROWS = 8192;
 
 /** @typedef {import('../types.js').Description['columns'][number]} Column */
 
+/** Returns the positions as exactly as they are known. @param {Columns} columns */
+const placesOf = ({ exact, positions }) => (exact.length > 0 ? exact : positions);
+
+/** Returns the type of the values of a column, by its name in PLY. @param {Columns} columns @param {Column} column */
+const typeOf = ({ exact }, { kind }) => (kind === 'coordinate' ? (exact.length > 0 ? 'double' : 'float') : kind);
+
 /**
  * Value of each column for a particle, by the name of the column.
  * @type {Record<string, (columns: Columns, i: number) => number | undefined>}
  */
 const READ = {
-  x: ({ positions }, i) => positions[3 * i],
-  y: ({ positions }, i) => positions[3 * i + 1],
-  z: ({ positions }, i) => positions[3 * i + 2],
+  x: (columns, i) => placesOf(columns)[3 * i],
+  y: (columns, i) => placesOf(columns)[3 * i + 1],
+  z: (columns, i) => placesOf(columns)[3 * i + 2],
   nx: ({ normals }, i) => normals[3 * i],
   ny: ({ normals }, i) => normals[3 * i + 1],
   nz: ({ normals }, i) => normals[3 * i + 2],
@@ -39,6 +45,7 @@ const known = ({ valence, nearest, residual }, all) =>
 
 /** Size of a value in bytes, and the method that writes it, by the type of the column. */
 const BINARY = {
+  double: { bytes: 8, write: DataView.prototype.setFloat64 },
   float: { bytes: 4, write: DataView.prototype.setFloat32 },
   int: { bytes: 4, write: DataView.prototype.setInt32 },
   uint: { bytes: 4, write: DataView.prototype.setUint32 },
@@ -60,24 +67,24 @@ export function ply(columns, all, { comment }) {
     'format binary_little_endian 1.0',
     `comment ${comment.replace(/[\r\n]+/g, ' ')}`,
     `element vertex ${count}`,
-    ...some.map(({ name, kind }) => `property ${kind} ${name}`),
+    ...some.map((column) => `property ${typeOf(columns, column)} ${column.name}`),
     'end_header',
     '',
   ].join('\n');
-  const stride = some.reduce((sum, { kind }) => sum + BINARY[kind].bytes, 0);
+  const stride = some.reduce((sum, column) => sum + BINARY[typeOf(columns, column)].bytes, 0);
   const body = new DataView(new ArrayBuffer(count * stride));
   let offset = 0;
-  for (const { name, kind } of some) {
-    const { bytes, write } = BINARY[kind];
+  for (const column of some) {
+    const { bytes, write } = BINARY[typeOf(columns, column)];
     for (let i = 0, at = offset; i < count; i += 1, at += stride)
-      write.call(body, at, READ[name](columns, i) ?? 0, true);
+      write.call(body, at, READ[column.name](columns, i) ?? 0, true);
     offset += bytes;
   }
   return new Blob([new TextEncoder().encode(header), body.buffer], { type: 'application/octet-stream' });
 }
 
 /**
- * Returns the same data as CSV text, one line per particle. Reading a number back gives the same single-precision value.
+ * Returns the same data as CSV text, one line per particle. Reading a number back gives the same value.
  * @param {Columns} columns
  * @param {readonly Column[]} all  all columns, as the core describes them
  * @returns {Blob}
@@ -85,9 +92,9 @@ export function ply(columns, all, { comment }) {
 export function csv(columns, all) {
   const some = known(columns, all);
   const parts = [`${some.map(({ name }) => name).join(',')}\n`];
-  const readers = some.map(({ name, kind }) => {
-    const read = READ[name];
-    return kind === 'float'
+  const readers = some.map((column) => {
+    const read = READ[column.name];
+    return typeOf(columns, column) === 'float'
       ? (/** @type {number} */ i) => single(read(columns, i) ?? 0)
       : (/** @type {number} */ i) => read(columns, i);
   });

@@ -1,0 +1,244 @@
+//! Tests of boxes far from the origin, where single precision would round the places of particles.
+
+use glam::{DVec3, Vec3};
+use marching_particles::export::{self, Format, MeshFormat};
+use marching_particles::field::formula::FormulaField;
+use marching_particles::field::{Enclosure, Field};
+use marching_particles::math::{Bounds, Sym3};
+use marching_particles::quality;
+use marching_particles::sampler::{Method, Sampling, Search, Settings};
+use marching_particles::session::{FieldRequest, Report, Session};
+
+const FAR: DVec3 = DVec3::new(100.0, -200.0, 300.0);
+
+/// A formula in X, Y and Z, written about `centre`.
+fn about(centre: DVec3, formula: &str) -> String {
+    formula
+        .replace('X', &format!("(x - {:?})", centre.x))
+        .replace('Y', &format!("(y - {:?})", centre.y))
+        .replace('Z', &format!("(z - {:?})", centre.z))
+}
+
+/// A finished run of the formula in a cube around `centre`.
+fn run(centre: DVec3, formula: &str, half: f64, settings: &Settings) -> (Session, Report) {
+    let mut session = Session::new();
+    let (min, max) = ((centre - half).to_array(), (centre + half).to_array());
+    let request = FieldRequest {
+        formula: Some(about(centre, formula)),
+        bounds: Some(Bounds { min, max }),
+        ..FieldRequest::default()
+    };
+    session.set_field(&request).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    session.start(settings).unwrap_or_else(|error| panic!("{formula}: {error}"));
+    while session.step(100_000).stop_reason.is_none() {}
+    let report = session.report();
+    (session, report)
+}
+
+#[test]
+fn far_from_the_origin_the_figures_are_those_at_the_origin() {
+    let uniform = Settings { radius_share: 0.008, ..Settings::default() };
+    let adaptive = Settings { sampling: Sampling::Adaptive, ..uniform };
+    let refined = Settings { method: Method::Refined, ..uniform };
+    for (formula, half) in [
+        ("X^2 + 2Y^2 + 4Z^2 = 1", 1.25),
+        ("(sqrt(X^2 + Y^2) - 0.7)^2 + Z^2 = 0.09", 1.2),
+        ("sin(3X)cos(3Y) + sin(3Y)cos(3Z) + sin(3Z)cos(3X)", 1.0),
+        ("(X^2 + Y^2 + Z^2 - 1) (X^2 + Y^2 + Z^2 - 0.9)", 1.25),
+    ] {
+        for settings in [uniform, adaptive, refined] {
+            let (_, near) = run(DVec3::ZERO, formula, half, &settings);
+            let (session, far) = run(FAR, formula, half, &settings);
+            let name = format!("{formula}, {:?}, {:?}", settings.sampling, settings.method);
+            let figures = |report: &Report| report.quality.unwrap_or_else(|| panic!("{name}: no particles"));
+            let (here, there) = (figures(&near), figures(&far));
+            assert!(
+                there.err_max < 1.2 * here.err_max,
+                "{name}: residual {} at the origin, {}",
+                here.err_max,
+                there.err_max
+            );
+            assert!(
+                near.count.abs_diff(far.count) * 500 <= near.count,
+                "{name}: {} {}",
+                near.count,
+                far.count
+            );
+            assert_eq!((here.components, here.euler), (there.components, there.euler), "{name}");
+            assert_eq!((near.search, far.search), (Search::Proven, Search::Proven), "{name}");
+            assert!((here.six - there.six).abs() < 0.01, "{name}: six {} {}", here.six, there.six);
+            let bounds = session.bounds();
+            let is_inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
+            let particles = session.particles();
+            assert!((0..particles.len()).all(|i| is_inside(particles.place(i))), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_field_with_an_origin_is_the_same_field_there() {
+    let text = "sin(x) y^2 + exp(z/300) sqrt(x) - x y z";
+    let mut field = FormulaField::parse(text, &[]).expect("a formula");
+    let mut moved = field.clone();
+    moved.set_origin(FAR);
+    assert_eq!((field.origin(), moved.origin()), (DVec3::ZERO, FAR));
+    let points: Vec<Vec3> =
+        (0..50).map(|k| Vec3::new(0.37, -0.21, 0.11) * (k as f32 - 25.0) * 0.03).collect();
+    let (mut value, mut gradient) = (vec![0.0; 50], vec![Vec3::ZERO; 50]);
+    let mut hessian = vec![Sym3::default(); 50];
+    moved.hessians(&points, &mut value, &mut gradient, &mut hessian);
+    let (mut alone, mut again, mut slope) = (vec![0.0; 50], vec![0.0; 50], vec![Vec3::ZERO; 50]);
+    moved.values(&points, &mut alone);
+    moved.gradients(&points, &mut again, &mut slope);
+    for (k, p) in points.iter().enumerate() {
+        let jet = field.jet(FAR + p.as_dvec3());
+        assert_eq!(moved.jet(p.as_dvec3()), jet);
+        let near = |a: f32, b: f64| (f64::from(a) - b).abs() <= 1e-6 * b.abs().max(1.0);
+        assert!([value[k], alone[k], again[k]].into_iter().all(|v| near(v, jet.value)), "{k}");
+        for axis in 0..3 {
+            assert!(near(gradient[k][axis], jet.gradient[axis]) && near(slope[k][axis], jet.gradient[axis]));
+        }
+        assert!(near(hessian[k].xy, jet.hessian.xy) && near(hessian[k].zz, jet.hessian.zz), "{k}");
+    }
+    let boxes: Vec<[DVec3; 2]> = points.iter().map(|p| [p.as_dvec3(), p.as_dvec3() + 0.01]).collect();
+    let mut bounds = vec![Enclosure::UNKNOWN; 50];
+    let mut second = vec![[[0.0; 2]; 6]; 50];
+    moved.enclose(0, &boxes, &mut bounds);
+    moved.enclose_second(0, &boxes, &mut second);
+    for (k, [lo, hi]) in boxes.into_iter().enumerate() {
+        let interval = moved.interval(lo, hi);
+        for corner in [lo, hi, 0.5 * (lo + hi)] {
+            let jet = field.jet(FAR + corner);
+            assert!(interval.lo <= jet.value && jet.value <= interval.hi, "{k}");
+            assert!(bounds[k].value[0] <= jet.value && jet.value <= bounds[k].value[1], "{k}");
+            let [low, high] = second[k][1];
+            assert!(low <= jet.hessian.xy && jet.hessian.xy <= high, "{k}");
+        }
+    }
+}
+
+#[test]
+fn a_place_in_a_far_box_is_told_in_the_coordinates_of_the_formula() {
+    let settings = Settings { radius_share: 0.01, method: Method::Refined, ..Settings::default() };
+    let (_, cone) = run(FAR, "X^2 + Y^2 - Z^2", 1.0, &settings);
+    let named = "near (100.000, -200.000, 300.000) the gradient vanishes";
+    assert!(cone.warnings.iter().any(|warning| warning.contains(named)), "{:?}", cone.warnings);
+    assert!(!cone.places.holes.is_empty(), "the largest hole is told");
+    for hole in &cone.places.holes {
+        let away = Vec3::from_array(hole.position).as_dvec3() - FAR;
+        assert!(away.abs().max_element() <= 1.001, "{hole:?}");
+    }
+    // A ball smaller than a particle, beside a large one.
+    let two = "(X^2 + Y^2 + Z^2 - 0.25) ((X - 0.51)^2 + Y^2 + Z^2 - 0.000001)";
+    let (_, report) = run(FAR, two, 1.0, &Settings { radius_share: 0.02, ..Settings::default() });
+    assert!(!report.sampled.without.is_empty(), "{:?}", report.sampled);
+    for witness in &report.sampled.without {
+        let away = DVec3::from_array(witness.position) - FAR - DVec3::new(0.51, 0.0, 0.0);
+        assert!(away.length() < 0.0011, "{witness:?}");
+    }
+    assert!(report.warnings.iter().any(|w| w.contains("near (100.51")), "{:?}", report.warnings);
+}
+
+#[test]
+fn files_hold_far_places_in_double_precision() {
+    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    while session.join(u32::MAX).is_none() {}
+    let (particles, measured) = (session.particles(), session.measured());
+    let file = |format: Format| {
+        let mut bytes = Vec::new();
+        export::write(format, particles, measured, &mut bytes).expect("memory does not run out");
+        bytes
+    };
+    let on_sphere = |p: DVec3, what: &str| {
+        let off = ((p - FAR).length() - 1.0).abs();
+        assert!(off < 1e-5, "{what}: {p} is {off} off the sphere");
+    };
+    let numbers = |line: &str, skip: usize, split: char| -> DVec3 {
+        let mut values = line.split(split).skip(skip).map(|v| v.parse::<f64>().expect("a number"));
+        DVec3::from_array([(); 3].map(|()| values.next().expect("three numbers")))
+    };
+    let csv = String::from_utf8(file(Format::Csv)).expect("text");
+    csv.lines().skip(1).for_each(|line| on_sphere(numbers(line, 0, ','), "CSV"));
+    let xyz = String::from_utf8(file(Format::Xyz)).expect("text");
+    xyz.lines().for_each(|line| on_sphere(numbers(line, 0, ' '), "XYZ"));
+    let npy = file(Format::Npy);
+    assert!(npy.windows(5).any(|bytes| bytes == b"'<f8'"));
+    let rows = &npy[npy.len() - 48 * particles.len()..];
+    let double = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().expect("eight bytes"));
+    rows.chunks_exact(48).for_each(|row| {
+        on_sphere(DVec3::from_array([0, 8, 16].map(|at| double(&row[at..at + 8]))), "NPY");
+    });
+    let ply = file(Format::Ply);
+    let text = String::from_utf8_lossy(&ply);
+    assert!(text.contains("property double x\nproperty double y\nproperty double z\nproperty float nx"));
+    let end = ply.windows(11).position(|bytes| bytes == b"end_header\n").expect("a header") + 11;
+    on_sphere(DVec3::from_array([0, 8, 16].map(|at| double(&ply[end + at..end + at + 8]))), "PLY");
+
+    let mesh = |format: MeshFormat| {
+        let mut bytes = Vec::new();
+        export::write_mesh(format, particles, &quality::Report::default(), session.triangles(), &mut bytes)
+            .expect("memory does not run out");
+        bytes
+    };
+    let obj = String::from_utf8(mesh(MeshFormat::Obj)).expect("text");
+    obj.lines()
+        .filter(|line| line.starts_with("v "))
+        .for_each(|line| on_sphere(numbers(line, 1, ' '), "OBJ"));
+    // glTF's y axis points up: (x, y, z) is (x, z, −y) there.
+    let glb = mesh(MeshFormat::Glb);
+    let origin = particles.origin;
+    let translation = format!(r#""translation":[{},{},{}]"#, origin.x, origin.z, -origin.y);
+    assert!(String::from_utf8_lossy(&glb).contains(&translation), "{translation}");
+}
+
+#[test]
+fn only_a_box_far_for_its_size_has_an_origin_of_its_own() {
+    let around = |centre: DVec3, half: f64| Bounds {
+        min: (centre - half).to_array(),
+        max: (centre + half).to_array(),
+    };
+    for (centre, half) in [(DVec3::ZERO, 1.0), (DVec3::splat(3.0), 1.0), (FAR, 60.0)] {
+        assert_eq!(around(centre, half).local_origin(), DVec3::ZERO, "{centre}, {half}");
+    }
+    for (centre, half) in [(FAR, 1.0), (FAR, 20.0), (DVec3::X * 1e-3, 1e-6), (DVec3::NEG_Z * 1e9, 1e7)] {
+        let bounds = around(centre, half);
+        let origin = bounds.local_origin();
+        assert!((origin - centre).abs().max_element() <= 0.5 * half, "{centre}, {half}: {origin}");
+        let local = bounds.relative_to(origin);
+        assert!(local.is_valid() && local.local_origin() == DVec3::ZERO, "{local:?}");
+        assert!(
+            (origin.as_vec3().as_dvec3() - origin).abs().max_element() <= 1e-6 * half,
+            "{origin} is round"
+        );
+    }
+}
+
+#[test]
+fn a_session_leaves_a_far_box_as_it_came() {
+    let settings = Settings { radius_share: 0.02, ..Settings::default() };
+    let finish = |session: &mut Session| {
+        session.start(&settings).expect("settings in range");
+        while session.step(u32::MAX).stop_reason.is_none() {}
+    };
+    let mut fresh = Session::new();
+    finish(&mut fresh);
+    let (mut session, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    let far = session.particles().digest();
+    // A fitted box is far, too.
+    let request =
+        FieldRequest { formula: Some(about(FAR, "X^2 + Y^2 + Z^2 = 2")), ..FieldRequest::default() };
+    let mut fitted = Session::new();
+    fitted.set_field(&request).expect("a formula");
+    finish(&mut fitted);
+    assert!(
+        fitted.particles().origin != DVec3::ZERO && fitted.report().quality.expect("figures").err_max < 1e-4
+    );
+    // Back at the origin, and far away again.
+    let surface = FieldRequest { surface: Some("ellipsoid".into()), ..FieldRequest::default() };
+    session.set_field(&surface).expect("a surface of the gallery");
+    finish(&mut session);
+    assert_eq!(session.particles().digest(), fresh.particles().digest());
+    let (again, _) = run(FAR, "X^2 + Y^2 + Z^2 = 1", 1.25, &settings);
+    assert_eq!(again.particles().digest(), far);
+}
