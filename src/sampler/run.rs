@@ -358,7 +358,7 @@ impl Sampler {
                 // The last front was one of several.
                 self.moved |= self.fronts.are_several;
                 self.drop_beyond();
-                PhaseState::Refinement(Box::new(components))
+                PhaseState::Refinement(components)
             }
             Err(refusal) => self.refuse(refusal),
         }

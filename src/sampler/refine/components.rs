@@ -78,7 +78,7 @@ pub(crate) enum Next {
     /// A front over one component, to be refined so many times.
     Front(u32),
     /// The refinement.
-    Refine(Components),
+    Refine(Box<Components>),
 }
 
 impl Fronts {
@@ -121,7 +121,7 @@ impl Fronts {
         if let Some(first) = self.end() {
             *particles = first;
         }
-        Ok(Next::Refine(Components::new(components, target)))
+        Ok(Next::Refine(Box::new(Components::new(components, target))))
     }
 
     fn take_first(
