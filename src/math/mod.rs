@@ -78,8 +78,8 @@ impl Bounds {
         (self.hi() - self.lo()).length()
     }
 
-    /// Corners of boxes that need no origin of their own are no farther from the origin than so many diagonals. There, rounding to
-    /// single precision moves a particle of the default radius by a fifty-thousandth of it.
+    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to single
+    /// precision moves a particle of the default radius by a twenty-five-thousandth of it.
     const NEAR: f64 = 4.0;
 
     /// The point from which the particles in this box are best counted: the origin of the coordinates, unless the box is so far from

@@ -207,8 +207,8 @@ fn text_report_names_the_figures_before_and_after() {
     }
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split("  ").map(str::trim).collect()).collect();
     for (label, figure) in [
-        ("Euler number of the sample", "0"),
-        ("Components of the sample", "1"),
+        ("Euler number of sample", "0"),
+        ("Components of sample", "1"),
         ("All components found", "proven"),
         ("Undecided cells", "0"),
     ] {
@@ -384,14 +384,9 @@ fn comparison_as_text_has_columns_and_the_stop_reasons() {
     let output = run(&["compare", "--surface", "sphere", "--radius", "3%", "--iterations", "30"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let text = stdout(&output);
-    for label in [
-        "Particles ",
-        "Steps ",
-        "Evaluations ",
-        "Six neighbours ",
-        "Largest hole ",
-        "Components of the sample ",
-    ] {
+    for label in
+        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Components of sample "]
+    {
         assert!(text.lines().any(|line| line.starts_with(label)), "no `{label}` in:\n{text}");
     }
     let ended = text.lines().find(|line| line.starts_with("Ended")).expect("why it ended");

@@ -21,9 +21,9 @@ pub(super) fn gradient((f, gradient): (f64, DVec3), scale: Option<f64>) -> (f32,
 
 /// The second-order jet of f in single precision or, with a scale s, that of arsinh(f/s); not finite where f is not.
 pub(super) fn hessian(jet: &Jet, scale: Option<f64>) -> (f32, Vec3, Sym3<f32>) {
-    let (value, gradient) = gradient((jet.value, jet.gradient), scale);
+    let (value, slope) = gradient((jet.value, jet.gradient), scale);
     let Some(scale) = scale else {
-        return (value, gradient, jet.hessian.map(|entry| entry as f32));
+        return (value, slope, jet.hessian.map(|entry| entry as f32));
     };
     // The second derivative of arsinh(f/s) is −f/√(s² + f²)³.
     let size = libm::hypot(scale, jet.value);
@@ -38,7 +38,7 @@ pub(super) fn hessian(jet: &Jet, scale: Option<f64>) -> (f32, Vec3, Sym3<f32>) {
         yz: second(h.yz, g.y, g.z),
         zz: second(h.zz, g.z, g.z),
     };
-    (value, gradient, hessian)
+    (value, slope, hessian)
 }
 
 /// The jet of f/s.

@@ -283,8 +283,8 @@ impl FormulaField {
 
     /// Counts the points and boxes that the methods of [`Field`] take from `origin`.
     ///
-    /// With another origin than zero the batched methods compute in double precision, which takes several times as long: the
-    /// coordinates of the formula have more digits than single precision holds.
+    /// With another origin than zero the batched methods compute in double precision, which takes longer: the coordinates of the
+    /// formula have more digits than single precision holds.
     pub fn set_origin(&mut self, origin: DVec3) {
         self.origin = origin;
     }
@@ -295,8 +295,9 @@ impl FormulaField {
     }
 
     /// A point in the coordinates of the formula.
-    fn place(&self, p: Vec3) -> DVec3 {
-        self.origin + p.as_dvec3()
+    fn place(&self, p: DVec3) -> DVec3 {
+        // Adding 0 would take the sign off −0, to the other side of a jump.
+        if self.origin == DVec3::ZERO { p } else { self.origin + p }
     }
 
     /// Runs `enclose` on boxes in the coordinates of the formula that hold these boxes.
@@ -322,7 +323,7 @@ impl FormulaField {
     /// f, ∇f and ∇∇f at `p`, computed in double precision from the transformed graphs that the batched programs are
     /// compiled from. It equals [`Field::jet`] up to rounding and is derived independently of it.
     pub fn transformed_jet(&mut self, p: DVec3) -> Jet {
-        self.compiled.transformed_jet(&self.values, self.origin + p)
+        self.compiled.transformed_jet(&self.values, self.place(p))
     }
 }
 
@@ -433,7 +434,7 @@ impl Field for FormulaField {
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         if self.is_double() {
             for (&p, value) in points.iter().zip(value) {
-                let exact = self.compiled.value(&self.values, self.place(p), &mut self.doubles);
+                let exact = self.compiled.value(&self.values, self.place(p.as_dvec3()), &mut self.doubles);
                 *value = double::value(exact, self.double);
             }
             return;
@@ -445,7 +446,7 @@ impl Field for FormulaField {
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         if self.is_double() {
             for (k, &p) in points.iter().enumerate() {
-                let exact = self.compiled.gradient(&self.values, self.place(p), &mut self.doubles);
+                let exact = self.compiled.gradient(&self.values, self.place(p.as_dvec3()), &mut self.doubles);
                 (value[k], gradient[k]) = double::gradient(exact, self.double);
             }
             return;
@@ -464,7 +465,7 @@ impl Field for FormulaField {
     ) {
         if self.is_double() {
             for (k, &p) in points.iter().enumerate() {
-                let jet = self.compiled.jet(&self.values, self.place(p), &mut self.jets);
+                let jet = self.compiled.jet(&self.values, self.place(p.as_dvec3()), &mut self.jets);
                 (value[k], gradient[k], hessian[k]) = double::hessian(&jet, self.double);
             }
             return;
@@ -478,7 +479,7 @@ impl Field for FormulaField {
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        let jet = self.compiled.jet(&self.values, self.origin + p, &mut self.jets);
+        let jet = self.compiled.jet(&self.values, self.place(p), &mut self.jets);
         self.double.map_or(jet, |scale| double::scaled(jet, scale))
     }
 
