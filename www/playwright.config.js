@@ -3,9 +3,9 @@ import { availableParallelism } from 'node:os';
 import { defineConfig } from '@playwright/test';
 
 // The browser tests run against the built site (`dist/`), once at the root of a host and once in a folder of one. The
-// Chromium is CHROMIUM_PATH, else the system's, else Playwright's own.
-const system = process.env.CHROMIUM_PATH ?? '/usr/bin/chromium';
-const executablePath = existsSync(system) ? system : undefined;
+// Chromium is CHROMIUM_PATH, else the system's, the one without windows first, else Playwright's own.
+const system = [process.env.CHROMIUM_PATH, '/usr/bin/chromium-headless-shell', '/usr/bin/chromium'];
+const executablePath = system.find((path) => path && existsSync(path));
 
 const quiet = [
   '--no-sandbox',
@@ -14,6 +14,8 @@ const quiet = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
+  // Without a crash reporter the browser without windows does not handle an access outside of wasm memory, and the page crashes.
+  '--enable-crash-reporter',
 ];
 // Software WebGPU and WebGL2; with fewer flags the graphics process fails on presenting while the API reports success.
 const webgpu = [

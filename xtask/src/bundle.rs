@@ -208,16 +208,21 @@ fn rust_flags(project: &Project) -> Vec<String> {
     flags
 }
 
+/// The target folder of all that makes the bundles. Cargo lets one build at a time into a folder, and this one has its own so that the
+/// native checks can run meanwhile.
+fn target_folder(project: &Project) -> PathBuf {
+    project.target.join("wasm")
+}
+
 /// Compiles the library for a bundle and returns the module.
 fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<PathBuf> {
-    let folder = project.target.join("wasm");
     let mut command = target.cargo(project, "rustc");
     command
         // The crate type is stated because a library that is also built as an rlib gets no link-time optimisation.
         .args(["--package", "marching-particles", "--lib", "--crate-type", "cdylib", "--release", "--locked"])
         .args(["--no-default-features", "--features", bundle.features()])
         .arg("--message-format=json-render-diagnostics")
-        .env("CARGO_TARGET_DIR", &folder)
+        .env("CARGO_TARGET_DIR", target_folder(project))
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
         .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project).join("\u{1f}"))
         // Without this the builds would write one file of the same name, and cargo would take one bundle's
@@ -251,6 +256,7 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
         "--locked",
         "--message-format=json-render-diagnostics",
     ]);
+    tool.env("CARGO_TARGET_DIR", target_folder(project));
     let label = format!("{name}: the binding tool (compiled once, about half a minute)");
     let messages = step::run(&label, &mut tool, "")?;
     let executable = messages

@@ -1,6 +1,8 @@
 //! The project's checks, which are also what runs in continuous integration.
 
+use std::path::Path;
 use std::process::Command;
+use std::thread;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum as _;
@@ -59,6 +61,13 @@ const ALL: [Part; 11] = [
     Part::Engines,
 ];
 
+/// What makes and checks the bundles of the page. These parts run beside those that compile natively, because the last crate of every
+/// build takes one processor only.
+const BUNDLES: [Part; 2] = [Part::Parity, Part::Page];
+
+/// What drives a browser, which takes all processors and waits for time to pass: it runs last and alone.
+const BROWSERS: [Part; 2] = [Part::Browser, Part::Engines];
+
 /// Without WebAssembly and a browser.
 const FAST: [Part; 3] = [Part::Format, Part::Lint, Part::Native];
 
@@ -96,6 +105,27 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
         node::prepare(project)?;
     }
     let chromium = if parts.contains(&Part::Browser) { Some(chromium::find(project)?) } else { None };
+    let of = |is_of: &dyn Fn(&Part) -> bool| parts.iter().copied().filter(is_of).collect::<Vec<_>>();
+    let browsers = of(&|part| BROWSERS.contains(part));
+    let bundles = of(&|part| BUNDLES.contains(part));
+    let native = of(&|part| !BUNDLES.contains(part) && !BROWSERS.contains(part));
+    let chromium = chromium.as_deref();
+    let mut failures = thread::scope(|scope| {
+        let beside = scope.spawn(|| run(project, &bundles, chromium));
+        let mut failures = run(project, &native, chromium);
+        failures.extend(beside.join().unwrap_or_else(|_| vec!["a part ended with a panic".to_owned()]));
+        failures
+    });
+    failures.extend(run(project, &browsers, chromium));
+    if !failures.is_empty() {
+        bail!("failed: {}", failures.join(", "));
+    }
+    println!("  all passed");
+    Ok(())
+}
+
+/// Runs parts one after the other and returns the names of those that failed.
+fn run(project: &Project, parts: &[Part], chromium: Option<&Path>) -> Vec<String> {
     let mut failures = Vec::new();
     for part in parts {
         let result = match part {
@@ -109,11 +139,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
             Part::Parity => parity(project),
             Part::Gltf => gltf(project),
             Part::Page => page(project),
-            Part::Browser => {
-                let path =
-                    chromium.as_deref().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
-                browser(project, &path)
-            }
+            Part::Browser => browser(project, chromium),
             Part::Engines => site::build(project).and_then(|()| engines::test(project)),
         };
         if let Err(error) = result {
@@ -122,11 +148,7 @@ pub(crate) fn test(project: &Project, options: &Options) -> Result<()> {
                 .push(part.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default());
         }
     }
-    if !failures.is_empty() {
-        bail!("failed: {}", failures.join(", "));
-    }
-    println!("  all passed");
-    Ok(())
+    failures
 }
 
 fn cargo_at_root(project: &Project, arguments: &[&str]) -> Command {
@@ -228,10 +250,11 @@ fn page(project: &Project) -> Result<()> {
     node::script(project, "page: unit tests", "test", &[]).map(drop)
 }
 
-fn browser(project: &Project, chromium: &str) -> Result<()> {
+fn browser(project: &Project, chromium: Option<&Path>) -> Result<()> {
     site::build(project)?;
     site::report_sizes(project)?;
-    let told = node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", chromium)])?;
+    let chromium = chromium.map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
+    let told = node::script(project, "page: browser tests", "e2e", &[("CHROMIUM_PATH", &chromium)])?;
     for line in flaky(&told) {
         println!("{line}");
     }

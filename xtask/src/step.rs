@@ -15,7 +15,8 @@ pub(crate) fn set_verbose(verbose: bool) {
     VERBOSE.store(verbose, Ordering::Relaxed);
 }
 
-/// A step that has been announced and not yet finished.
+/// A step that has been announced and not yet finished. It has a line at its begin and one at its end, since other steps may run
+/// meanwhile.
 pub(crate) struct Step {
     label: String,
     started: Instant,
@@ -24,25 +25,19 @@ pub(crate) struct Step {
 impl Step {
     /// Announces a step.
     pub(crate) fn begin(label: &str) -> Self {
-        print!("  {label} … ");
-        if VERBOSE.load(Ordering::Relaxed) {
-            println!();
-        }
-        flush();
+        println!("  {label} …");
         Self { label: label.to_owned(), started: Instant::now() }
     }
 
     /// Says that the step succeeded, with `note` beside its time.
     pub(crate) fn done(self, note: &str) {
         let gap = if note.is_empty() { "" } else { "  " };
-        let head =
-            if VERBOSE.load(Ordering::Relaxed) { format!("  {} … ", self.label) } else { String::new() };
-        println!("{head}ok {}{gap}{note}", seconds(self.started.elapsed()));
+        println!("  {} … ok {}{gap}{note}", self.label, seconds(self.started.elapsed()));
     }
 
     /// Says that the step failed.
     pub(crate) fn failed(self) {
-        println!("FAILED {}", seconds(self.started.elapsed()));
+        println!("  {} … FAILED {}", self.label, seconds(self.started.elapsed()));
     }
 }
 
@@ -167,11 +162,6 @@ fn quoted(word: &str) -> String {
 /// A duration as a person reads it.
 pub(crate) fn seconds(duration: Duration) -> String {
     format!("{:.1} s", duration.as_secs_f64())
-}
-
-/// Shows what was printed without a line end. A closed terminal is no reason to stop.
-fn flush() {
-    let _ = std::io::stdout().flush();
 }
 
 #[cfg(test)]
