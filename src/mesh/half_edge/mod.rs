@@ -224,17 +224,6 @@ impl HalfEdges {
         vertices - self.edges().count() as i64 + self.faces() as i64
     }
 
-    /// Bytes held on the heap.
-    #[must_use]
-    pub fn heap_bytes(&self) -> usize {
-        4 * (self.origin.capacity()
-            + self.twin.capacity()
-            + self.outgoing.capacity()
-            + self.free_faces.capacity()
-            + self.free_vertices.capacity())
-            + size_of::<Change>() * self.journal.capacity()
-    }
-
     /// Holds the surface to the invariants of the module's documentation.
     ///
     /// Cost: linear, as long as no vertex has very many faces.
