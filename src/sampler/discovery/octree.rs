@@ -668,3 +668,53 @@ fn bounds_say_something(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> bool {
     field.enclose(0, &boxes, &mut known);
     known.iter().any(|known| known.value != Enclosure::UNKNOWN.value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+
+    #[test]
+    fn a_cell_has_the_same_fate_in_a_batch_as_alone() {
+        // The search of one factor, in which small spheres lie about a large one.
+        let text =
+            "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
+        let mut field = FormulaField::parse(text, &[]).expect("a formula");
+        let begun = || {
+            let mut octree = Octree { parts: 1, most: MOST_CELLS, ..Octree::default() };
+            octree.begin(true, &Bounds::cube(1.0));
+            octree.begin_part(0);
+            octree
+        };
+        // All that visiting the cells leads to, and the cells of the next level among it.
+        let visited = |field: &mut FormulaField, cells: &[Cell]| {
+            let mut octree = begun();
+            octree.search.level = cells.to_vec();
+            octree.visit(field, 0..cells.len());
+            let mut all: Vec<[DVec3; 2]> =
+                octree.search.halves.iter().map(|cell| [cell.lo, cell.hi]).collect();
+            all.extend(octree.witnesses.iter().map(|witness| [witness.position; 2]));
+            all.extend(octree.undecided);
+            (all, octree.search.halves)
+        };
+        let sorted = |all: Vec<[DVec3; 2]>| {
+            let mut all: Vec<[[f64; 3]; 2]> =
+                all.into_iter().map(|ends| ends.map(|end| end.to_array())).collect();
+            all.sort_by(|a, b| a.partial_cmp(b).expect("finite corners"));
+            all
+        };
+        let (mut cells, mut several) = (begun().search.level, 0);
+        while !cells.is_empty() {
+            let mut next = Vec::new();
+            for batch in cells.chunks(BATCH) {
+                let (together, halves) = visited(&mut field, batch);
+                let alone = batch.iter().flat_map(|&cell| visited(&mut field, &[cell]).0).collect();
+                assert_eq!(sorted(together), sorted(alone), "level {}", batch[0].level);
+                several += usize::from(batch.len() > 1);
+                next.extend(halves);
+            }
+            cells = next;
+        }
+        assert!(several > 1, "{several} batches of several cells");
+    }
+}

@@ -247,3 +247,43 @@ fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
     // Infinite bounds give NaN, which compares as false: no sign is proven.
     [lo - ROUNDING * size, hi + ROUNDING * size]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+
+    #[test]
+    fn boxes_without_an_extremum_are_told_by_the_gradient_of_either_sign_or_by_a_saddle() {
+        let boxes = [
+            [DVec3::splat(-0.1), DVec3::splat(0.1)],
+            [DVec3::splat(0.2), DVec3::splat(0.3)],
+            [DVec3::splat(-0.3), DVec3::splat(-0.2)],
+        ];
+        // Around the origin, where all coordinates are positive, and where all are negative.
+        for (formula, expected) in [
+            ("x", [true; 3]),
+            ("-x", [true; 3]),
+            ("z", [true; 3]),
+            ("-z", [true; 3]),
+            ("x^2 + y^2 + z^2", [false, true, true]),
+            ("-x^2 - y^2 - z^2", [false, true, true]),
+            ("x^2 + y^2 - z^2", [true; 3]),
+            ("0.0001(x^2 + y^2 - z^2)", [true; 3]),
+            ("10000(x^2 + y^2 - z^2)", [true; 3]),
+            ("-0.0001 x y - 0.0001 y z - 0.0001 x z", [true; 3]),
+            ("x y", [true; 3]),
+            ("x y + x z + y z", [true; 3]),
+            // Along no direction in the first box is the second derivative of one sign.
+            ("x^3 + y^3 + z^3", [false, true, true]),
+            ("1 - y^2", [false, true, true]),
+            // Unbounded above at the plane that goes through the first box: not known to be continuous.
+            ("x + 1/y", [false, true, true]),
+        ] {
+            let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+            let mut out = [false; 3];
+            has_no_extremum(&mut field, 0, &boxes, &mut out);
+            assert_eq!(out, expected, "{formula}");
+        }
+    }
+}
