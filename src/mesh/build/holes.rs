@@ -178,3 +178,72 @@ pub(super) fn unpinch(patch: &mut Patch) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::patch::with_plane;
+    use super::*;
+    use glam::{DVec3, Vec3};
+
+    /// Product of the sides over four times the area.
+    fn circumradius([a, b, c]: [DVec3; 3]) -> f64 {
+        let (p, q, r) = (b.distance(c), c.distance(a), a.distance(b));
+        let s = 0.5 * (p + q + r);
+        p * q * r / (4.0 * (s * (s - p) * (s - q) * (s - r)).sqrt())
+    }
+
+    /// Least sum of circumradii of all the ways to cut a convex polygon, tried one after the other.
+    fn least_sum(polygon: &[DVec3]) -> f64 {
+        let last = polygon.len() - 1;
+        let with_corner = |k: usize| {
+            circumradius([polygon[0], polygon[k], polygon[last]])
+                + least_sum(&polygon[..=k])
+                + least_sum(&polygon[k..])
+        };
+        if last < 2 { 0.0 } else { (1..last).map(with_corner).fold(f64::INFINITY, f64::min) }
+    }
+
+    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already. Numbers stand for
+    /// corners, and those beyond for the other points.
+    fn cut(corners: &[Vec3], others: &[Vec3], triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+        with_plane(&[corners, others].concat(), triangles, |patch, tree, in_tree| {
+            let is_cut = Cutter::default().cut(patch, &in_tree[..corners.len()], faces_as_corners);
+            let all = patch.triangles().map(|t| t.map(|v| tree.origin[v as usize]));
+            is_cut.then(|| all.skip(triangles.len()).collect())
+        })
+    }
+
+    #[test]
+    fn a_hole_is_cut_into_the_triangles_of_the_least_circumradii() {
+        for (case, n) in (4..10).flat_map(|n| (0..4).map(move |case| (case, n))) {
+            // Corners that are spread unevenly over an ellipse.
+            let corner = |k: usize| {
+                let uneven = 0.8 * (0.618_034 * (k + 1 + 13 * case) as f32).fract();
+                let (sine, cosine) = libm::sincosf((k as f32 + uneven) * core::f32::consts::TAU / n as f32);
+                Vec3::new((0.6 + 0.8 * case as f32) * cosine, sine, 0.0)
+            };
+            let corners: Vec<Vec3> = (0..n).map(corner).collect();
+            let place = |v: u32| corners[v as usize].as_dvec3();
+            let triangles = cut(&corners, &[], &[]).expect("a convex hole can be cut");
+            assert_eq!(triangles.len(), n - 2, "{n} corners, case {case}");
+            let sum: f64 = triangles.iter().map(|t| circumradius(t.map(place))).sum();
+            let least = least_sum(&(0..n as u32).map(place).collect::<Vec<_>>());
+            assert!((sum / least - 1.0).abs() < 1e-6, "{n} corners, case {case}: {sum} instead of {least}");
+        }
+    }
+
+    #[test]
+    fn an_edge_of_the_mesh_is_no_chord_of_a_hole() {
+        // Of the two diagonals that of 0 and 2 is the shorter one.
+        let corners = [[0.0, -1.0], [1.5, 0.0], [0.0, 1.0], [-1.5, 0.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        let has = |triangles: &[[u32; 3]], a: u32, b: u32| {
+            triangles.iter().filter(|t| t.contains(&a) && t.contains(&b)).count() == 2
+        };
+        let free = cut(&corners, &[], &[]).expect("a convex hole can be cut");
+        assert!(has(&free, 0, 2), "{free:?}");
+        let others = [Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, 6.0)];
+        let beside = cut(&corners, &others, &[[0, 2, 4]]).expect("the other diagonal is free");
+        assert!(has(&beside, 1, 3), "{beside:?}");
+        assert_eq!(cut(&corners, &others, &[[0, 2, 4], [1, 3, 5]]), None);
+    }
+}

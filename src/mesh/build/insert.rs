@@ -84,3 +84,50 @@ fn is_too_wide(patch: &Patch, [a, b]: [u32; 2], opposite: [u32; 2]) -> bool {
     });
     dot * other_cross + cross * other_dot < 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::patch::with_plane;
+    use super::*;
+    use glam::{DVec2, Vec3};
+
+    /// The Delaunay triangles of points in the plane z = 0: those whose circles hold no other point.
+    fn delaunay(points: &[Vec3]) -> Vec<[u32; 3]> {
+        let place = |v: u32| points[v as usize].as_dvec3().truncate();
+        let count = points.len() as u32;
+        let triples =
+            (0..count).flat_map(|a| (a + 1..count).flat_map(move |b| (a + 1..count).map(move |c| [a, b, c])));
+        let is_one = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(place);
+            let (p, q) = (b - a, c - a);
+            let twice_area = p.perp_dot(q);
+            let centre: DVec2 =
+                (q.perp() * -p.length_squared() + p.perp() * q.length_squared()) / (2.0 * twice_area);
+            let is_free = |v: u32| t.contains(&v) || (place(v) - a - centre).length() > centre.length();
+            twice_area > 0.0 && (0..count).all(is_free)
+        };
+        triples.filter(is_one).collect()
+    }
+
+    #[test]
+    fn a_point_put_into_a_delaunay_triangulation_makes_that_of_all_points() {
+        for case in 0..20 {
+            // A Weyl sequence: well spread, and no four points are on a circle. The last one is amid the others.
+            let spread =
+                |k: usize| (Vec3::new(0.754_877_7, 0.569_840_3, 0.0) * (k + 17 * case) as f32).fract();
+            let mut points: Vec<Vec3> = (0..20).map(spread).collect();
+            points.push(0.3 + 0.4 * spread(20).with_z(0.0) - Vec3::Z * 0.3);
+            let last = points.len() as u32 - 1;
+            let mut found = with_plane(&points, &delaunay(&points[..20]), |patch, tree, in_tree| {
+                assert!(insert(patch, tree, in_tree[last as usize], &mut Vec::new()), "case {case}");
+                patch.triangles().map(|t| t.map(|v| tree.origin[v as usize])).collect::<Vec<_>>()
+            });
+            for t in &mut found {
+                let first = (0..3).min_by_key(|&k| t[k]).expect("three corners");
+                t.rotate_left(first);
+            }
+            found.sort_unstable();
+            assert_eq!(found, delaunay(&points), "case {case}");
+        }
+    }
+}

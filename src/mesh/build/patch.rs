@@ -296,3 +296,23 @@ fn quarter_turns(x: f32, y: f32) -> f32 {
         share
     }
 }
+
+/// Does something with the patch of these triangles, over points whose normals are those of the plane z = 0. It is handed the points'
+/// tree, and for each point its number there.
+#[cfg(test)]
+pub(super) fn with_plane<T>(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    work: impl FnOnce(&mut Patch, &crate::spatial::tree::Tree, &[u32]) -> T,
+) -> T {
+    use crate::{slices, spatial::tree::Tree};
+    let tree = Tree::new(points);
+    let normal = vec![Vec3::Z; points.len()];
+    let stars = slices::complete(Stars::new(&tree, &normal));
+    let mut patch = slices::complete(Patch::new(&tree.position, &normal, &stars));
+    let mut in_tree: Vec<u32> = (0..points.len() as u32).collect();
+    in_tree.iter().for_each(|&v| patch.clear(v));
+    in_tree.sort_by_key(|&v| tree.origin[v as usize]);
+    triangles.iter().for_each(|triangle| patch.add(triangle.map(|v| in_tree[v as usize])));
+    work(&mut patch, &tree, &in_tree)
+}
