@@ -231,10 +231,13 @@ fn levels_are_told_and_handed_on_from_the_coarse_one_on_and_a_cancel_keeps_the_l
     let mut sampler = Sampler::new();
     let settings = refined(6_000, 1);
     sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-    let (mut told, mut shown) = (Vec::new(), Vec::new());
+    let (mut told, mut shown, mut fraction) = (Vec::new(), Vec::new(), 0.0);
     loop {
         let progress = sampler.step(&mut field, 500);
         if progress.phase == Phase::Refinement {
+            let now = progress.fraction;
+            assert!((fraction..=1.0).contains(&now), "{now} after {fraction}");
+            fraction = now;
             told.push((progress.refine_level, progress.refine_levels));
             if progress.moved {
                 shown.push(progress.particles);

@@ -190,7 +190,75 @@ fn judge_border(layer: &Layer) -> Result<(), Refusal> {
 
 #[cfg(test)]
 mod tests {
-    use super::levels;
+    use super::*;
+
+    /// An octahedron whose normals point up, but for some that lie down so far that their dot product with that is `along`.
+    fn octahedron(lying: &[usize], along: f32) -> Layer {
+        let faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+        let corners = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+        let mut normal = vec![Vec3::Z; corners.len()];
+        lying.iter().for_each(|&v| normal[v] = Vec3::new((1.0 - along * along).sqrt(), 0.0, along));
+        let mesh = HalfEdges::from_triangles(corners.len(), &faces).expect("an octahedron is a surface");
+        Layer { mesh, position: corners.to_vec(), normal, ..Layer::default() }
+    }
+
+    #[test]
+    fn a_doubtful_mesh_of_the_front_is_refused() {
+        let bounds = Bounds::cube(1.0);
+        let mut particles = Particles::default();
+        for k in 0..1000 {
+            // The last ones are beyond the box.
+            let place = Vec3::new(if k < 990 { 0.5 } else { 1.5 }, 0.0, 0.001 * k as f32);
+            let parent = if k == 0 { Particles::NO_PARENT } else { 0 };
+            particles.push(place, Vec3::Z, 0.1, parent, 0, crate::particles::Slots::default());
+        }
+        let good = Triangulation {
+            triangles: vec![[0, 1, 2]; 1000],
+            agreed: 900,
+            rounds: 2,
+            left_out: vec![1, 2],
+            unfilled: vec![vec![990, 991]],
+            ..Triangulation::default()
+        };
+        assert_eq!(judge_triangles(&good, &particles, &bounds), Ok(()));
+        let beyond = Triangulation { left_out: (988..1000).collect(), ..good.clone() };
+        assert_eq!(judge_triangles(&beyond, &particles, &bounds), Ok(()));
+        let doubtful_at = |v: usize| Err(Refusal::Doubtful { at: particles.position[v].into() });
+        for (bad, place) in [
+            (Triangulation { rounds: 3, ..good.clone() }, 1),
+            (Triangulation { agreed: 899, ..good.clone() }, 1),
+            (Triangulation { left_out: vec![5, 6, 7], ..good.clone() }, 5),
+            (Triangulation { triangles: Vec::new(), agreed: 0, ..good.clone() }, 1),
+            (Triangulation { unfilled: vec![vec![990, 991], vec![995, 30]], ..good.clone() }, 30),
+            (Triangulation { left_out: vec![0], ..good.clone() }, 0),
+        ] {
+            assert_eq!(judge_triangles(&bad, &particles, &bounds), doubtful_at(place), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn a_front_is_refused_where_too_many_edges_are_sharp_and_the_sharpest_is_named() {
+        // Of the twelve edges four end at a vertex.
+        let third = 4.0 / 12.0;
+        let flat = octahedron(&[], 0.0);
+        assert!(judge_bend(&flat, 0.0).is_ok());
+        for vertex in 0..6 {
+            let bent = octahedron(&[vertex], 0.49);
+            assert!(judge_bend(&bent, 1.01 * third).is_ok(), "{vertex}");
+            let Err(Refusal::Sharp { at }) = judge_bend(&bent, 0.99 * third) else {
+                panic!("vertex {vertex} is not found sharp");
+            };
+            assert_ne!(
+                Vec3::from(at.0),
+                -bent.position[vertex],
+                "opposite vertices have no edge between them"
+            );
+            assert!(judge_bend(&octahedron(&[vertex], 0.51), 0.0).is_ok(), "{vertex}");
+        }
+        // Where both ends lie down, the edge between them is flat.
+        assert!(judge_bend(&octahedron(&[0, 2], 0.0), 6.01 / 12.0).is_ok());
+        assert!(judge_bend(&octahedron(&[0, 2], 0.0), 5.99 / 12.0).is_err());
+    }
 
     #[test]
     fn a_front_is_as_coarse_as_curvature_and_count_allow() {

@@ -403,3 +403,57 @@ impl Joint {
         self.component == components.len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+    use crate::particles::Slots;
+
+    /// A spiral over the unit sphere, with about the radius of so many particles.
+    fn sphere(count: u32) -> Particles {
+        let mut particles = Particles::default();
+        for k in 0..count {
+            let z = 1.0 - (2 * k + 1) as f32 / count as f32;
+            let (sine, cosine) = libm::sincosf(2.399_963 * k as f32);
+            let p = Vec3::new(cosine * (1.0 - z * z).sqrt(), sine * (1.0 - z * z).sqrt(), z);
+            let parent = if k == 0 { Particles::NO_PARENT } else { 0 };
+            particles.push(p, p, 1.9 / (count as f32).sqrt(), parent, 0, Slots::default());
+        }
+        particles
+    }
+
+    #[test]
+    fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
+        let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
+        let bounds = Bounds::cube(1.5);
+        let surface = Surface { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO };
+        let target = |levels| Target { levels, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
+        let known = sphere(4_000);
+        let refinement = Refinement::new(&mut field, &known, &bounds, target(1)).expect("a good front");
+        let area = refinement.area();
+        let mut fronts = Fronts {
+            components: vec![Component { refinement, area, weight: area, particles: known }],
+            are_several: true,
+            ..Fronts::default()
+        };
+        let seed = (Vec3::Z, Vec3::Z);
+        fronts.candidates.push(Candidate { component: 0, levels: 4, seed });
+        let mut tried = Vec::new();
+        while let Some(candidate) = fronts.candidates.pop() {
+            tried.push(candidate.levels);
+            assert!(tried.len() < 9, "{tried:?}");
+            // Too few particles, and then enough.
+            let particles = sphere(if candidate.levels > 2 { 20 } else { 1_000 });
+            fronts.take_coarser(&mut field, &surface, &particles, target(candidate.levels), candidate);
+        }
+        assert_eq!(tried, [4, 3, 2]);
+        assert_eq!(fronts.components[0].refinement.target.levels, 2);
+        assert_eq!(fronts.components[0].particles.len(), 1_000);
+        // None is tried that is no coarser than what there is.
+        let candidate = Candidate { component: 0, levels: 3, seed };
+        fronts.take_coarser(&mut field, &surface, &sphere(20), target(3), candidate);
+        assert!(fronts.candidates.is_empty());
+        assert_eq!(fronts.components[0].particles.len(), 1_000);
+    }
+}
