@@ -136,6 +136,26 @@ fn bounded_components_beside_an_endless_one_are_in_the_box() {
 }
 
 #[test]
+fn a_scan_finds_what_is_within_but_a_fiftieth_of_its_half_width() {
+    for half in [4.0, 10_000.0] {
+        for axis in 0..6 {
+            let mut centre = ["0".to_string(), "0".to_string(), "0".to_string()];
+            let sign = if axis < 3 { 1.0 } else { -1.0 };
+            centre[axis % 3] = format!("{}", 0.973 * half * sign);
+            let [x, y, z] = centre;
+            let text =
+                format!("(x-({x}))^2 + (y-({y}))^2 + (z-({z}))^2 = {}", (0.005 * half) * (0.005 * half));
+            let mut field = FormulaField::parse(&text, &[]).expect("a formula");
+            let found = crate::slices::complete(scan::scan(&mut field, half, &mut 10_000));
+            assert_eq!(found.outcome, Outcome::Inside, "{text} within {half}");
+            let [lo, hi] = found.hull.expect("a hull");
+            let reach = if axis < 3 { hi[axis] } else { -lo[axis - 3] };
+            assert!((0.978 * half..0.981 * half).contains(&reach), "{text}: {lo} to {hi}");
+        }
+    }
+}
+
+#[test]
 fn where_there_is_no_surface_it_is_said() {
     for text in
         ["x^2 + y^2 + z^2 = -1", "exp(x) + 1", "1/x", "sqrt(-1 - x^2)", "x^2 + y^2 + (z - 30000)^2 = 1"]

@@ -151,3 +151,20 @@ impl Field for Scaled<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_cell_of_the_coarse_grid_holds_one_point() {
+        let bounds = Bounds { min: [-1.0, 10.0, -300.0], max: [1.0, 15.0, 200.0] };
+        let size = bounds.hi() - bounds.lo();
+        let mut cells: Vec<[i32; 3]> = spread(&bounds)
+            .map(|p| ((p.as_dvec3() - bounds.lo()) / size * 5.0).to_array().map(|k| k.floor() as i32))
+            .collect();
+        cells.sort_unstable();
+        let all = (0..125).map(|i| [i / 25, i / 5 % 5, i % 5]);
+        assert_eq!(cells, all.collect::<Vec<_>>());
+    }
+}

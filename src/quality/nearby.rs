@@ -61,3 +61,25 @@ impl Nearby {
         best.0.into_iter().fold(bound_sq, f32::min)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_is_that_of_all_wherever_the_queries_wander() {
+        // A Weyl sequence: well spread, and the cloud holds places on either side of every coordinate plane.
+        let step = Vec3::new(0.754_877_7, 0.569_840_3, 0.430_159_7);
+        let points: Vec<Vec3> = (0..2000).map(|i| (step * i as f32).fract() * 4.0 - 2.0).collect();
+        let tree = Tree::new(&points);
+        let mut nearby = Nearby::default();
+        for k in 0..500 {
+            // Now and then a query is far from the one before, else near it.
+            let p = (step * (k / 25) as f32).fract() * 4.6 - 2.3 + 0.01 * (k % 25) as f32;
+            let bound = 0.05 * (k % 9) as f32;
+            let expected = points.iter().map(|&q| (q - p).length_squared()).fold(bound * bound, f32::min);
+            let nearest = nearby.nearest_sq(&tree, p, bound * bound, 0.2);
+            assert!((nearest - expected).abs() < 1e-6, "query {k} at {p}: {nearest} instead of {expected}");
+        }
+    }
+}

@@ -174,3 +174,28 @@ fn drop_close(scene: &Scene, limit: f32, drop: &mut [bool]) -> bool {
     }
     any
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_points_are_those_with_equal_coordinates_whatever_the_sign_of_zero() {
+        let values = [0.0, -0.0, 1.0, -1.0, 0.1];
+        let position: Vec<Vec3> = (0..300)
+            .map(|k: usize| {
+                Vec3::from_array([k * 7, k * 11 / 3, k * k / 5].map(|k| values[k % values.len()]))
+            })
+            .collect();
+        // Those that are not finite are dropped already.
+        let mut drop: Vec<bool> = (0..position.len()).map(|i| i % 17 == 3).collect();
+        let is_first = |i: usize| i % 17 != 3 && !(0..i).any(|j| j % 17 != 3 && position[j] == position[i]);
+        let has_later = |i: usize| (i + 1..position.len()).any(|j| j % 17 != 3 && position[j] == position[i]);
+        let mut has_duplicate = vec![false; position.len()];
+        drop_equal(&position, &mut drop, &mut has_duplicate);
+        for i in 0..position.len() {
+            assert_eq!(drop[i], !is_first(i), "{i}");
+            assert_eq!(has_duplicate[i], is_first(i) && has_later(i), "{i}");
+        }
+    }
+}

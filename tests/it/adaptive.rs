@@ -351,6 +351,16 @@ fn fates_of_slots_agree_with_the_counts() {
 }
 
 #[test]
+fn particles_that_fill_gaps_are_counted() {
+    let settings = Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings(Placement::Direct) };
+    let left = sampled("kummer", &Settings { gaps: GapPolicy::Leave, ..settings });
+    let filled = sampled("kummer", &settings);
+    let count = filled.counts().gaps_filled as usize;
+    assert!(count > 0 && left.counts().gaps_filled == 0, "{count}");
+    assert_eq!(filled.particles().len(), left.particles().len() + count);
+}
+
+#[test]
 fn levels_increase_along_the_columns() {
     for placement in PLACEMENTS {
         let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings(placement) });

@@ -118,6 +118,21 @@ fn an_undefined_region_ends_the_front_and_is_counted() {
 }
 
 #[test]
+fn a_surface_at_which_f_ends_is_found_whichever_sign_f_has_there() {
+    // Outside the sphere f is not defined, and one of the two normals points there.
+    for sign in ["1", "-1"] {
+        let formula = format!("{sign}*(1 - x^2 - y^2 - z^2)(1 + sqrt(1 - x^2 - y^2 - z^2))");
+        let (_, _, report) = sampled(&formula, 1.5, &Settings { radius_share: 0.015, ..Settings::default() });
+        let share = report.count as f64 / expected(4.0 * core::f64::consts::PI, &report);
+        assert!(
+            (0.85..1.15).contains(&share),
+            "{formula}: {} particles are {share} of a cover",
+            report.count
+        );
+    }
+}
+
+#[test]
 fn singular_points_do_not_stop_the_front() {
     // The surfaces have the apex of a cone, edges and corners of an octahedron, a cusp, and planes that cross, where
     // the gradient vanishes along lines. The front passes all of them, and the run ends.

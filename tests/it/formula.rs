@@ -509,6 +509,11 @@ fn a_field_without_a_zero_is_seen_by_its_interval() {
     let mut field = parse("x^2 + y^2 + z^2 + 1");
     let bounds = field.interval(DVec3::splat(-10.0), DVec3::splat(10.0));
     assert!(bounds.lo > 0.9 && bounds.hi < 302.0 && bounds.defined, "{bounds:?}");
+    // Whatever way an even power is written: the bounds of a product of two factors would reach below 0.
+    for text in ["x^4", "x^3 x", "x x^3", "x x x x", "x^2 x^2", "(x y) (x y)^3", "(x y)^3 (x y)"] {
+        let bounds = parse(&format!("{text} + 1")).interval(DVec3::splat(-10.0), DVec3::splat(10.0));
+        assert!(bounds.lo > 0.9, "{text}: {bounds:?}");
+    }
 }
 
 #[test]

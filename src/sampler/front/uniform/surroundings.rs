@@ -142,3 +142,36 @@ impl Surroundings {
         (nearest.min_element(), any.min_element())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampler::discovery::sheets::SheetRule;
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg32;
+
+    #[test]
+    fn four_at_a_time_are_doubtful_where_one_of_them_is() {
+        let mut random = Pcg32::seed_from_u64(3);
+        let mut number = |size: f32| size * (random.next_u32() as f32 / u32::MAX as f32 - 0.5);
+        let (spacing, mut doubtful) = (0.2, 0);
+        for case in 0..4_000 {
+            let mut vector = |size: f32| Vec3::new(number(size), number(size), number(size));
+            let normal = (Vec3::Z + vector(0.5)).normalize_or(Vec3::Z);
+            let mut around = Surroundings::default();
+            let mut expected = false;
+            for k in 0..1 + case % 7 {
+                let offset = vector(4.0 * spacing) * Vec3::new(1.0, 1.0, 0.02);
+                // Now and then one that faces the other way, which is never doubtful.
+                let other = (normal + vector(0.1)).normalize_or(normal) * if k % 3 == 2 { -1.0 } else { 1.0 };
+                let offset = offset - normal * offset.dot(normal) * 0.98;
+                around.push(offset, other, true);
+                let is_one = SheetRule::default().is_doubtful(offset, normal, other, spacing);
+                expected |= is_one && other.dot(normal) > 0.0;
+            }
+            assert_eq!(around.are_doubtful(normal, spacing), expected, "case {case}");
+            doubtful += u32::from(expected);
+        }
+        assert!((100..3_900).contains(&doubtful), "{doubtful} of 4,000 cases are doubtful");
+    }
+}
