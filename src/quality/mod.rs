@@ -54,7 +54,7 @@ use order::Order;
 use places::Pairs;
 use scene::{Prepared, Scene};
 use sizes::{EdgeRatios, Wanted};
-use triangles::{TriangleAngles, euler_number};
+use triangles::{Joined, TriangleAngles, joined};
 
 /// Largest number of random samples for `quant`: the error falls with the root of the number, the time grows with the
 /// number.
@@ -89,6 +89,19 @@ pub struct Report {
     pub histogram: Histogram,
     /// Where the spacing is worst.
     pub places: Places,
+    /// Where the triangles of natural neighbours leave the surface open; none where they close it.
+    pub(crate) opening: Option<Opening>,
+}
+
+/// Places away from the border of a clipped surface where the triangles of natural neighbours do not close it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Opening {
+    /// Edges of one triangle alone.
+    pub(crate) edges: usize,
+    /// Points in no triangle.
+    pub(crate) points: usize,
+    /// One of the places.
+    pub(crate) position: Vec3,
 }
 
 /// Measures the particles at `position` with outward unit normals `normal` on the surface of `field`.
@@ -123,7 +136,7 @@ pub(crate) async fn in_slices(
     let factor = comfortable_factor(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, options.area).await;
-    let Measured { mut figures, component, energy, mut pairs, holes } =
+    let Measured { mut figures, component, energy, mut pairs, holes, opening } =
         figures_of(&prepared, field, bounds, options).await;
     let Prepared { scene, drop, .. } = &prepared;
     let n = position.len();
@@ -133,6 +146,7 @@ pub(crate) async fn in_slices(
         residual: vec![f32::NAN; n],
         energy: vec![f32::NAN; n],
         component: vec![components::NO_LABEL; n],
+        opening,
         ..Report::default()
     };
     for (k, &i) in scene.tree.origin.iter().enumerate() {
@@ -183,6 +197,7 @@ struct Measured {
     energy: Vec<f32>,
     pairs: Pairs,
     holes: Vec<Hole>,
+    opening: Option<Opening>,
 }
 
 /// Measures the points; `crowded` is left for the duplicates to be added.
@@ -217,7 +232,8 @@ async fn figures_of(
     let wanted = Wanted::new(scene, &inner, field, options.sizes, figures.area).await;
     measured.pairs = measure_neighbourhoods(scene, &inner, wanted.as_ref(), &mut figures).await;
     measured.energy = energy::of_points(scene, wanted.as_ref(), figures.d_hex).await;
-    measured.component = measure_triangles(prepared, &inner, options.euler, &mut figures).await;
+    (measured.component, measured.opening) =
+        measure_triangles(prepared, &inner, options.euler, &mut figures).await;
     if !mesh.is_empty() {
         let (border, wanted) = (border.as_ref(), wanted.as_ref());
         let (lattice, wide) = ((figures.d_hex / SQRT_3) as f32, (SPREAD * figures.d_hex) as f32);
@@ -269,13 +285,13 @@ async fn measure_neighbourhoods(
     ratios.pairs
 }
 
-/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point.
+/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and where they are open.
 async fn measure_triangles(
     prepared: &Prepared,
     inner: &[bool],
     euler: Option<i64>,
     figures: &mut Figures,
-) -> Vec<u32> {
+) -> (Vec<u32>, Option<Opening>) {
     let Prepared { scene, triangles, mesh, .. } = prepared;
     let n = scene.tree.len();
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
@@ -289,7 +305,9 @@ async fn measure_triangles(
         }
     }
     angles.figures(figures);
-    figures.euler = euler_number(n, mesh);
+    let joined = joined(n, mesh);
+    figures.euler = joined.euler;
+    let opening = opening(&joined, inner, &scene.tree.position);
     pause().await;
     let (component, count) = components::label(scene, mesh).await;
     figures.components = count;
@@ -301,7 +319,16 @@ async fn measure_triangles(
         // This is the share of the sectors between consecutive neighbours of inner points that a triangle fills.
         share(corners, (0..n).filter(|&i| inner[i]).map(|i| scene.rings.valence(i)).sum())
     };
-    component
+    (component, opening)
+}
+
+/// Where the triangles are open between points that are `inner`.
+fn opening(joined: &Joined, inner: &[bool], position: &[Vec3]) -> Option<Opening> {
+    let is_inner = |i: u32| inner[i as usize];
+    let open = || joined.open.iter().filter(|edge| edge.iter().all(|&i| is_inner(i)));
+    let bare = || (0..inner.len()).filter(|&i| inner[i] && !joined.is_used[i]);
+    let first = open().map(|&[i, _]| i as usize).next().or_else(|| bare().next())?;
+    Some(Opening { edges: open().count(), points: bare().count(), position: position[first] })
 }
 
 /// Measures the holes by samples on the triangles and, in a box, on random lines. Returns the wide ones.

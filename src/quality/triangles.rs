@@ -194,8 +194,19 @@ impl TriangleAngles {
     }
 }
 
-/// Returns the Euler number of a set of triangles on `points` points; points in no triangle do not count.
-pub(super) fn euler_number(points: usize, triangles: &[[u32; 3]]) -> i64 {
+/// How triangles hang together.
+#[derive(Debug, Default)]
+pub(super) struct Joined {
+    /// The Euler number; points in no triangle do not count.
+    pub(super) euler: i64,
+    /// The edges that belong to one triangle alone.
+    pub(super) open: Vec<[u32; 2]>,
+    /// Whether each point is a corner of a triangle.
+    pub(super) is_used: Vec<bool>,
+}
+
+/// Returns how a set of triangles on `points` points hangs together.
+pub(super) fn joined(points: usize, triangles: &[[u32; 3]]) -> Joined {
     // Each edge is written once, in the list of its smaller end. The lists are short, so a linear search is enough.
     let mut start = vec![0_u32; points + 1];
     for triangle in triangles {
@@ -208,24 +219,34 @@ pub(super) fn euler_number(points: usize, triangles: &[[u32; 3]]) -> i64 {
     }
     let mut fill: Vec<u32> = start[..points].to_vec();
     let mut other = vec![0_u32; 3 * triangles.len()];
+    let mut is_open = vec![true; other.len()];
     let mut edges = 0_i64;
-    let mut used = vec![false; points];
+    let mut is_used = vec![false; points];
     for triangle in triangles {
         for k in 0..3 {
             let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
             let (a, b) = (a.min(b), a.max(b));
-            let list = start[a as usize] as usize..fill[a as usize] as usize;
-            if !other[list].contains(&b) {
-                other[fill[a as usize] as usize] = b;
-                fill[a as usize] += 1;
-                edges += 1;
+            let first = start[a as usize] as usize;
+            let end = fill[a as usize] as usize;
+            match other[first..end].iter().position(|&known| known == b) {
+                Some(place) => is_open[first + place] = false,
+                None => {
+                    other[end] = b;
+                    fill[a as usize] += 1;
+                    edges += 1;
+                }
             }
-            used[a as usize] = true;
-            used[b as usize] = true;
+            is_used[a as usize] = true;
+            is_used[b as usize] = true;
         }
     }
-    let vertices = used.iter().filter(|&&used| used).count();
-    vertices as i64 - edges + triangles.len() as i64
+    let mut open = Vec::new();
+    for a in 0..points {
+        let list = start[a] as usize..fill[a] as usize;
+        open.extend(list.filter(|&k| is_open[k]).map(|k| [a as u32, other[k]]));
+    }
+    let vertices = is_used.iter().filter(|&&used| used).count();
+    Joined { euler: vertices as i64 - edges + triangles.len() as i64, open, is_used }
 }
 
 /// Returns the representative of `i` in a union–find forest, and halves the path to it.

@@ -20,7 +20,7 @@ mod setting;
 mod settings;
 pub(crate) mod sizing;
 
-pub use discovery::completeness::{Sampled, Search, Unsampled};
+pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
 pub use phase::{Phase, StopReason};
 pub use progress::{Counts, Progress, Start};
@@ -160,13 +160,24 @@ impl Sampler {
     /// a particle or [named](Sampled::without).
     #[must_use]
     pub fn search(&self) -> Search {
-        self.seeds.verdict()
+        if self.doubts().is_empty() { Search::Proven } else { Search::Searched }
+    }
+
+    /// Why that is not proven; nothing where it is.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<Doubt> {
+        self.seeds.doubts(self.survey.nearness, self.least_gap())
+    }
+
+    /// Sheets nearer to each other than this are not told apart.
+    fn least_gap(&self) -> f64 {
+        self.survey.least_gap(self.settings.sampling == Sampling::Adaptive)
     }
 
     /// Which of the components hold particles.
     #[must_use]
     pub fn sampled(&self) -> Sampled {
-        self.seeds.sampled()
+        self.seeds.sampled(self.doubts().is_empty())
     }
 
     /// Number of cells of the box in which the proof could not decide whether they hold the first point of a component; `None`
@@ -298,8 +309,8 @@ impl Sampler {
         }
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.factor);
-            let tolerance = self.survey.tolerance();
-            while self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, u32::MAX) == 0 {}
+            let limits = (self.survey.tolerance(), self.least_gap());
+            while self.seeds.search(field, &mut self.projector, &self.bounds, limits, u32::MAX) == 0 {}
             let found = self.seeds.points().iter().map(|seed| (seed.position, seed.normal));
             self.survey.adopt(field, found, &self.bounds, self.seeds.witnessed());
         }

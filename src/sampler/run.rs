@@ -248,7 +248,8 @@ impl Sampler {
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
-        let unused = self.seeds.search(field, &mut self.projector, &self.bounds, tolerance, slice);
+        let limits = (tolerance, self.least_gap());
+        let unused = self.seeds.search(field, &mut self.projector, &self.bounds, limits, slice);
         if unused == 0 {
             *left = 0;
             return PhaseState::Search;

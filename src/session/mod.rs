@@ -23,8 +23,8 @@ use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{self, Figures, Histogram, Places, Sizes};
 use crate::sampler::{
-    FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings, SettingsError, SizeMode,
-    Start, StopReason, bytes_per_particle,
+    Doubt, FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings, SettingsError,
+    SizeMode, Start, StopReason, bytes_per_particle,
 };
 use crate::slices::{self, Work};
 use fitting::Fitting;
@@ -664,8 +664,18 @@ impl Session {
         for hole in &mut places.holes {
             hole.position = (origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
         }
+        let doubts = self.sampler.doubts();
+        let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
+        let facing = if is_unresolved { 0 } else { facing };
         warnings.extend(warnings::about(count, facing, &counts, sampled.missing.is_some()));
-        warnings.extend(warnings::about_components(&sampled.without, self.sampler.radius()));
+        let radius = self.sampler.radius();
+        warnings.extend(warnings::about_components(&sampled.without, radius, is_unresolved));
+        if let Some(opening) = self.measured.opening.filter(|_| !is_unresolved) {
+            warnings.push(warnings::about_opening(&opening, origin, radius));
+        }
+        // What sheets that are not told apart leave open has that cause.
+        let told = doubts.iter().filter(|doubt| !(is_unresolved && matches!(doubt, Doubt::Witnesses { .. })));
+        warnings.extend(told.map(|doubt| warnings::about_doubt(doubt, origin, radius)));
         let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
         Report {

@@ -2,9 +2,11 @@
 
 use super::Kept;
 use crate::math::shortest_text;
-use crate::sampler::{COUNT_TOLERANCE, Counts, FateCounts, Unsampled};
+use crate::quality::Opening;
+use crate::sampler::{COUNT_TOLERANCE, Counts, Doubt, FateCounts, Unsampled};
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
+use glam::DVec3;
 
 /// Sheets are said to be close if at least this share of the particles face one, and at least this many.
 const CLOSE_SHARE: f64 = 0.005;
@@ -33,8 +35,8 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
     })
 }
 
-/// Warnings about what became of `total` particles, of which `close` face another sheet. Where the run `is_audited`, components
-/// without particles are named elsewhere.
+/// Warnings about what became of `total` particles, of which `close` face another sheet that a smaller radius would tell apart. Where
+/// the run `is_audited`, components without particles are named elsewhere.
 pub(super) fn about(total: usize, close: usize, counts: &Counts, is_audited: bool) -> Vec<String> {
     let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
@@ -77,27 +79,94 @@ pub(super) fn about(total: usize, close: usize, counts: &Counts, is_audited: boo
     warnings
 }
 
-/// Names the places of the components `without` a particle.
-pub(super) fn about_components(without: &[Unsampled], radius: f64) -> Option<String> {
+/// A number rounded to a thousandth of a length.
+fn short(x: f64, length: f64) -> String {
+    let digits = (3.0 - libm::floor(libm::log10(length))).clamp(0.0, 15.0) as usize;
+    shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0)
+}
+
+/// A place in words, rounded to a thousandth of a length.
+fn place(position: [f64; 3], length: f64) -> String {
+    format!("({})", position.map(|x| short(x, length)).join(", "))
+}
+
+/// A distance with two digits.
+fn about_length(x: f64) -> String {
+    shortest_text(format!("{x:.1e}").parse::<f64>().unwrap_or(x))
+}
+
+/// Says why it is not proven that every component has been found. Places are counted from `origin`.
+pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> String {
+    let place = |position: [f64; 3], length| place((origin + DVec3::from_array(position)).to_array(), length);
+    match *doubt {
+        Doubt::NoBounds => "There are no bounds of f to prove anything by: the components are those that a grid of the box shows, and \
+             one smaller than its cells can be missing."
+            .into(),
+        Doubt::Unfinished => "The run ended before the search for components did: one can be missing.".into(),
+        Doubt::Unresolved { position, gap, least } => format!(
+            "Near {} two sheets of the surface are {} apart. Particles have single-precision coordinates, which tell sheets apart \
+             down to about {} in this box. Nearer ones may be sampled as one, and the components and the Euler number of the sample \
+             need not be those of the surface. A smaller radius does not help: move the sheets apart, or sample one factor of f at \
+             a time.",
+            place(position, radius),
+            about_length(gap),
+            about_length(least)
+        ),
+        Doubt::Cells { count, position, size } => format!(
+            "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
+             hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
+            if count == 1 { "1 cell".into() } else { format!("{count} cells") },
+            place(position, size.min(radius)),
+            about_length(size)
+        ),
+        Doubt::Witnesses { count, position } => format!(
+            "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
+             may be too near there for this radius: a smaller one may decide it.",
+            if count == 1 { "1 point of the surface".into() } else { format!("{count} points of the surface") },
+            place(position, radius)
+        ),
+    }
+}
+
+/// Says where the triangles between particles do not close the surface. The place is counted from `origin`.
+pub(super) fn about_opening(opening: &Opening, origin: DVec3, radius: f64) -> String {
+    let &Opening { edges, points, position } = opening;
+    let counted = |count: usize, name: &str| format!("{count} {name}{}", if count == 1 { "" } else { "s" });
+    let found = match (edges, points) {
+        (_, 0) => format!("{} open", counted(edges, "edge")),
+        (0, _) => format!("{} out", counted(points, "particle")),
+        _ => format!("{} open and {} out", counted(edges, "edge"), counted(points, "particle")),
+    };
+    format!(
+        "The triangles between the particles leave {found}, first near {}: the components and the Euler number of the sample need not be \
+         those of the surface. The surface has an edge, a point or an end there, or is thinner or bends more sharply than the particles \
+         are large; then choose a smaller radius.",
+        place((origin + position.as_dvec3()).to_array(), radius)
+    )
+}
+
+/// Names the places of the components `without` a particle. Where sheets are `unresolved`, a smaller radius is no remedy.
+pub(super) fn about_components(without: &[Unsampled], radius: f64, unresolved: bool) -> Option<String> {
     /// Places that are named in words; the report has all.
     const NAMED: usize = 4;
-    let digits = (3.0 - libm::floor(libm::log10(radius))).clamp(0.0, 15.0) as usize;
-    let short = |x: f64| shortest_text(format!("{x:.digits$}").parse::<f64>().unwrap_or(x) + 0.0);
     let places: Vec<String> = without
         .iter()
         .take(NAMED)
         .map(|&Unsampled { position, reach, goes_on }| {
-            let place = position.map(short).join(", ");
             let about = if goes_on { "more than" } else { "about" };
-            format!("({place}), reaching {about} {} from there", short(reach))
+            format!("{}, reaching {about} {} from there", place(position, radius), short(reach, radius))
         })
         .collect();
     let more = without.len().saturating_sub(NAMED);
     let rest = if more > 0 { format!("; and at {more} more places") } else { String::new() };
+    let cause = if unresolved {
+        "is too near another one"
+    } else {
+        "is too small or too near another one for this radius: choose a smaller radius"
+    };
     (!without.is_empty()).then(|| {
         format!(
-            "No particle lies on the surface near {}{rest}. A component there, or a part of one, is too small or too near \
-             another one for this radius: choose a smaller radius.",
+            "No particle lies on the surface near {}{rest}. A component there, or a part of one, {cause}.",
             places.join("; near ")
         )
     })

@@ -27,6 +27,7 @@ mod mesh_export;
 mod mesh_parity;
 #[cfg(feature = "points")]
 mod models;
+mod near_sheets;
 #[cfg(feature = "points")]
 mod parity;
 #[cfg(feature = "points")]

@@ -46,6 +46,8 @@ pub(crate) struct Audit {
     is_done: bool,
     /// Number of witnesses that are neither proven to be on the component of a particle nor named.
     pub(crate) open: u64,
+    /// The first of them.
+    pub(crate) first_open: DVec3,
     /// Witnesses without a particle.
     pub(crate) without: Vec<Unsampled>,
 }
@@ -89,7 +91,7 @@ impl Audit {
                 break;
             };
             if self.open + self.without.len() as u64 >= MOST_FAILED {
-                self.open += (audited.seeds.len() - self.next) as u64;
+                self.leave_open(seed.exact, (audited.seeds.len() - self.next) as u64);
                 self.next = audited.seeds.len();
                 continue;
             }
@@ -131,6 +133,12 @@ impl Audit {
             (self.is_scanned, self.next) = (true, 0);
         }
         budget
+    }
+
+    /// Counts so many witnesses, of which this is the first, as open.
+    fn leave_open(&mut self, first: DVec3, count: u64) {
+        self.first_open = if self.open == 0 { first } else { self.first_open };
+        self.open += count;
     }
 
     /// Decides whether the component of a witness holds one of the particles near it.
@@ -175,7 +183,7 @@ impl Audit {
                 )
         });
         if seems_held || self.without.len() >= MOST_NAMED {
-            self.open += 1;
+            self.leave_open(exact, 1);
             return;
         }
         let Piece { reach, goes_on } = follow(*field, part, exact, FOLLOWED * *radius);

@@ -48,3 +48,37 @@ pub struct Unsampled {
     /// Whether the component was followed no further than that, so that it may be larger.
     pub goes_on: bool,
 }
+
+/// Why a search is not proven. There is a doubt exactly where the [`Search`] is only searched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// The field has no bounds to prove anything by.
+    NoBounds,
+    /// The run ended before the search or the audit did.
+    Unfinished,
+    /// Two sheets are so near each other that single precision may hold them at one place.
+    Unresolved {
+        /// A point of one of them.
+        position: [f64; 3],
+        /// Distance of the other one from it.
+        gap: f64,
+        /// Least distance at which sheets are told apart here.
+        least: f64,
+    },
+    /// In so many cells of the box the proof could not decide.
+    Cells {
+        /// Number of cells.
+        count: u64,
+        /// Middle of the first.
+        position: [f64; 3],
+        /// Length of its longest side.
+        size: f64,
+    },
+    /// Of so many witnesses it is not known whether a particle lies on their component.
+    Witnesses {
+        /// Number of witnesses.
+        count: u64,
+        /// The first of them.
+        position: [f64; 3],
+    },
+}

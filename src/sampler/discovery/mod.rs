@@ -7,6 +7,7 @@
 pub(crate) mod audit;
 pub(crate) mod completeness;
 mod interval_newton;
+pub(crate) mod nearness;
 pub(crate) mod octree;
 pub(crate) mod precision;
 pub(crate) mod seeds;

@@ -4,7 +4,8 @@ use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::discovery::audit::{Audit, Audited, follow};
-use crate::sampler::discovery::completeness::{Sampled, Search};
+use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
+use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
 use crate::sampler::discovery::sheets::{
     Oriented, SheetRule, TOGETHER, are_connected, is_connected_by_segments,
@@ -32,8 +33,11 @@ pub(crate) struct Seeds {
     is_projected: bool,
     next: usize,
     audit: Audit,
-    /// Number of witnesses whose projection did not converge.
+    /// Number of witnesses whose projection did not converge, and the first of them.
     lost: u64,
+    first_lost: DVec3,
+    /// The nearest sheet beside a witness, if it is nearer than particles tell apart.
+    unresolved: Option<Nearness>,
     near: Vec<u32>,
 }
 
@@ -51,7 +55,7 @@ impl Seeds {
     pub(crate) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
         self.octree.begin(field.has_bounds(), bounds);
         self.points.clear();
-        self.lost = 0;
+        (self.lost, self.unresolved) = (0, None);
         self.is_projected = false;
         self.restart();
     }
@@ -83,13 +87,14 @@ impl Seeds {
         field: &mut dyn Field,
         projector: &mut Projector,
         bounds: &Bounds,
-        tolerance: Tolerance,
+        (tolerance, least_gap): (Tolerance, f64),
         budget: u32,
     ) -> u32 {
         let left = self.octree.step(field, budget);
         if self.octree.is_done() && !self.is_projected {
             self.is_projected = true;
             self.project(field, projector, bounds, tolerance);
+            self.unresolved = nearest(field, self.points.iter().map(|seed| seed.exact), least_gap).0;
         }
         if self.octree.is_done() { left } else { 0 }
     }
@@ -138,6 +143,7 @@ impl Seeds {
                     let (exact, part) = starts[k];
                     self.points.push(Seed { position, normal: normal[k], exact, part });
                 } else {
+                    self.first_lost = if self.lost == 0 { starts[k].0 } else { self.first_lost };
                     self.lost += 1;
                 }
             }
@@ -275,15 +281,45 @@ impl Seeds {
         if self.undecided() == Some(0) { Search::Proven } else { Search::Searched }
     }
 
-    /// The same, and whether each witness is proven to be on the component of a particle, or named.
-    pub(crate) fn verdict(&self) -> Search {
-        if self.audit.is_done() && self.audit.open == 0 { self.witnessed() } else { Search::Searched }
+    /// Why it is not proven that there is a witness on every component, and of each witness that it is on the component of a particle
+    /// or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have seen one.
+    pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
+        let nearness = [surveyed, self.unresolved].into_iter().flatten();
+        let nearest = nearness.min_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|near| near.gap < least_gap);
+        let mut doubts: Vec<Doubt> = nearest
+            .map(|Nearness { position, gap, .. }| Doubt::Unresolved {
+                position: position.to_array(),
+                gap,
+                least: least_gap,
+            })
+            .into_iter()
+            .collect();
+        if !self.octree.is_available() {
+            doubts.push(Doubt::NoBounds);
+        } else if !(self.octree.is_done() && self.audit.is_done()) {
+            doubts.push(Doubt::Unfinished);
+        }
+        if self.octree.is_done()
+            && let Some(&[lo, hi]) = self.octree.undecided.first()
+        {
+            doubts.push(Doubt::Cells {
+                count: self.octree.undecided.len() as u64,
+                position: (0.5 * (lo + hi)).to_array(),
+                size: (hi - lo).max_element(),
+            });
+        }
+        let count = self.lost + self.audit.open;
+        if count > 0 {
+            let first = if self.lost > 0 { self.first_lost } else { self.audit.first_open };
+            doubts.push(Doubt::Witnesses { count, position: first.to_array() });
+        }
+        doubts
     }
 
-    /// Which of the components hold particles.
-    pub(crate) fn sampled(&self) -> Sampled {
+    /// Which of the components hold particles; `is_proven` says whether there are no [doubts](Self::doubts).
+    pub(crate) fn sampled(&self, is_proven: bool) -> Sampled {
         let without = self.audit.without.clone();
-        let is_known = self.verdict() == Search::Proven && !without.iter().any(|piece| piece.goes_on);
+        let is_known = is_proven && !without.iter().any(|piece| piece.goes_on);
         let above = without.iter().map(|piece| piece.reach).fold(0.0, f64::max);
         let missing = self.undecided().map(|_| without.len());
         Sampled { above: is_known.then_some(above), missing, without }

@@ -4,6 +4,7 @@
 use crate::field::Field;
 use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
+use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
 use crate::sampler::projection::{Accuracy, BATCH, Descent, Projector, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
@@ -19,6 +20,8 @@ const RESOLUTION_SAMPLES: usize = 48;
 /// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
 /// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
 const TOUCH_PROBE: f32 = 0.02;
+/// Number of points at which near sheets are looked for.
+const SAMPLES: usize = 256;
 /// Distance, in resolutions, below which rounding may decide the sign of f.
 const NOISE: f32 = 16.0;
 /// Distance at which the size of f distinguishes a zero from a pole, in tolerances of the survey.
@@ -49,6 +52,8 @@ pub(crate) struct Survey {
     /// Least distance, along the normal, of a point of the surface from another sheet beyond which there is a third one; infinite
     /// where none was seen.
     pub(crate) crowding: f32,
+    /// The nearest of sheets that are so near each other that particles have to be nearer to theirs than usual.
+    pub(crate) nearness: Option<Nearness>,
     /// Largest distance of a point from the surface.
     residual: f32,
     /// Whether f mostly touches zero without changing its sign.
@@ -427,8 +432,64 @@ fn project(
     out.residual = coarse.residual;
     out.resolution = ulps.max(rounding(field, projector, &out.position));
     // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
-    out.crowding = if field.has_bounds() { crowding(field, projector, out, spacing) } else { f32::INFINITY };
-    out.touches = touches(field, projector, out, TOUCH_PROBE * spacing);
+    out.crowding = f32::INFINITY;
+    let mut is_facing_another = false;
+    if field.has_bounds() {
+        is_facing_another = look_for_near_sheets(field, out, spacing);
+        if out.nearness.is_some() {
+            land_anew(field, projector, out);
+        }
+        out.crowding = crowding(field, projector, out, spacing).min(out.crowding);
+    }
+    out.touches = !is_facing_another && touches(field, projector, out, TOUCH_PROBE * spacing);
+}
+
+/// Looks for near sheets in double precision at a selection of the points, and says whether they are at most of them.
+fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -> bool {
+    /// Farther sheets need no particles that are nearer to theirs than usual.
+    const MOST: f32 = 0.01;
+    /// Share of the points. Beside a curve in which sheets cross there are fewer.
+    const LEAST_SHARE: usize = 50;
+    let stride = out.position.len().div_ceil(SAMPLES).max(1);
+    let points: Vec<DVec3> = out.position.iter().step_by(stride).map(|p| p.as_dvec3()).collect();
+    let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
+    out.nearness = found.filter(|_| count * LEAST_SHARE >= points.len());
+    if let Some(Nearness { gap, third, slope, .. }) = out.nearness {
+        // At the sheets themselves f is far less steep than beside all of them.
+        out.gradient_scale = out.gradient_scale.min(slope as f32);
+        if third.is_some() && gap > out.least_gap(false) {
+            out.crowding = gap as f32;
+        }
+    }
+    2 * count > points.len()
+}
+
+/// Moves the points to where near sheets are told apart, and drops those that find none.
+fn land_anew(field: &mut dyn Field, projector: &mut Projector, out: &mut Survey) {
+    /// Far from several sheets at once each step goes only a part of the way.
+    const STEPS: u32 = 3 * MAX_STEPS;
+    const REACH: f32 = 8.0;
+    let residual = out.accuracy().residual(f32::INFINITY);
+    let reach = REACH * out.residual;
+    out.residual = residual.min(out.residual);
+    let least = out.tolerance().min_gradient;
+    let mut is_landed = [false; BATCH];
+    let mut kept = 0;
+    for first in (0..out.position.len()).step_by(BATCH) {
+        let batch = first..out.position.len().min(first + BATCH);
+        let limits = &mut Descent { residual: out.residual, reach, trust: 0.0 };
+        let (points, normals) = (&mut out.position[batch.clone()], &mut out.normal[batch.clone()]);
+        projector.land_along_gradient(field, points, normals, &mut is_landed, least, limits, STEPS);
+        for k in batch.clone().filter(|k| is_landed[k - first]) {
+            out.position[kept] = out.position[k];
+            out.normal[kept] = out.normal[k];
+            out.weight[kept] = out.weight[k];
+            kept += 1;
+        }
+    }
+    out.position.truncate(kept);
+    out.normal.truncate(kept);
+    out.weight.truncate(kept);
 }
 
 impl Survey {
@@ -436,7 +497,13 @@ impl Survey {
     pub(crate) fn accuracy(&self) -> Accuracy {
         /// Share of the crowding: of three sheets it is the distance of the third, or up to twice that.
         const SHARE: f32 = 0.1;
-        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding }
+        let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
+        Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }
+    }
+
+    /// Sheets nearer to each other than this are not told apart.
+    pub(crate) fn least_gap(&self, is_adaptive: bool) -> f64 {
+        UNRESOLVED[usize::from(is_adaptive)] * f64::from(self.resolution)
     }
 
     /// What counts as being on the surface before there is a radius.
@@ -515,8 +582,6 @@ fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, di
 /// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond another sheet. Of a plate with two
 /// sides the normals tell the sheets apart; so f has to have that sign on both sides, or its own again beyond.
 fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, spacing: f32) -> f32 {
-    /// Number of points.
-    const SAMPLES: usize = 256;
     /// Distances, each half the one before, from an eighth of the grid's spacing. One of them lies between any two
     /// sheets of which the farther one is twice as far.
     const DISTANCES: usize = 14;

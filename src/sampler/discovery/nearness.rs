@@ -1,0 +1,153 @@
+//! How near another sheet of the surface is, in double precision: single precision may hold both at one place.
+//!
+//! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that its second derivative is large
+//! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field beyond
+//! decides, and bisection finds the distance.
+
+use crate::field::Field;
+use glam::DVec3;
+
+/// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of many: a
+/// particle may be one such distance away from its sheet, and the lift of two particles has to be four times that (see
+/// [`SheetRule`](super::sheets::SheetRule)). Of three concentric spheres, particles of one size have the right components and Euler number
+/// from 8 of them on, and particles of many sizes from 55 on, but not at 33.
+pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
+/// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of three sheets at equal distances the
+/// quadratic puts the second one at two thirds of its distance.
+const LOOKS: [f64; 6] = [0.8, 1.2, 1.7, 2.4, 3.4, 4.8];
+/// Farthest zero of the quadratic, over the distance of interest.
+const FARTHEST: f64 = 2.0;
+
+/// Another sheet near a point of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Nearness {
+    /// The point.
+    pub(crate) position: DVec3,
+    /// Distance of the other sheet along the normal.
+    pub(crate) gap: f64,
+    /// Distance of a third sheet beyond it, if it is not much farther.
+    pub(crate) third: Option<f64>,
+    /// |∇f| at the point.
+    pub(crate) slope: f64,
+}
+
+/// The point of the surface that Newton's method finds from `p`, the unit normal there, the slope and the second derivative along it. None
+/// where another zero can be no nearer than `most`, and where there is no point.
+fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<(DVec3, DVec3, f64, f64)> {
+    /// Far from several sheets at once each step goes only a part of the way.
+    const STEPS: u32 = 48;
+    /// Length of a last step, over the distance of the other zero.
+    const LAST: f64 = 1e-3;
+    let start = p;
+    for _ in 0..STEPS {
+        let jet = field.jet(p);
+        let slope = jet.gradient.length();
+        let normal = jet.gradient / slope;
+        let bend = normal.dot(jet.hessian.apply(normal));
+        let (step, other) = (jet.value / slope, 2.0 * slope / bend.abs());
+        // From a point off the surface the other zero seems nearer or farther by its distance. False for NaN.
+        let is_near = other <= FARTHEST * most + 4.0 * step.abs() && (p - start).length() <= 4.0 * most;
+        if !is_near {
+            return None;
+        }
+        if step.abs() <= LAST * other {
+            return Some((p - normal * step, normal, slope, bend));
+        }
+        p -= normal * step;
+    }
+    None
+}
+
+/// The sheet next to the surface near `from`, if it is no farther than `most`.
+pub(crate) fn nearness(field: &mut dyn Field, from: DVec3, most: f64) -> Option<Nearness> {
+    /// Halvings of the bracket around the other sheet.
+    const HALVINGS: u32 = 12;
+    /// Share of the size that the quadratic has between its zeros which f must have between them: rounding has less.
+    const REAL: f64 = 0.1;
+    let (position, normal, slope, bend) = profile(field, from, most)?;
+    let second = -2.0 * slope / bend;
+    let mut value = |t: f64| field.jet(position + normal * t).value;
+    let sign = second.signum();
+    let between = value(0.5 * second);
+    if between * sign < REAL * 0.25 * slope * second.abs() {
+        return None;
+    }
+    // The first change of sign, and the next one.
+    let mut changes = [None; 2];
+    let mut before = 0.5;
+    let mut found = 0;
+    for look in LOOKS {
+        let is_flipped = value(look * second) * sign < 0.0;
+        if is_flipped != (found == 1) && found < 2 {
+            changes[found] = Some((before, look));
+            found += 1;
+        }
+        before = look;
+    }
+    let mut at = |change: Option<(f64, f64)>| {
+        change.map(|(mut near, mut far)| {
+            let is_positive = value(near * second) > 0.0;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (near + far);
+                if (value(middle * second) > 0.0) == is_positive { near = middle } else { far = middle }
+            }
+            0.5 * (near + far) * second.abs()
+        })
+    };
+    let gap = at(changes[0])?;
+    (gap <= most).then(|| Nearness { position, gap, third: at(changes[1]), slope })
+}
+
+/// The nearest of the sheets found from the points, and at how many of them there was one.
+pub(crate) fn nearest(
+    field: &mut dyn Field,
+    points: impl Iterator<Item = DVec3>,
+    most: f64,
+) -> (Option<Nearness>, usize) {
+    let (mut least, mut count) = (None::<Nearness>, 0);
+    for p in points {
+        if let Some(found) = nearness(field, p, most) {
+            count += 1;
+            least = Some(least.filter(|least| least.gap <= found.gap).unwrap_or(found));
+        }
+    }
+    (least, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::formula::FormulaField;
+
+    #[test]
+    fn the_distance_of_a_near_sheet_is_found_down_to_a_billionth() {
+        for gap in [1e-3, 1e-5, 1e-7, 1e-9] {
+            for (formula, third) in [
+                (format!("(z-0.3)*(z-0.3-{gap})"), None),
+                (format!("(z-0.3)*(z-0.3-{gap})*(z-0.3-{})", 2.0 * gap), Some(2.0 * gap)),
+                (format!("(z-0.3)^2-{gap}*(z-0.3)"), None),
+            ] {
+                let mut field = FormulaField::parse(&formula, &[]).expect("a formula");
+                // From beside all sheets, as far as a particle may be.
+                let found = nearness(&mut field, DVec3::new(0.1, 0.2, 0.3 - 0.9 * gap), 2e-3)
+                    .unwrap_or_else(|| panic!("{formula}"));
+                let is = |distance: f64, wanted: f64| (distance / wanted - 1.0).abs() < 1e-2;
+                assert!(is(found.gap, gap), "{formula}: {found:?}");
+                assert_eq!(found.third.is_some(), third.is_some(), "{formula}: {found:?}");
+                assert!(
+                    third.is_none_or(|third| is(found.third.unwrap_or(0.0), third)),
+                    "{formula}: {found:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn where_one_sheet_is_alone_none_is_near() {
+        for formula in ["z-0.3", "x^2+y^2+z^2-0.14", "1-cos(z-0.3)", "exp(40*(z-0.3))-1", "(z-0.3)*(z-0.31)"]
+        {
+            let mut field = FormulaField::parse(formula, &[]).expect("a formula");
+            assert_eq!(nearness(&mut field, DVec3::new(0.1, 0.2, 0.3), 2e-3), None, "{formula}");
+        }
+    }
+}
