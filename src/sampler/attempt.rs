@@ -52,6 +52,10 @@ pub(super) struct Attempt {
     completed: u32,
     /// Where the surface bends most, if it was to be refined.
     pub(super) bend: Vec3,
+    /// Refinements that could not go on.
+    pub(super) failures: u32,
+    /// Why the last of them could not.
+    pub(super) failure: Option<Refusal>,
 }
 
 impl Default for Attempt {
@@ -66,6 +70,8 @@ impl Default for Attempt {
             is_pilot: false,
             completed: 0,
             bend: Vec3::ZERO,
+            failures: 0,
+            failure: None,
         }
     }
 }

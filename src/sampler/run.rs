@@ -344,6 +344,7 @@ impl Sampler {
                 bounds: self.bounds,
                 sizing,
                 bend: self.attempt.bend,
+                failures: self.attempt.failures,
             };
             self.fronts.take_in(field, &surface, &mut self.particles, target)
         };
@@ -375,7 +376,8 @@ impl Sampler {
             _ => None,
         };
         if self.attempt.levels.is_none() {
-            self.counts.refusal = Some(refusal);
+            // That no coarser front is left to try says less than why the ones before it failed.
+            self.counts.refusal = self.attempt.failure.or(Some(refusal));
             self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
         }
         self.begin_attempt()
@@ -394,6 +396,8 @@ impl Sampler {
         self.counts.generation_evaluations += evaluations;
         match step {
             Err(refusal) => {
+                self.attempt.failures += 1;
+                self.attempt.failure = Some(refusal);
                 self.attempt.levels = Some(refinement.times()[0]);
                 self.refuse(refusal)
             }

@@ -6,7 +6,7 @@ use marching_particles::math::Bounds;
 use marching_particles::mesh::topology::Topology;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self, Figures};
-use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
+use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Search, Settings, SizeMode};
 
 fn refined(count: u32, seed: u64) -> Settings {
     Settings { method: Method::Refined, size_mode: SizeMode::Count, count, seed, ..Settings::default() }
@@ -331,6 +331,26 @@ fn surfaces_that_bend_more_are_refined_once() {
         if let Some(genus) = surface.genus {
             assert_eq!(f.euler, 2 - 2 * i64::from(genus), "{id}");
         }
+    }
+}
+
+#[test]
+fn fronts_that_cannot_be_refined_are_not_tried_for_ever() {
+    /// Steps of 10,000 units of work, ten times as many as it takes.
+    const STEPS: usize = 900;
+
+    // The middle of an edge of one sphere is nearer to the other one.
+    for outer in [1.02, 1.0002] {
+        let text = format!("(x^2 + y^2 + z^2 - 1) (x^2 + y^2 + z^2 - {outer})");
+        let mut field = FormulaField::parse(&text, &[]).expect("a formula");
+        let settings = Settings { method: Method::Refined, radius_share: 0.0077, ..Settings::default() };
+        let mut sampler = Sampler::new();
+        sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("settings in range");
+        let steps = (0..STEPS).take_while(|_| sampler.step(&mut field, 10_000).stop_reason.is_none()).count();
+        assert!(steps < STEPS, "{outer}: {steps} steps were not enough");
+        let refusal = sampler.counts().refusal;
+        assert!(matches!(refusal, Some(Refusal::Folded { .. })), "{outer}: {refusal:?}");
+        assert_eq!(sampler.search(), Search::Proven, "{outer}");
     }
 }
 

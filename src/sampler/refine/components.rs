@@ -53,6 +53,8 @@ pub(crate) struct Surface<'a> {
     pub(crate) sizing: Option<&'a Sizing>,
     /// Where it bends most.
     pub(crate) bend: Vec3,
+    /// Refinements that could not go on. Components are tried as many levels less coarse, so that there is an end to it.
+    pub(crate) failures: u32,
 }
 
 impl Surface<'_> {
@@ -131,7 +133,7 @@ impl Fronts {
         particles: &Particles,
         target: Target,
     ) -> Result<(), Refusal> {
-        let &Surface { ref bounds, ref points, sizing, .. } = surface;
+        let &Surface { ref bounds, ref points, sizing, failures, .. } = surface;
         let mut parts = split(particles);
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
@@ -149,7 +151,7 @@ impl Fronts {
                 let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.levels));
                 let candidate = Candidate {
                     component: self.components.len(),
-                    levels: levels(bend, count, sizing.is_some()).unwrap_or(0),
+                    levels: levels(bend, count, sizing.is_some()).unwrap_or(0).saturating_sub(failures),
                     seed: (part.position[0], part.normal[0]),
                 };
                 if candidate.levels > target.levels {
@@ -427,7 +429,7 @@ mod tests {
     fn after_a_front_that_is_refused_one_is_tried_that_is_refined_once_less() {
         let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let bounds = Bounds::cube(1.5);
-        let surface = Surface { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO };
+        let surface = Surface { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
         let target = |levels| Target { levels, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
         let refinement = Refinement::new(&mut field, &known, &bounds, target(1)).expect("a good front");
