@@ -426,7 +426,7 @@ const REPORT: &[ReportRow] = &[
         "All components found",
         ("Surface", "", 0),
         ("proven", None),
-        "Proven: interval arithmetic shows a witness on every component of the surface in the box, and that each witness is on the component of a particle or counted in the next row. By search: a component smaller than the cells of the search can be missing.",
+        "Proven: interval arithmetic shows a witness on every component of the surface in the box, and that each witness is on the component of a particle or counted in the next row. By search: a component smaller than the cells of the search can be missing. That is all that can be had of models from points; of a formula a note says why.",
     ),
     row(
         "sampled.missing",

@@ -675,7 +675,7 @@ impl Session {
         }
         // What sheets that are not told apart leave open has that cause.
         let told = doubts.iter().filter(|doubt| !(is_unresolved && matches!(doubt, Doubt::Witnesses { .. })));
-        warnings.extend(told.map(|doubt| warnings::about_doubt(doubt, origin, radius)));
+        warnings.extend(told.filter_map(|doubt| warnings::about_doubt(doubt, origin, radius)));
         let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
         Report {

@@ -96,12 +96,11 @@ fn about_length(x: f64) -> String {
 }
 
 /// Says why it is not proven that every component has been found. Places are counted from `origin`.
-pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> String {
+pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<String> {
     let place = |position: [f64; 3], length| place((origin + DVec3::from_array(position)).to_array(), length);
-    match *doubt {
-        Doubt::NoBounds => "There are no bounds of f to prove anything by: the components are those that a grid of the box shows, and \
-             one smaller than its cells can be missing."
-            .into(),
+    let told = match *doubt {
+        // It is so with every model from points, which the row of the report says.
+        Doubt::NoBounds => return None,
         Doubt::Unfinished => "The run ended before the search for components did: one can be missing.".into(),
         Doubt::Unresolved { position, gap, least } => format!(
             "Near {} two sheets of the surface are {} apart. Particles have single-precision coordinates, which tell sheets apart \
@@ -122,10 +121,15 @@ pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> String {
         Doubt::Witnesses { count, position } => format!(
             "Of {} it could not be proven whether a particle lies on the same component, first near {}. Another part of the surface \
              may be too near there for this radius: a smaller one may decide it.",
-            if count == 1 { "1 point of the surface".into() } else { format!("{count} points of the surface") },
+            if count == 1 {
+                "1 point of the surface".into()
+            } else {
+                format!("{count} points of the surface")
+            },
             place(position, radius)
         ),
-    }
+    };
+    Some(told)
 }
 
 /// Says where the triangles between particles do not close the surface. The place is counted from `origin`.
