@@ -1,7 +1,7 @@
 //! What a user should know about a run, in words.
 
 use super::Kept;
-use crate::math::shortest_text;
+use crate::math::{grouped, shortest_text};
 use crate::quality::Opening;
 use crate::sampler::{COUNT_TOLERANCE, Counts, Doubt, FateCounts, Unsampled};
 use crate::slices::{pause, ranges};
@@ -114,7 +114,7 @@ pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<S
         Doubt::Cells { count, position, size } => format!(
             "The search for components ended with {} of the box undecided, the first near {} and {} wide: f is singular there, or too \
              hard to bound with as many cells as the search may take. A component can be missing there; a smaller box may show it.",
-            if count == 1 { "1 cell".into() } else { format!("{count} cells") },
+            if count == 1 { "1 cell".into() } else { format!("{} cells", grouped(count as usize)) },
             place(position, size.min(radius)),
             about_length(size)
         ),
@@ -124,7 +124,7 @@ pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<S
             if count == 1 {
                 "1 point of the surface".into()
             } else {
-                format!("{count} points of the surface")
+                format!("{} points of the surface", grouped(count as usize))
             },
             place(position, radius)
         ),
