@@ -138,6 +138,7 @@ fn every_error_has_its_kind_span_and_suggestion() {
         ("1/2x", Kind::Ambiguous, 2..4, Some("(2 x)")),
         ("x²^3", Kind::Ambiguous, 0..4, None),
         ("sin^-1(x)", Kind::Ambiguous, 0..6, None),
+        ("cos^-0 y", Kind::Ambiguous, 0..6, None),
         ("sin⁻¹(x)", Kind::Ambiguous, 0..8, None),
         ("sin^n(x)", Kind::Ambiguous, 0..5, None),
         ("1.2.3", Kind::BadNumber, 0..4, None),

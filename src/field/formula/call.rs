@@ -89,7 +89,8 @@ impl Parser<'_> {
             _ => return Ok(None),
         };
         let is_negative = match exponent.kind {
-            Kind::Number(value) => value < 0.0,
+            // −0 is written with a sign, too.
+            Kind::Number(value) => value.is_sign_negative(),
             _ => true,
         };
         if is_negative {
