@@ -96,7 +96,7 @@ impl Bounds {
         (0.5 * (self.lo() + self.hi()) / grid).round() * grid
     }
 
-    /// The same box in coordinates that are counted from `origin`.
+    /// Returns the box in coordinates whose zero is `origin`.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
         Self { min: (self.lo() - origin).to_array(), max: (self.hi() - origin).to_array() }

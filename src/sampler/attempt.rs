@@ -52,7 +52,7 @@ pub(super) struct Attempt {
     completed: u32,
     /// Where the surface bends most, if it was to be refined.
     pub(super) bend: Vec3,
-    /// Refinements that could not go on.
+    /// Number of refinements that could not go on.
     pub(super) failures: u32,
     /// Why the last of them could not.
     pub(super) failure: Option<Refusal>,

@@ -402,14 +402,14 @@ const REPORT: &[ReportRow] = &[
     ),
     row(
         "quality.euler",
-        "Euler number of sample",
+        "Sample Euler number",
         ("At this radius", "", 0),
         ("", None),
         "Vertices − edges + faces of the triangles of natural neighbours: 2 − 2g for a closed surface of genus g, summed over its components. It is that of the sample: where the surface is as thin as a particle, a smaller radius may show another one.",
     ),
     row(
         "components",
-        "Components of sample",
+        "Sample components",
         ("At this radius", "", 0),
         ("", None),
         "Components of the graph of natural neighbours of the particles. It is that of the sample: a neck or a needle as thin as a particle may divide it. Parts that are joined only at a singular point count separately.",

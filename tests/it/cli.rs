@@ -207,8 +207,8 @@ fn text_report_names_the_figures_before_and_after() {
     }
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split("  ").map(str::trim).collect()).collect();
     for (label, figure) in [
-        ("Euler number of sample", "0"),
-        ("Components of sample", "1"),
+        ("Sample Euler number", "0"),
+        ("Sample components", "1"),
         ("All components found", "proven"),
         ("Undecided cells", "0"),
     ] {
@@ -385,7 +385,7 @@ fn comparison_as_text_has_columns_and_the_stop_reasons() {
     assert!(output.status.success(), "{}", stderr(&output));
     let text = stdout(&output);
     for label in
-        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Components of sample "]
+        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Sample components "]
     {
         assert!(text.lines().any(|line| line.starts_with(label)), "no `{label}` in:\n{text}");
     }

@@ -138,12 +138,13 @@ pub struct FormulaField {
     compiled: Compiled,
     scratch: eval::Scratch,
     jets: scalar::JetScratch,
+    /// Scratch memory for the values of the nodes in double precision.
     doubles: Vec<f64>,
     /// The scale of arsinh(f/s), which the batched methods give in double precision; they give f without one.
     double: Option<f64>,
     /// See [`Field::origin`].
     origin: DVec3,
-    /// Boxes in the coordinates of the formula.
+    /// Scratch memory for boxes in the coordinates of the formula.
     boxes: Vec<[DVec3; 2]>,
 }
 

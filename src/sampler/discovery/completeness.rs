@@ -65,7 +65,7 @@ pub enum Doubt {
         /// Least distance at which sheets are told apart here.
         least: f64,
     },
-    /// In so many cells of the box the proof could not decide.
+    /// The proof could not decide in some cells of the box.
     Cells {
         /// Number of cells.
         count: u64,
@@ -74,7 +74,7 @@ pub enum Doubt {
         /// Length of its longest side.
         size: f64,
     },
-    /// Of so many witnesses it is not known whether a particle lies on their component.
+    /// It could not be proven of some witnesses whether a particle lies on their component.
     Witnesses {
         /// Number of witnesses.
         count: u64,

@@ -53,7 +53,8 @@ pub(crate) struct Surface<'a> {
     pub(crate) sizing: Option<&'a Sizing>,
     /// Where it bends most.
     pub(crate) bend: Vec3,
-    /// Refinements that could not go on. Components are tried as many levels less coarse, so that there is an end to it.
+    /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is an end
+    /// to the attempts.
     pub(crate) failures: u32,
 }
 

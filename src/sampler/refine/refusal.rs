@@ -110,7 +110,7 @@ impl fmt::Display for Place {
 }
 
 impl Refusal {
-    /// The same reason, with a place that was counted from `origin` in the coordinates of the formula.
+    /// Returns the refusal with its place in the coordinates of the formula, from one whose place is relative to `origin`.
     #[must_use]
     pub(crate) fn counted_from_zero(mut self, origin: DVec3) -> Self {
         match &mut self {
