@@ -127,10 +127,13 @@ impl Attempt {
         // What bends too much may be a component of its own, beside which others can be refined.
         let is_mostly_smooth = || largest.is_finite() && levels_at(curvature[curvature.len() / 2]).is_some();
         let levels = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
+        if count > f64::from(settings.max_particles) {
+            return Some(Refusal::Full);
+        }
         // There is no radius where there is no surface.
-        let has_room = radius > 0.0 && count <= f64::from(settings.max_particles);
-        if !has_room || refine::levels(0.0, count, is_graded).is_none() {
-            return Some(Refusal::Few);
+        let expected = if radius > 0.0 { count } else { 0.0 };
+        if refine::levels(0.0, expected, is_graded).is_none() {
+            return Some(Refusal::Few { expected: expected as u64 });
         }
         if levels.is_none() {
             return Some(Refusal::Bent { at: self.bend.into() });

@@ -336,7 +336,7 @@ impl Sampler {
         let next = if let Some(point) = self.seeds.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
         } else if self.front.is_capped() {
-            Err(Refusal::Few)
+            Err(Refusal::Full)
         } else {
             let witnesses = self.seeds.points().iter().map(|seed| seed.position);
             let surface = Surface {

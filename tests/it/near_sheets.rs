@@ -1,8 +1,9 @@
 //! Tests that sheets of the surface very near each other are told apart, or that the report says that they are not; and that it
 //! explains figures of the sample that are not those of the surface.
 
+use marching_particles::field::formula::FormulaField;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Doubt, Sampling, Search, Settings};
+use marching_particles::sampler::{Doubt, Sampler, Sampling, Search, Settings, SizeMode};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 fn session(formula: &str, half: f64, settings: &Settings) -> Session {
@@ -69,6 +70,25 @@ fn sheets_as_near_as_single_precision_tells_apart_are_sampled_each() {
             assert_eq!(report.components, components, "{context}");
             assert_eq!(report.quality.map(|q| q.euler), Some(euler), "{context}");
             assert!(!says(&report, "without changing its sign"), "{context}");
+        }
+    }
+}
+
+#[test]
+fn the_area_of_two_near_sheets_is_that_of_both() {
+    // Nearer to each other than the nodes of the survey's grid, so that no two neighbouring nodes differ in sign.
+    let planes = |gap: f64| format!("(z-0.31-0.2*x)*(z-0.31-{gap}-0.2*x)");
+    let spheres = |gap: f64| format!("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-(1+{gap})^2)");
+    for gap in [0.02, 1e-3, 1e-4] {
+        for (formula, area) in
+            [(planes(gap), 18.0 * 1.04_f64.sqrt()), (spheres(gap), 8.0 * core::f64::consts::PI * (1.0 + gap))]
+        {
+            let mut field =
+                FormulaField::parse(&formula, &[]).unwrap_or_else(|error| panic!("{formula}: {error}"));
+            let settings = Settings { size_mode: SizeMode::Count, count: 2_000, ..Settings::default() };
+            let mut sampler = Sampler::new();
+            let start = sampler.start(&mut field, &Bounds::cube(1.5), &settings).expect("valid settings");
+            assert!((start.area / area - 1.0).abs() < 0.05, "{formula}: {} of {area}", start.area);
         }
     }
 }

@@ -139,10 +139,15 @@ fn where_it_cannot_be_had_the_front_stands_and_the_run_says_why() {
     let sphere = gallery::find("sphere").expect("a surface of the gallery");
     let few = Settings { count: 100, ..refined(100, 0) };
     let is_singular = |refusal| matches!(refusal, Refusal::Bent { .. } | Refusal::Singular { .. });
-    let is_few: fn(Refusal) -> bool = |refusal| refusal == Refusal::Few;
-    for (surface, settings, is_right) in
-        [(heart, refined(2_000, 0), is_singular as fn(Refusal) -> bool), (sphere, few, is_few)]
-    {
+    let is_few: fn(Refusal) -> bool = |refusal| refusal == Refusal::Few { expected: 100 };
+    let full = Settings { size_mode: SizeMode::Radius, max_particles: 1_000, ..refined(2_000, 0) };
+    let is_full: fn(Refusal) -> bool = |refusal| refusal == Refusal::Full;
+    let cases = [
+        (heart, refined(2_000, 0), is_singular as fn(Refusal) -> bool),
+        (sphere, few, is_few),
+        (sphere, full, is_full),
+    ];
+    for (surface, settings, is_right) in cases {
         let id = surface.id;
         let mut field = surface.field();
         let sampler = sampled(&mut field, &surface.bounds, &settings, 10_000);

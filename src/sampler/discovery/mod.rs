@@ -6,6 +6,7 @@
 
 pub(crate) mod audit;
 pub(crate) mod completeness;
+mod dips;
 mod interval_newton;
 pub(crate) mod nearness;
 pub(crate) mod octree;

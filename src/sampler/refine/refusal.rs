@@ -8,11 +8,20 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, thiserror::Error)]
 #[serde(rename_all = "snake_case")]
 pub enum Refusal {
-    /// Too few particles are wanted, or too few allowed.
+    /// Too few particles are expected.
     #[error(
-        "The front stands, and is not refined: that takes at least 720 particles, and room for them below the limit."
+        "The front stands, and is not refined: that takes at least 720 particles, and {expected} were expected."
     )]
-    Few,
+    Few {
+        /// Number of particles that the survey of the surface leads to expect.
+        expected: u64,
+    },
+    /// The limit on particles leaves no room.
+    #[error(
+        "The front stands, and is not refined: the limit on particles leaves no room for that. With a higher limit, or fewer \
+         particles, it may be."
+    )]
+    Full,
     /// The surface bends too much for the wanted spacing.
     #[error(
         "The front stands, and is not refined: near {at} the surface bends too much for particles of this size. With smaller ones it \
@@ -114,7 +123,7 @@ impl Refusal {
     #[must_use]
     pub(crate) fn counted_from_zero(mut self, origin: DVec3) -> Self {
         match &mut self {
-            Self::Few => {}
+            Self::Few { .. } | Self::Full => {}
             Self::Bent { at }
             | Self::Singular { at }
             | Self::Border { at }
@@ -131,6 +140,9 @@ impl Refusal {
 
     /// Whether a finer front may do.
     pub(crate) fn is_coarse(self) -> bool {
-        !matches!(self, Self::Few | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. })
+        !matches!(
+            self,
+            Self::Few { .. } | Self::Full | Self::Bent { .. } | Self::Singular { .. } | Self::Border { .. }
+        )
     }
 }
