@@ -6,7 +6,7 @@ use core::ops::Range;
 /// takes only 4 draw calls per pass for a million of them.
 pub const CHUNK: u32 = 1 << 18;
 /// Most records of one kind: more than the particles that a run may place.
-pub const MOST_RECORDS: u32 = 1 << 22;
+pub const MOST_RECORDS: u32 = 18 * CHUNK;
 
 /// Splits records `first..first + count` at chunk borders. Each item is a chunk, the first record within it, and
 /// the range relative to `first`.

@@ -39,7 +39,7 @@ export function createPicture({ host, store, columns, first }) {
   const viewer = new Viewer(
     { host, columns, look: store.state.value.view, first },
     {
-      ...deviceEvents(store, columns),
+      ...deviceEvents(store),
       onLegend(legend) {
         store.legend.value = legend;
       },
@@ -101,9 +101,8 @@ export function createPicture({ host, store, columns, first }) {
 /**
  * Returns the handlers that report the state of the graphics device to the user.
  * @param {Store} store
- * @param {Columns} columns
  */
-function deviceEvents(store, columns) {
+function deviceEvents(store) {
   return {
     onDevice(/** @type {import('./view/backends.js').Device} */ { kind, renderer }) {
       batch(() => {
@@ -113,13 +112,6 @@ function deviceEvents(store, columns) {
           store.notice.value = { id: 'device-lost', kind: 'info', text: 'The graphics device was lost and is back.' };
         }
       });
-      if (columns.count > renderer.max_particles()) {
-        store.notice.value = {
-          id: 'too-many-to-draw',
-          kind: 'warn',
-          text: `The picture shows the first ${renderer.max_particles()} particles; the figures and exports hold all of them.`,
-        };
-      }
     },
     onLost(/** @type {string} */ kind, /** @type {string} */ message) {
       store.notice.value = {

@@ -66,7 +66,8 @@ async function attack({ state, worker, death }) {
   passMinute();
   engine.setView({ draw: state === 'joining a mesh' ? 'mesh' : 'discs' });
   // So much work that every phase is seen, and another input in every state: one that fails twice is given up.
-  const settings = { radius_share: 0.007, relax_steps: 30, seed: state.length };
+  const relaxSteps = state === 'relaxation' ? 1000 : 30;
+  const settings = { radius_share: 0.007, relax_steps: relaxSteps, seed: state.length };
   if (state === 'writing a file') call('exportMesh before', engine.exportMesh('glb'));
   else if (state === 'opening a file') call('open before', p.open(cloud(2000)));
   else if (state !== 'at rest') call('set before', p.set({ surface: 'torus', settings }));

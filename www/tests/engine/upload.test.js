@@ -21,12 +21,12 @@ function columnsOf(n) {
   return columns;
 }
 
-/** A device that notes what it is told, in words. @param {number} [most] */
-function device(most = 1000) {
+/** A device that notes what it is told, in words. */
+function device() {
   /** @type {string[]} */
   const told = [];
   const renderer = /** @type {any} */ ({
-    max_particles: () => most,
+    max_particles: () => 1000,
     write: (/** @type {number} */ first, /** @type {Float32Array} */ positions) =>
       told.push(`particles ${first}..${first + positions.length / 3}`),
     write_colours: (/** @type {number} */ first, /** @type {Uint32Array} */ colours) =>
@@ -51,15 +51,6 @@ describe('a device', () => {
     upload.write(renderer, look('level'), present());
     expect(told).toEqual(['particles 0..6', 'particles 4..6', 'colours 1..3']);
     expect(upload.writes).toBe(3);
-  });
-
-  test('is told no more particles than it can draw', () => {
-    const { renderer, told } = device(4);
-    const upload = new ParticleUpload(columnsOf(6));
-    upload.changed(0, 6);
-    upload.recolour(0, 6);
-    expect(upload.write(renderer, look('level'), present())).toBe(4);
-    expect(told).toEqual(['particles 0..4', 'colours 0..4']);
   });
 
   test('is told every colour anew when the ends of the ramp move', () => {

@@ -79,7 +79,7 @@ export class ParticleUpload {
    */
   write(renderer, look, { reveal, calm, nowS }) {
     const { columns, glide, dirty } = this;
-    const count = Math.min(columns.count, renderer.max_particles());
+    const { count } = columns;
     if (!dirty.empty || !this.recoloured.empty) this.followRange(look);
     const moved = dirty.first < Math.min(glide.count, count);
     if (moved && count <= MOST_GLIDING && !reveal.active && !calm) glide.begin(nowS);

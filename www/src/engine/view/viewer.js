@@ -411,7 +411,7 @@ export class Viewer {
     const { cssWidth, cssHeight } = this.screen;
     const view = viewOf(this.camera.state, cssWidth || width, cssHeight || height, this.scene.ball());
     fillFrame(view, width / height, (cssWidth || width) / (cssHeight || height));
-    this.tellView(renderer, view, Math.min(this.columns.count, renderer.max_particles()));
+    this.tellView(renderer, view, this.columns.count);
     renderer.set_style(JSON.stringify({ ...this.style(now), dim: 0, outline: -1 }));
     const picture = renderer.read_pixels(width, height, transparent);
     this.restyle();
