@@ -14,8 +14,8 @@ const FACING: f64 = 0.2;
 /// Most triangles that a point may replace.
 const MOST: usize = 16;
 
-/// Inserts the point `v`, which is in no triangle; whether there was a triangle for it.
-pub(super) fn insert(patch: &mut Patch, tree: &Tree, v: u32, keys: &mut Vec<u64>) -> bool {
+/// Inserts the point `v`, which is in no triangle, if there is one below it.
+pub(super) fn insert(patch: &mut Patch, tree: &Tree, v: u32, keys: &mut Vec<u64>) {
     tree.nearest_many(tree.position[v as usize], NEAR, |j| j != v, keys);
     let mut best = (-OUTSIDE, None);
     for &key in keys.iter() {
@@ -26,7 +26,9 @@ pub(super) fn insert(patch: &mut Patch, tree: &Tree, v: u32, keys: &mut Vec<u64>
             }
         }
     }
-    best.1.is_some_and(|id| replace(patch, id, v))
+    if let Some(id) = best.1 {
+        replace(patch, id, v);
+    }
 }
 
 /// The least barycentric coordinate of a point above a triangle; −∞ if the point is not on its sheet.
@@ -45,8 +47,9 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     share(a, b).min(share(b, c)).min(share(c, a))
 }
 
-/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline.
-fn replace(patch: &mut Patch, id: u32, v: u32) -> bool {
+/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline, unless one
+/// of these faces another way than its corners.
+fn replace(patch: &mut Patch, id: u32, v: u32) {
     let [a, b, c] = patch.triangle(id);
     let mut gone = vec![id];
     // The corners of the outline, counter-clockwise.
@@ -67,13 +70,10 @@ fn replace(patch: &mut Patch, id: u32, v: u32) -> bool {
         }
     }
     let sides = (0..outline.len()).map(|k| [outline[k], outline[(k + 1) % outline.len()], v]);
-    if !sides.clone().all(|triangle| faces_as_corners(patch, triangle)) {
-        return false;
+    if sides.clone().all(|triangle| faces_as_corners(patch, triangle)) {
+        gone.into_iter().for_each(|id| patch.remove(id));
+        sides.for_each(|triangle| patch.add(triangle));
     }
-    gone.into_iter().for_each(|id| patch.remove(id));
-    let triangles: Vec<[u32; 3]> = sides.collect();
-    triangles.into_iter().for_each(|triangle| patch.add(triangle));
-    true
 }
 
 /// Whether the angles opposite to an edge add up to more than half a turn.
@@ -119,7 +119,7 @@ mod tests {
             points.push(0.3 + 0.4 * spread(20).with_z(0.0) - Vec3::Z * 0.3);
             let last = points.len() as u32 - 1;
             let mut found = with_plane(&points, &delaunay(&points[..20]), |patch, tree, in_tree| {
-                assert!(insert(patch, tree, in_tree[last as usize], &mut Vec::new()), "case {case}");
+                insert(patch, tree, in_tree[last as usize], &mut Vec::new());
                 patch.triangles().map(|t| t.map(|v| tree.origin[v as usize])).collect::<Vec<_>>()
             });
             for t in &mut found {

@@ -42,19 +42,16 @@ impl HalfEdges {
         }
     }
 
-    /// Whether the edge of `h` can be flipped: it has two faces, the vertices across are no neighbours yet, and both ends keep at
-    /// least three faces.
+    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no neighbours yet. Both ends keep at least
+    /// three faces then, because around an inner vertex with three faces all neighbours are neighbours of each other.
     #[must_use]
     pub fn can_flip(&self, h: u32) -> bool {
         let t = self.twin(h);
         if t == NONE {
             return false;
         }
-        let (a, b) = (self.origin(h), self.origin(t));
         let (c, d) = (self.origin(previous(h)), self.origin(previous(t)));
-        // A border vertex keeps a neighbour on either side in any case.
-        let keeps = |v: u32| self.is_border(v) || self.around(v).nth(3).is_some();
-        c != d && keeps(a) && keeps(b) && !self.is_adjacent(c, d)
+        c != d && !self.is_adjacent(c, d)
     }
 
     /// Flips the edge of `h`: its two faces get the other diagonal of their quadrilateral. `h` then runs from the vertex across
