@@ -69,7 +69,7 @@ impl Dip {
     pub(super) fn look(&self, value: f32, gradient: Vec3) -> Look {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;
-        if from.value * value >= 0.0 {
+        if !value.is_finite() || (from.value < 0.0) == (value < 0.0) {
             let part =
                 Self::along(self.axis, [from, bottom]).or_else(|| Self::along(self.axis, [bottom, to]));
             return Look::SameSign(part);
@@ -135,7 +135,9 @@ mod tests {
         // It touches zero.
         let f = |x: f32| (x - 0.5) * (x - 0.5);
         let dip = Dip::along(0, edge(f, |x| 2.0 * (x - 0.5))).expect("it comes near zero");
-        assert!(matches!(dip.look(f(dip.bottom().x), Vec3::Y), Look::SameSign(None)));
+        for value in [f(dip.bottom().x), f32::NAN] {
+            assert!(matches!(dip.look(value, Vec3::Y), Look::SameSign(None)), "{value}");
+        }
         // It stays far from zero, falls to one end, differs in sign, or has no value at one end.
         assert!(Dip::along(0, edge(|x| 1.0 + (x - 0.5) * (x - 0.5), |x| 2.0 * (x - 0.5))).is_none());
         assert!(Dip::along(0, edge(|x| 2.0 - x, |_| -1.0)).is_none());
