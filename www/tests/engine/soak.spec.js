@@ -1,6 +1,6 @@
 /**
  * Hours in a few seconds: after many resamplings the page holds no more memory than after the first ones. `SOAK` sets their number:
- * `SOAK=5000 npx playwright test tests/engine/soak.spec.js` takes some twenty minutes.
+ * `SOAK=5000 npx playwright test tests/engine/soak.spec.js` takes half an hour and more.
  */
 import { expect, test } from '@playwright/test';
 import { open } from './browser.js';
@@ -10,6 +10,11 @@ const TIMES = Number(process.env.SOAK ?? 40);
 const WARM = 60;
 /** What the page and its tools may hold more than before, in bytes. */
 const MOST_HEAP = 4e6;
+/**
+ * The same for the memory of the module, which is as large as its largest moment. That depends on where runs are given up: between
+ * 17.4 and 18.0 MB after the first resamplings, and 17.6 MB after 5,000.
+ */
+const MOST_WASM = 1e6;
 
 /** Lets the worker's wasm memory be seen from outside; runs in the worker. */
 function showMemory() {
@@ -103,7 +108,7 @@ test(`${TIMES} resamplings leave wasm memory, JavaScript's heap and the buffers 
   await resample(TIMES);
   const after = await held();
   console.log(`${TIMES} resamplings: ${JSON.stringify(before)} → ${JSON.stringify(after)}`);
-  expect(after.wasm).toBe(before.wasm);
+  expect(after.wasm).toBeLessThan(before.wasm + MOST_WASM);
   expect(after.heap).toBeLessThan(before.heap + MOST_HEAP);
   expect(after.buffers).toBe(before.buffers);
 });
