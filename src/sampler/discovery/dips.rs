@@ -30,10 +30,10 @@ pub(super) struct Crossing {
     pub(super) gradient: Vec3,
 }
 
-/// What the bottom of a dip shows.
+/// The result of an evaluation of f at the bottom of a dip.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Look {
-    /// f has the other sign there, and vanishes on both sides of it.
+    /// f has the other sign there than at the ends, and vanishes on both sides of the bottom.
     Crossed([Crossing; 2]),
     /// f has the sign of the ends, but the part of the edge on one side of it may dip deeper.
     SameSign(Option<Dip>),
@@ -65,7 +65,7 @@ impl Dip {
         self.ends[0].place.lerp(self.ends[1].place, self.t)
     }
 
-    /// Returns what is known with f at the bottom.
+    /// Takes the value and the gradient of f at the bottom, and returns the crossings, or the part of the edge to look at next.
     pub(super) fn look(&self, value: f32, gradient: Vec3) -> Look {
         let bottom = End { place: self.bottom(), value, gradient };
         let [from, to] = self.ends;

@@ -21,8 +21,8 @@ const RESOLUTION_SAMPLES: usize = 48;
 /// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
 /// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
 const TOUCH_PROBE: f32 = 0.02;
-/// Number of places on an edge at which a second crossing is looked for. With one, a tenth of the area of two spheres 1e-4 apart is
-/// missed.
+/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4 apart
+/// is missed.
 const LOOKS: usize = 3;
 /// Number of points at which near sheets are looked for.
 const SAMPLES: usize = 256;
@@ -388,7 +388,8 @@ impl Dense {
 ///
 /// Three kinds of candidates are tried: grid edges whose ends differ in sign, edges between whose ends f has the other sign (two
 /// sheets within a cell), and nodes whose first-order distance |f|/|∇f| is below the spacing (surfaces that f touches without
-/// changing sign, and sheets that no edge crosses). Every candidate is moved onto the surface by Newton's method and kept if it converges nearby, which it does at no pole.
+/// changing sign, and sheets that no edge crosses). Every candidate is moved onto the surface by Newton's method and kept if it
+/// converges nearby, which it does at no pole.
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
 /// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.

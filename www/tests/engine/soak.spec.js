@@ -11,8 +11,8 @@ const WARM = 60;
 /** What the page and its tools may hold more than before, in bytes. */
 const MOST_HEAP = 4e6;
 /**
- * The same for the memory of the module, which is as large as its largest moment. That depends on where runs are given up: between
- * 17.4 and 18.0 MB after the first resamplings, and 17.6 MB after 5,000.
+ * The wasm memory may grow by this many bytes. It never shrinks, so its size is the peak of all runs, which depends on where runs are
+ * given up: it was between 17.4 and 18.0 MB after the first resamplings, and 17.6 MB after 5,000.
  */
 const MOST_WASM = 1e6;
 
