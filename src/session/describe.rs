@@ -433,7 +433,7 @@ const REPORT: &[ReportRow] = &[
         "Without particles",
         ("Surface", "", 0),
         ("0", LOWER),
-        "Witnesses without a particle on their component, which is too small or too near another one for this radius. The notes name their places and sizes.",
+        "Witnessed components without a particle: each is too small or too near another one for this radius. The notes name their places and sizes.",
     ),
     row(
         "undecided_cells",

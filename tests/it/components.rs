@@ -503,6 +503,49 @@ fn a_piece_smaller_than_a_particle_beside_a_large_one_is_sampled_or_named() {
     }
 }
 
+/// Particles and names of an ellipsoid with half-axes of `size`, `size` and 3 `size`, around a place this far up the z-axis, beside
+/// the unit sphere.
+fn told_of_a_small_ellipsoid(size: f64, height: f64, r: f64) -> (usize, usize, Report) {
+    let formula = format!("(x^2+y^2+z^2-1)*(x^2+y^2+(z-{height})^2/9-{})", size * size);
+    let (session, report) = sampled(&formula, 1.5, r / 27.0_f64.sqrt());
+    let half_axes = DVec3::new(size, size, 3.0 * size);
+    let is_on_it = |p: DVec3| (((p - height * DVec3::Z) / half_axes).length() - 1.0).abs() < 0.1;
+    let particles = session.particles().position.iter().filter(|p| is_on_it(p.as_dvec3())).count();
+    let names =
+        report.sampled.without.iter().filter(|named| is_on_it(DVec3::from_array(named.position))).count();
+    (particles, names, report)
+}
+
+#[test]
+fn a_small_ellipsoid_beside_a_large_sphere_holds_a_particle() {
+    let r = 0.05;
+    for k in 0..20 {
+        // From 0.08 r to 0.5 r, at 0.1 r to 0.9 r above the sphere.
+        let size = 0.08 * r * 1.1_f64.powi(k);
+        let height = 1.0 + 3.0 * size + r * (0.1 + 0.2 * f64::from(k % 5));
+        let (particles, names, report) = told_of_a_small_ellipsoid(size, height, r);
+        is_proven(&report, &format!("{size}"));
+        assert!(particles > 0 && names == 0, "{size}: {particles} particles, {:?}", report.sampled);
+    }
+}
+
+#[test]
+fn a_small_ellipsoid_across_a_large_sphere_is_named_once_at_most() {
+    let r = 0.05;
+    let mut named = 0;
+    for k in 0..20 {
+        let size = 0.08 * r * 1.1_f64.powi(k);
+        let (particles, names, report) = told_of_a_small_ellipsoid(size, 1.0, r);
+        assert!(
+            names < 2 && (particles > 0 || names == 1),
+            "{size}: {particles} particles, {:?}",
+            report.sampled
+        );
+        named += names;
+    }
+    assert!(named > 0, "none is named");
+}
+
 #[test]
 fn sheets_within_the_probe_of_a_survey_are_not_taken_for_one_that_f_touches() {
     let says_so = |formula: &str, sampling: Sampling| {

@@ -190,10 +190,13 @@ fn holds(case: &Case, context: &str) -> bool {
     for p in &session.particles().position {
         nearest(p.as_dvec3()).iter().for_each(|&k| is_told[k] = true);
     }
+    let mut names = vec![0; pieces.len()];
     for &Unsampled { position, reach, goes_on } in &sampled.without {
         let place = DVec3::from_array(position);
         let Some(k) = nearest(place) else { continue };
         is_told[k] = true;
+        // What is larger than is followed may have witnesses too far from one another to be connected.
+        names[k] += usize::from(!goes_on);
         // Only what the box cuts, or what is larger than is followed, goes on.
         if let (false, Some(width)) = (goes_on, pieces[k].width()) {
             let is_right = (0.9 * width..=1.1 * width).contains(&reach);
@@ -201,6 +204,7 @@ fn holds(case: &Case, context: &str) -> bool {
         }
         assert!(goes_on || sampled.above.is_none_or(|above| above >= reach), "{context}: {sampled:?}");
     }
+    assert!(names.iter().all(|&n| n < 2), "{context}: {formula} names a piece twice: {sampled:?}");
     assert!(
         is_told.iter().all(|&told| told),
         "{context}: {formula}, {settings:?}: {is_told:?} of {pieces:?}"

@@ -19,7 +19,7 @@ use glam::DVec3;
 const REACH: f32 = 2.5;
 /// Largest number of particles around a witness that are looked at: a few of each of several sheets.
 const MOST_NEAR: usize = 30;
-/// Largest number of particles with which a connection through a chain of segments is tried.
+/// Largest number of particles, and of named witnesses, with which a connection through a chain of segments is tried.
 const MOST_TRIED_BY_SEGMENTS: usize = 3;
 /// Particles that are handed to the witnesses around them, for one unit of work.
 const SCANNED: usize = 8;
@@ -48,8 +48,10 @@ pub(crate) struct Audit {
     pub(crate) open: u64,
     /// The first of them.
     pub(crate) first_open: DVec3,
-    /// Witnesses without a particle.
+    /// Components without a particle, each by its first witness.
     pub(crate) without: Vec<Unsampled>,
+    /// These witnesses.
+    named: Vec<Seed>,
 }
 
 /// Input of an audit.
@@ -164,10 +166,10 @@ impl Audit {
         let pairs: Vec<(Oriented, DVec3)> =
             on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
         let is_held = are_connected(*field, part, &pairs, *slack, None).contains(&true)
-            || on_part.iter().take(MOST_TRIED_BY_SEGMENTS).any(|&(_, j)| {
-                is_connected_by_segments(*field, part, from, place_of(j), *slack, *within)
-                    || is_connected_around(*field, part, from, place_of(j), *slack, *within)
-            });
+            || on_part
+                .iter()
+                .take(MOST_TRIED_BY_SEGMENTS)
+                .any(|&(_, j)| is_connected(*field, part, from, place_of(j), *slack, *within));
         if is_held {
             return;
         }
@@ -182,13 +184,54 @@ impl Audit {
                     normal,
                 )
         });
-        if seems_held || self.without.len() >= MOST_NAMED {
+        if seems_held {
             self.leave_open(exact, 1);
             return;
         }
-        let Piece { reach, goes_on } = follow(*field, part, exact, FOLLOWED * *radius);
+        let followed = FOLLOWED * *radius;
+        if self.is_on_named(*field, part, from, (*slack, *within), followed) {
+            return;
+        }
+        if self.without.len() >= MOST_NAMED {
+            self.leave_open(exact, 1);
+            return;
+        }
+        let Piece { reach, goes_on } = follow(*field, part, exact, followed);
         self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
+        self.named.push(seed);
     }
+
+    /// Whether a witness is proven to be on the component of a named one, of those within `reach`.
+    fn is_on_named(
+        &self,
+        field: &mut dyn Field,
+        part: usize,
+        from: Oriented,
+        (slack, within): (f64, ([DVec3; 2], f64)),
+        reach: f64,
+    ) -> bool {
+        let of_part = self.named.iter().filter(|named| named.part == part);
+        let mut near: Vec<(f64, DVec3)> = of_part
+            .map(|named| (named.exact.distance(from.0), named.exact))
+            .filter(|&(distance, _)| distance <= reach)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.truncate(MOST_TRIED_BY_SEGMENTS);
+        near.into_iter().any(|(_, place)| is_connected(field, part, from, place, slack, within))
+    }
+}
+
+/// Whether two points of the surface are connected by proof, straight or by a way around.
+fn is_connected(
+    field: &mut dyn Field,
+    part: usize,
+    from: Oriented,
+    to: DVec3,
+    slack: f64,
+    within: ([DVec3; 2], f64),
+) -> bool {
+    is_connected_by_segments(field, part, from, to, slack, within)
+        || is_connected_around(field, part, from, to, slack, within)
 }
 
 /// How far the part of the surface around a point reaches.
@@ -204,13 +247,11 @@ pub(crate) struct Piece {
 /// through the normal.
 pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64) -> Piece {
     const PATHS: usize = 8;
-    /// Steps of a path, of which a half-circle takes sixteen.
-    const STEPS: u32 = 64;
+    /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of 1 and 3 takes 200.
+    const STEPS: u32 = 256;
     /// A step as a share of the radius of curvature, and largest step as a share of `most`.
     const SHARE: f64 = 0.2;
     const LARGEST: f64 = 1.0 / 16.0;
-    /// A path has turned back where it is at this share of its largest distance.
-    const TURNED: f64 = 0.9;
     let gradient = value_at(field, part, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
     let (u, v) = crate::math::tangent_frame(normal.as_vec3());
@@ -226,10 +267,12 @@ pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64)
         let angle = core::f64::consts::TAU * k as f64 / PATHS as f64;
         u.as_dvec3() * libm::cos(angle) + v.as_dvec3() * libm::sin(angle)
     });
+    let outward = heading;
     // The half-plane of each path is perpendicular to this.
     let across = heading.map(|direction| normal.cross(direction));
     let mut farthest = [0.0_f64; PATHS];
-    let mut has_turned = [false; PATHS];
+    // A path is closed where it comes back to its start in the direction in which it left.
+    let mut is_closed = [false; PATHS];
     let reach_of = |farthest: [f64; PATHS]| farthest.into_iter().fold(0.0, f64::max);
     for _ in 0..STEPS {
         let mut next: [DVec3; PATHS] = core::array::from_fn(|k| at[k] + heading[k] * step);
@@ -251,14 +294,17 @@ pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64)
         at = next;
         for k in 0..PATHS {
             let distance = (at[k] - from).length();
+            is_closed[k] |= distance < step && farthest[k] > step && heading[k].dot(outward[k]) > 0.0;
             farthest[k] = farthest[k].max(distance);
-            has_turned[k] |= distance < TURNED * farthest[k];
         }
         if reach_of(farthest) > most {
             return Piece { reach: most, goes_on: true };
         }
+        if !is_closed.contains(&false) {
+            break;
+        }
     }
-    Piece { reach: reach_of(farthest), goes_on: has_turned.contains(&false) }
+    Piece { reach: reach_of(farthest), goes_on: is_closed.contains(&false) }
 }
 
 /// Whether one of the particles with these indices lies on the small piece around a seed that reaches so far.

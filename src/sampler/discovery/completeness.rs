@@ -31,9 +31,10 @@ pub struct Sampled {
     /// Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
     /// is not proven.
     pub above: Option<f64>,
-    /// Number of witnesses without a particle on their component; none where there was no search for witnesses.
+    /// Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
+    /// two of its witnesses could not be proven to be connected.
     pub missing: Option<usize>,
-    /// These witnesses: at most 256.
+    /// One witness of each of these components: at most 256.
     pub without: Vec<Unsampled>,
 }
 

@@ -1000,9 +1000,10 @@ export type Sampled = {
   /** Every witnessed component that reaches farther than this from its witness holds particles; 0 if all do. None where this
   * is not proven. */
   above: number | null,
-  /** Number of witnesses without a particle on their component; none where there was no search for witnesses. */
+  /** Number of witnessed components without a particle; none where there was no search for witnesses. A component counts twice if
+  * two of its witnesses could not be proven to be connected. */
   missing: number | null,
-  /** These witnesses: at most 256. */
+  /** One witness of each of these components: at most 256. */
   without: Array<Unsampled>,
 };
 
