@@ -1,4 +1,5 @@
-//! Both methods, the front and the refined one, side by side over the gallery and the models: `docs/methods.md` is what this writes.
+//! Both methods, the front and the refined one, side by side over the gallery and the models: `docs/methods.md` is what this
+//! writes.
 //!
 //! `cargo bench --bench methods > docs/methods.md` measures every surface with 4,000 and with 20,000 particles. `--count N` takes
 //! another number, `--seeds K` takes the worst of the seeds 0 to K − 1 in each column, `--adaptive` takes sizes that follow the

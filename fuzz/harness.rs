@@ -86,8 +86,8 @@ pub fn check_interval(field: &mut FormulaField, p: DVec3, below: DVec3, above: D
     }
 }
 
-/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes between two points, given as shares of its
-/// size.
+/// The bounds of the derivatives over a box hold those at a point of it, and its mean slopes between two points, given as shares of
+/// its size.
 pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
     field.enclose(0, &[[lo, lo + size]], &mut out);
@@ -170,8 +170,8 @@ fn check_batch(field: &mut FormulaField, first: Vec3, length: usize) {
     assert!(is_same, "{} at {}: {} {}", field.text(), points[k], value[k], alone[0]);
 }
 
-/// A file of points: it is read alike in steps of any size or refused in words, what is read is finite, and a surface is fitted to it
-/// or refused. The first byte chooses the extension of its name.
+/// A file of points: it is read alike in steps of any size or refused in words, what is read is finite, and a surface is fitted to
+/// it or refused. The first byte chooses the extension of its name.
 pub fn file(bytes: &[u8]) {
     /// Steps that no job on so small a file needs.
     const MOST_STEPS: u32 = 1_000_000;

@@ -113,7 +113,8 @@
 //! * `slices`: long work that can be left and gone on with, as measuring is.
 //! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
 //! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
-//! * [`reference`](mod@reference): the paper's algorithms and those it compares them with, written for reading, with a log of every event.
+//! * [`reference`](mod@reference): the paper's algorithms and those it compares them with, written for reading, with a log of every
+//!   event.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
 //! * [`pointcloud`]: from a file of points to a field (feature `points`, on by default).
 //! * [`mesh`]: triangles over particles, whatever made them.

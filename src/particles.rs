@@ -209,7 +209,8 @@ impl Particles {
         self.slots.clear();
     }
 
-    /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs, on any machine.
+    /// Returns the FNV-1a hash of the bits of the origin, unless that is zero, and of all columns. Equal digests mean equal runs,
+    /// on any machine.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;

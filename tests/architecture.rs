@@ -50,7 +50,8 @@ const ROOMS: [Room; 4] = [
                     "export",
                 ],
             ),
-            // The paper written for reading, and the oracle of the fast fronts: it shares some words with the sampler, no algorithm.
+            // The paper written for reading, and the oracle of the fast fronts: it shares some words with the sampler, no
+            // algorithm.
             ("reference", &["math", "field", "differential", "particles", "sampler"]),
             // Compiled for tests alone: the types of the page.
             ("page_types", &["field", "pointcloud", "reference", "sampler", "session"]),

@@ -49,8 +49,8 @@ const MOST: f64 = 60.0;
 /// update.
 const MOST_ADAPTIVE: f64 = 64.0;
 
-/// The same for refined runs. While the particles of the last level are handed on, there are also its mesh, with positions and normals of
-/// its own, the walk that orders them, and the level before; where sizes differ, also those that are wanted.
+/// The same for refined runs. While the particles of the last level are handed on, there are also its mesh, with positions and
+/// normals of its own, the walk that orders them, and the level before; where sizes differ, also those that are wanted.
 const MOST_REFINED: f64 = 110.0;
 
 /// How far what a run is expected to take may be off, in either direction.

@@ -30,7 +30,7 @@ mod witkin_heckbert;
 pub use settings::Settings;
 
 use crate::field::Field;
-use crate::field::scaled::{Scaled, comfortable_factor, spread};
+use crate::field::scaled::{Scaled, comfortable_scale, spread};
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::survey::{Survey, survey};
 use crate::sampler::projection::{BATCH, Projector, tolerance};
@@ -177,7 +177,7 @@ impl Baseline {
         if !bounds.is_valid() {
             return Err(SettingsError::Box);
         }
-        let factor = comfortable_factor(field, spread(bounds));
+        let factor = comfortable_scale(field, spread(bounds));
         let is_dense = !field.has_bounds();
         let field = &mut Scaled::new(field, factor);
         let mut projector = Projector::new();

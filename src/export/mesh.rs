@@ -63,8 +63,8 @@ pub(crate) fn rows(format: MeshFormat, particles: &Particles, triangles: &[[u32;
     }
 }
 
-/// Writes some of the rows of a file, those at the start with what comes before them. One part after the other they make the file of
-/// [`write_mesh`], with its errors.
+/// Writes some of the rows of a file, those at the start with what comes before them. One part after the other they make the file
+/// of [`write_mesh`], with its errors.
 pub(crate) fn write_rows(
     format: MeshFormat,
     particles: &Particles,

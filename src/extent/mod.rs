@@ -19,7 +19,8 @@ use serde::Serialize;
 
 /// Half-widths of the cubes that are searched, the largest first.
 const HALVES: [f64; 6] = [10_000.0, 2_000.0, 400.0, 80.0, 16.0, 4.0];
-/// Half-width of the box of a surface that goes on for ever and passes near the origin. A gyroid has one and a quarter periods in it.
+/// Half-width of the box of a surface that goes on for ever and passes near the origin. A gyroid has one and a quarter periods in
+/// it.
 const USUAL_HALF: f64 = 4.0;
 /// Shortest period of a surface of which that box shows not too much: four of them. Of a shorter one the box shows two.
 const SHORT_PERIOD: f64 = 0.5 * USUAL_HALF;

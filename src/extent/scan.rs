@@ -176,13 +176,13 @@ async fn bends(
 /// The cells that may hold surface, and lie at the faces of the cube or may hold an extreme.
 async fn visit(field: &mut dyn Field, level: &Level, cells: &[Place], left: &mut usize) -> Vec<Cell> {
     *left = left.saturating_sub(cells.len());
-    let parts = field.parts();
+    let factors = field.factors();
     let mut kept = Vec::new();
     let mut batch = Batch::default();
     for chunk in cells.chunks(BATCH) {
         let mut extremes = [None; BATCH];
-        for part in 0..parts {
-            batch.enclose(field, part, level, chunk, &mut extremes);
+        for factor in 0..factors {
+            batch.enclose(field, factor, level, chunk, &mut extremes);
         }
         for (&at, extremes) in chunk.iter().zip(extremes) {
             if let Some(extremes) = extremes
@@ -208,11 +208,11 @@ struct Batch {
 }
 
 impl Batch {
-    /// Notes the extremes that a part of the field may have in cells where it may vanish.
+    /// Notes the extremes that a factor of the field may have in cells where it may vanish.
     fn enclose(
         &mut self,
         field: &mut dyn Field,
-        part: usize,
+        factor: usize,
         level: &Level,
         cells: &[Place],
         extremes: &mut [Option<[bool; 3]>; BATCH],
@@ -220,7 +220,7 @@ impl Batch {
         self.boxes.clear();
         self.boxes.extend(cells.iter().map(|&at| level.corners(at)));
         self.known.resize(cells.len(), Enclosure::UNKNOWN);
-        field.enclose(part, &self.boxes, &mut self.known);
+        field.enclose(factor, &self.boxes, &mut self.known);
         self.open.clear();
         self.open.extend(
             (0..cells.len()).filter(|&k| holds_zero(self.known[k].value) && self.known[k].may_vanish),
@@ -231,7 +231,7 @@ impl Batch {
             [middle, middle]
         }));
         self.at_middle.resize(self.middles.len(), Enclosure::UNKNOWN);
-        field.enclose(part, &self.middles, &mut self.at_middle);
+        field.enclose(factor, &self.middles, &mut self.at_middle);
         for (&k, middle) in self.open.iter().zip(&self.at_middle) {
             let known = &self.known[k];
             let is_regular = known.defined && known.continuous;
@@ -264,7 +264,7 @@ fn mean_value(known: &Enclosure, middle: &Enclosure, half: f64) -> [f64; 2] {
 
 /// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
 async fn crosses_faces(field: &mut dyn Field, level: &Level, kept: &[Cell]) -> bool {
-    let parts = field.parts();
+    let factors = field.factors();
     for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {
         let [lo, hi] = level.corners(cell.at);
         let mut boxes = vec![[lo, hi]];
@@ -274,8 +274,8 @@ async fn crosses_faces(field: &mut dyn Field, level: &Level, kept: &[Cell]) -> b
             [p, p]
         }));
         let mut known = [Enclosure::UNKNOWN; 9];
-        for part in 0..parts {
-            field.enclose(part, &boxes, &mut known);
+        for factor in 0..factors {
+            field.enclose(factor, &boxes, &mut known);
             let corners = &known[1..];
             let is_regular = known[0].defined && known[0].continuous;
             if is_regular

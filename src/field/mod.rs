@@ -114,9 +114,9 @@ pub trait Field: Send {
         }
     }
 
-    /// Makes the batched methods compute in double precision and give arsinh(f/s) for f, where s is `scale`, a positive number; or f
-    /// again. [`Field::jet`] then gives f/s. It is for fields whose values or intermediate results are beyond single precision. The
-    /// default implementation does nothing.
+    /// Makes the batched methods compute in double precision and give arsinh(f/s) for f, where s is `scale`, a positive number; or
+    /// f again. [`Field::jet`] then gives f/s. It is for fields whose values or intermediate results are beyond single precision.
+    /// The default implementation does nothing.
     fn use_double(&mut self, scale: Option<f64>) {
         let _ = scale;
     }
@@ -136,17 +136,18 @@ pub trait Field: Send {
         DVec3::ZERO
     }
 
-    /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come again.
+    /// The length after which f comes again along each axis: 0 if f does not change along it, none if it is not known to come
+    /// again.
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]
     }
 
     /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
-    fn parts(&mut self) -> usize {
+    fn factors(&mut self) -> usize {
         1
     }
 
-    /// Bounds of factor `part` of f and of its gradient over each box.
+    /// Bounds of factor `factor` of f and of its gradient over each box.
     ///
     /// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`. What an enclosure says
     /// about being defined and continuous holds for f as a whole. The default implementation gives
@@ -154,13 +155,13 @@ pub trait Field: Send {
     ///
     /// # Panics
     ///
-    /// If `part` is not below [`Field::parts`], or `out` is shorter than `boxes`.
-    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        let _ = part;
+    /// If `factor` is not below [`Field::factors`], or `out` is shorter than `boxes`.
+    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        let _ = factor;
         out[..boxes.len()].fill(Enclosure::UNKNOWN);
     }
 
-    /// Bounds of the second derivatives of factor `part` over each box, in the order xx, xy, xz, yy, yz, zz.
+    /// Bounds of the second derivatives of factor `factor` over each box, in the order xx, xy, xz, yy, yz, zz.
     ///
     /// They are meaningless where f is undefined or its gradient jumps. The default implementation gives infinite
     /// bounds.
@@ -168,8 +169,8 @@ pub trait Field: Send {
     /// # Panics
     ///
     /// Under the same conditions as [`Field::enclose`].
-    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        let _ = part;
+    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        let _ = factor;
         out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]);
     }
 }

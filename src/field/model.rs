@@ -39,8 +39,9 @@ pub struct ModelInfo {
     pub centres: u32,
     /// Estimated condition number of the system.
     pub condition: f64,
-    /// Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface to
-    /// first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991).
+    /// Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface
+    /// to first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit
+    /// Equations", 1991).
     pub residual_mean: f64,
     /// Residual that 95 % of them do not exceed, as a share of that diagonal.
     pub residual_95: f64,

@@ -8,28 +8,28 @@ use glam::{DVec3, Vec3};
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
 const SAMPLES: usize = 128;
 
-/// Largest |exponent| of a gradient that needs no factor. The square of such a gradient, and of a value a million times
+/// Largest |exponent| of a gradient that needs no scale. The square of such a gradient, and of a value a million times
 /// smaller or larger, is a normal number in single precision.
 const COMFORTABLE: i32 = 40;
 
 /// Another field times a positive power of two. The surface is the same, and no digit is lost.
 pub(crate) struct Scaled<'a> {
     field: &'a mut dyn Field,
-    factor: f32,
+    scale: f32,
 }
 
 impl<'a> Scaled<'a> {
-    /// `field` times `factor`, which [`comfortable_factor`] gives.
-    pub(crate) fn new(field: &'a mut dyn Field, factor: f32) -> Self {
-        Self { field, factor }
+    /// `field` times `scale`, which [`comfortable_scale`] gives.
+    pub(crate) fn new(field: &'a mut dyn Field, scale: f32) -> Self {
+        Self { field, scale }
     }
 }
 
 /// Power of two that brings the median magnitude of the gradient near 1, or 1 if that is not needed.
 ///
 /// The gradient is sampled at no more than 128 of `points`. Because only the exponent of the median counts, nearly all
-/// choices of points give the same factor.
-pub(crate) fn comfortable_factor(field: &mut dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> f32 {
+/// choices of points give the same scale.
+pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIterator<Item = Vec3>) -> f32 {
     let stride = points.len().div_ceil(SAMPLES).max(1);
     let points: Vec<Vec3> = points.step_by(stride).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
@@ -65,16 +65,16 @@ fn power_of_two(exponent: i32) -> f32 {
 impl Field for Scaled<'_> {
     fn values(&mut self, points: &[Vec3], value: &mut [f32]) {
         self.field.values(points, value);
-        if self.factor != 1.0 {
-            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
+        if self.scale != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.scale);
         }
     }
 
     fn gradients(&mut self, points: &[Vec3], value: &mut [f32], gradient: &mut [Vec3]) {
         self.field.gradients(points, value, gradient);
-        if self.factor != 1.0 {
-            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
-            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.factor);
+        if self.scale != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.scale);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.scale);
         }
     }
 
@@ -86,36 +86,36 @@ impl Field for Scaled<'_> {
         hessian: &mut [Sym3<f32>],
     ) {
         self.field.hessians(points, value, gradient, hessian);
-        if self.factor != 1.0 {
-            value[..points.len()].iter_mut().for_each(|v| *v *= self.factor);
-            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.factor);
-            hessian[..points.len()].iter_mut().for_each(|h| *h = h.map(|entry| entry * self.factor));
+        if self.scale != 1.0 {
+            value[..points.len()].iter_mut().for_each(|v| *v *= self.scale);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= self.scale);
+            hessian[..points.len()].iter_mut().for_each(|h| *h = h.map(|entry| entry * self.scale));
         }
     }
 
     fn jet(&mut self, p: DVec3) -> Jet {
-        let factor = f64::from(self.factor);
+        let scale = f64::from(self.scale);
         let jet = self.field.jet(p);
         Jet {
-            value: jet.value * factor,
-            gradient: jet.gradient * factor,
-            hessian: jet.hessian.map(|entry| entry * factor),
+            value: jet.value * scale,
+            gradient: jet.gradient * scale,
+            hessian: jet.hessian.map(|entry| entry * scale),
         }
     }
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         self.field.exact_gradients(points, value, gradient);
-        if self.factor != 1.0 {
-            let factor = f64::from(self.factor);
-            value[..points.len()].iter_mut().for_each(|v| *v *= factor);
-            gradient[..points.len()].iter_mut().for_each(|g| *g *= factor);
+        if self.scale != 1.0 {
+            let scale = f64::from(self.scale);
+            value[..points.len()].iter_mut().for_each(|v| *v *= scale);
+            gradient[..points.len()].iter_mut().for_each(|g| *g *= scale);
         }
     }
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        let factor = f64::from(self.factor);
+        let scale = f64::from(self.scale);
         let range = self.field.interval(lo, hi);
-        Interval { lo: range.lo * factor, hi: range.hi * factor, ..range }
+        Interval { lo: range.lo * scale, hi: range.hi * scale, ..range }
     }
 
     fn has_bounds(&self) -> bool {
@@ -126,27 +126,27 @@ impl Field for Scaled<'_> {
         self.field.origin()
     }
 
-    fn parts(&mut self) -> usize {
-        self.field.parts()
+    fn factors(&mut self) -> usize {
+        self.field.factors()
     }
 
-    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        let factor = f64::from(self.factor);
-        self.field.enclose(part, boxes, out);
-        if factor != 1.0 {
+    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+        let scale = f64::from(self.scale);
+        self.field.enclose(factor, boxes, out);
+        if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
-                known.value = known.value.map(|bound| bound * factor);
-                known.gradient = known.gradient.map(|bounds| bounds.map(|bound| bound * factor));
+                known.value = known.value.map(|bound| bound * scale);
+                known.gradient = known.gradient.map(|bounds| bounds.map(|bound| bound * scale));
             }
         }
     }
 
-    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        let factor = f64::from(self.factor);
-        self.field.enclose_second(part, boxes, out);
-        if factor != 1.0 {
+    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+        let scale = f64::from(self.scale);
+        self.field.enclose_second(factor, boxes, out);
+        if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
-                *known = known.map(|bounds| bounds.map(|bound| bound * factor));
+                *known = known.map(|bounds| bounds.map(|bound| bound * scale));
             }
         }
     }

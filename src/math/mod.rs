@@ -78,12 +78,12 @@ impl Bounds {
         (self.hi() - self.lo()).length()
     }
 
-    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to single
-    /// precision moves a particle of the default radius by a twenty-five-thousandth of it.
+    /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to
+    /// single precision moves a particle of the default radius by a twenty-five-thousandth of it.
     const NEAR: f64 = 4.0;
 
-    /// The point from which the particles in this box are best counted: the origin of the coordinates, unless the box is so far from
-    /// it that single precision would round the places of particles noticeably; then a point near the middle of the box.
+    /// The point from which the particles in this box are best counted: the origin of the coordinates, unless the box is so far
+    /// from it that single precision would round the places of particles noticeably; then a point near the middle of the box.
     ///
     /// Its coordinates have few digits, so that adding it to a particle's place in double precision is all but exact.
     #[must_use]

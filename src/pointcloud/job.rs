@@ -25,7 +25,7 @@ const PLANES: u32 = 20;
 /// it, single precision, in which the surface is sampled, resolves a millionth of the diagonal.
 const FAR: f64 = 10.0;
 
-/// JobStage of a job, as the page shows it.
+/// The stage of a job, as the page shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
@@ -236,8 +236,8 @@ impl Job {
 
     /// Does up to `budget` units of work and returns the progress.
     ///
-    /// A unit takes a millisecond at most, except between two stages of a file with millions of points, where it may
-    /// take some tens of milliseconds.
+    /// A unit takes about a tenth of a millisecond natively; between two stages of a file with millions of points it may take some
+    /// tens of milliseconds.
     ///
     /// # Errors
     ///

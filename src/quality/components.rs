@@ -10,8 +10,8 @@ use crate::slices::{pause, ranges};
 /// clip box cuts: triangles across them join points of different components.
 const NEAR: f32 = 2.0;
 
-/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times that of the one before
-/// it. A single neighbour may be far too near.
+/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times that of the one
+/// before it. A single neighbour may be far too near.
 const RANK: usize = 3;
 const FARTHEST: f32 = 3.0;
 

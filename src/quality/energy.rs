@@ -12,8 +12,8 @@ const SIX: f32 = 0.812_011_7;
 
 /// Returns the energy of each point, Σ exp(−2 s²) over its natural neighbours, over that of six at the ideal distance, where s = 1.
 ///
-/// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both radii where sizes are wanted. With s = d/2r
-/// it is the Gaussian energy exp(−d²/2σ²) of the relaxation, whose σ is r; neighbours farther away add less than 2 %.
+/// s is the distance over that of a hexagonal lattice of as many points, or over the sum of both radii where sizes are wanted. With
+/// s = d/2r it is the Gaussian energy exp(−d²/2σ²) of the relaxation, whose σ is r; neighbours farther away add less than 2 %.
 pub(super) async fn of_points(scene: &Scene, wanted: Option<&Wanted>, d_hex: f64) -> Vec<f32> {
     let n = scene.tree.len();
     let mut energy = Vec::with_capacity(n);

@@ -69,19 +69,19 @@ pub struct Figures {
     pub edge_cv: f64,
     /// Standard deviation over mean of edge length over the sum of the wanted radii.
     pub size_cv: f64,
-    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the wanted
-    /// radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area. 1
-    /// is ideal. With equal radii this is `cover`.
+    /// Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
+    /// wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
+    /// 1 is ideal. With equal radii this is `cover`.
     pub cover_local: f64,
     /// Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
     /// duplicates.
     pub overlap_min: f64,
-    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of their
-    /// wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where there
-    /// are no distances.
+    /// Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+    /// their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
+    /// there are no distances.
     pub crowded: Option<usize>,
-    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which none has
-    /// its middle in a wider one. None where `cover` is undefined.
+    /// Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+    /// none has its middle in a wider one. None where `cover` is undefined.
     pub wide_holes: Option<usize>,
     /// Points closer than 1e-6 to an earlier one; dropped before the triangulation.
     pub dup: usize,

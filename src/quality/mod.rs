@@ -41,7 +41,7 @@ pub use places::{CROWDED, Hole, Pair, Places, WIDE};
 pub use spacing::Histogram;
 
 use crate::field::Field;
-use crate::field::scaled::{Scaled, comfortable_factor};
+use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, SQRT_3};
 use crate::slices::{self, pause, ranges};
 use accuracy::{first_order_height, residuals};
@@ -79,8 +79,8 @@ pub struct Report {
     pub nearest: Vec<f32>,
     /// First-order distance to the surface |f|/|∇f|, in the field's units; NaN where that is undefined.
     pub residual: Vec<f32>,
-    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance; NaN for a duplicate or a non-finite
-    /// position.
+    /// Energy of the particle among its natural neighbours, over that of six at the ideal distance; NaN for a duplicate or a
+    /// non-finite position.
     pub energy: Vec<f32>,
     /// Connected component of the surface, by the natural neighbours: 0 is the one with most particles. A duplicate is
     /// on the component of the particle that it equals; a non-finite position has `u32::MAX`.
@@ -133,7 +133,7 @@ pub(crate) async fn in_slices(
     bounds: Option<&Bounds>,
     options: &Options<'_>,
 ) -> Report {
-    let factor = comfortable_factor(field, position.iter().copied());
+    let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let prepared = Prepared::new(position, normal, field, options.area).await;
     let Measured { mut figures, component, energy, mut pairs, holes, opening } =
@@ -180,7 +180,7 @@ pub(crate) async fn in_slices(
 /// are those of [`measure`], of which this is a part.
 #[must_use]
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
-    let factor = comfortable_factor(field, position.iter().copied());
+    let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
     let Prepared { scene, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None));
     let origin = &scene.tree.origin;
@@ -285,7 +285,8 @@ async fn measure_neighbourhoods(
     ratios.pairs
 }
 
-/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and where they are open.
+/// Measures angles, agreement and topology of the triangles. Returns the connected component of each point, and where they are
+/// open.
 async fn measure_triangles(
     prepared: &Prepared,
     inner: &[bool],

@@ -184,8 +184,8 @@ pub(super) fn unroll(offset: DVec3, u: DVec3, v: DVec3) -> Option<DVec2> {
     (flat_sq > 0.0).then(|| flat * (offset.length_squared() / flat_sq).sqrt())
 }
 
-/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until no farther one can matter. Returns
-/// whether the cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
+/// Clips the cell of point `i` by the points of the sorted `keys` that are on no other sheet, until no farther one can matter.
+/// Returns whether the cell is closed and proven complete, if every point nearer than √`known_sq` is among them.
 fn fill(
     cell: &mut VoronoiCell,
     tree: &Tree,

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// Distance, over the ideal one, below which two particles are a crowded pair. The front places children that are 0.7 of the ideal
 /// distance from a particle, and relaxation moves such pairs apart.
 pub const CROWDED: f64 = 0.75;
-/// Radius, over the ideal one, above which a hole is wide. A lattice with one particle missing has a hole of √3, and one of half that
-/// excess is 1.37.
+/// Radius, over the ideal one, above which a hole is wide. A lattice with one particle missing has a hole of √3, and one of half
+/// that excess is 1.37.
 pub const WIDE: f64 = 1.4;
 /// Largest number of places of each kind that are told.
 const MOST: usize = 64;
@@ -37,8 +37,8 @@ pub struct Hole {
     pub ratio: f64,
 }
 
-/// The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the closest
-/// pair and the largest hole.
+/// The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
+/// closest pair and the largest hole.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Places {
@@ -94,7 +94,8 @@ impl Pairs {
 
 /// Returns the number of wide holes, and those to be told, from the empty discs that were found.
 ///
-/// Of discs that overlap so far that the middle of one lies in the other, only the widest, over the ideal radius, is a hole of its own.
+/// Of discs that overlap so far that the middle of one lies in the other, only the widest, over the ideal radius, is a hole of its
+/// own.
 pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
     let bits = |hole: &Hole| hole.position.map(f32::to_bits);
     found.sort_by(|a, b| b.ratio.total_cmp(&a.ratio).then_with(|| bits(a).cmp(&bits(b))));

@@ -1,8 +1,9 @@
 //! Tells sheets apart that face the same way and lie near each other, by the field between them.
 //!
-//! Two sheets that face the same way always have a third sheet between them, which faces the other way. A pair of points is therefore
-//! doubtful only if such a third sheet is near, and if the *lift* of the pair is comparable with the distance to it. The lift is the mean
-//! height of each point above the tangent plane at the other. On one sheet it is of third order in the distance of the points.
+//! Two sheets that face the same way always have a third sheet between them, which faces the other way. A pair of points is
+//! therefore doubtful only if such a third sheet is near, and if the *lift* of the pair is comparable with the distance to it. The
+//! lift is the mean height of each point above the tangent plane at the other. On one sheet it is of third order in the distance of
+//! the points.
 //!
 //! The points are taken to lie where their residuals say, so that the lift does not suffer from their distances from the surface.
 
@@ -15,8 +16,8 @@ use glam::{DVec3, Vec3};
 const SHARE: f64 = 0.5;
 /// Lift, over the distance of two points, that the rounding of their normals may leave.
 const ROUNDING: f64 = 1e-6;
-/// Steps of the way along the surface from one point to another. At an eighth of the distance d a step leaves the surface by d³/3000 times the
-/// change of the curvature, which must be less than the distance to another sheet.
+/// Steps of the way along the surface from one point to another. At an eighth of the distance d a step leaves the surface by
+/// d³/3000 times the change of the curvature, which must be less than the distance to another sheet.
 const STEPS: u32 = 8;
 
 /// The points, in tree order, with what tells their sheets.
@@ -37,8 +38,8 @@ impl Sheets<'_> {
         (self.tree.position[i].as_dvec3() - normal * height, normal)
     }
 
-    /// The distance along the normal of point `i` of the nearest sheet that faces the other way, by those of the points `near`; infinite if
-    /// there is none.
+    /// The distance along the normal of point `i` of the nearest sheet that faces the other way, by those of the points `near`;
+    /// infinite if there is none.
     pub(super) fn facing_away(&self, i: usize, near: impl Iterator<Item = usize>) -> f64 {
         let (p, n) = self.on_surface(i);
         let distances = near.filter(|&j| self.normal[i].dot(self.normal[j]) < 0.0).map(|j| {
@@ -48,8 +49,8 @@ impl Sheets<'_> {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether two points that face the same way are on two sheets, where one that faces the other way is `facing_away` from the first: if
-    /// doubtful, whether the way along the surface from one leads past the other.
+    /// Whether two points that face the same way are on two sheets, where one that faces the other way is `facing_away` from the
+    /// first: if doubtful, whether the way along the surface from one leads past the other.
     pub(super) fn are_two(&self, field: &mut dyn Field, i: usize, j: usize, facing_away: f64) -> bool {
         if facing_away == f64::INFINITY {
             return false;

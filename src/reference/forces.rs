@@ -1,14 +1,14 @@
 //! Particles of many sizes: the "scheme based on forces" that the paper compares its non-uniform sampling with (§6, Table 1).
 //!
-//! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is applied
-//! on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception of the
-//! split criterion)": forces, step and landing are those of `relaxation`.
+//! Discs whose radii follow the curvature push each other apart where they overlap, and "we split a particle when no force is
+//! applied on it". "We used the same code for the relaxations of our methods and for the comparative techniques (with the exception
+//! of the split criterion)": forces, step and landing are those of `relaxation`.
 //!
 //! # Differs from the paper
 //!
-//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in a
-//!   lattice with 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's system, so that one squeezed
-//!   into the last gap is removed again.
+//! * The paper mentions no death and does not say how its counts settle. Here a particle that is compressed at least as much as in
+//!   a lattice with 0.7 of the wanted spacing dies with the same probability as in Witkin and Heckbert's system, so that one
+//!   squeezed into the last gap is removed again.
 //! * "No force" has a tolerance, [`FREE`]: discs that push each other apart never separate completely.
 //! * Only particles that have come to rest divide or die, as in Witkin and Heckbert's system.
 

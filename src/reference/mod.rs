@@ -3,12 +3,13 @@
 //!
 //! Each block stands under the paper's own number. §4.2 to §4.4 with Algorithm 2 are in `uniform`, §4.3 in `surface`, §4.5 in
 //! `relaxation`, §5 in `adaptive`. The two particle systems that the paper compares them with are beside them: the general scheme of
-//! §3 in `system`, what each makes of it in `witkin_heckbert` and `forces` (§6, Table 1). What the paper discusses or leaves open is an option ([`Settings`]). Nothing here is made for speed, and a run
-//! has at most [`MAX_PARTICLES`] particles. The tests hold the fast fronts to it, particle by particle.
+//! §3 in `system`, what each makes of it in `witkin_heckbert` and `forces` (§6, Table 1). What the paper discusses or leaves open is an
+//! option ([`Settings`]). Nothing here is made for speed, and a run has at most [`MAX_PARTICLES`] particles. The tests hold the fast fronts to it, particle by particle.
 //!
-//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle system.
-//! Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they are made again from its snapshot, which gives the same events
-//! to the last bit. So [`Reference::seek`] goes to any event, forwards or backwards.
+//! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
+//! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
+//! are made again from its snapshot, which gives the same events to the last bit. So [`Reference::seek`] goes to any event,
+//! forwards or backwards.
 //!
 //! ```
 //! use marching_particles::field::gallery;
@@ -217,8 +218,9 @@ impl Reference {
         })
     }
 
-    /// Prepares a run as [`Reference::new`] does that goes on from particles that are there, of which those from number `first` on wait
-    /// to be treated, in their order. A front in single precision can so be followed level by level without its rounding adding up.
+    /// Prepares a run as [`Reference::new`] does that goes on from particles that are there, of which those from number `first` on
+    /// wait to be treated, in their order. A front in single precision can so be followed level by level without its rounding
+    /// adding up.
     ///
     /// # Errors
     ///
@@ -350,8 +352,8 @@ impl Reference {
         &self.view.particles
     }
 
-    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought; none if there is no such particle. The
-    /// tangential part of the sum is the force of [`Event::Moved`].
+    /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought; none if there is no such
+    /// particle. The tangential part of the sum is the force of [`Event::Moved`].
     #[must_use]
     pub fn pushes(&self, particle: u32) -> Vec<Push> {
         if particle as usize >= self.view.particles.len() {

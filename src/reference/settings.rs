@@ -105,7 +105,8 @@ pub enum Seeding {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LessonSettings"))]
 #[serde(default)]
 pub struct Settings {
-    /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds, `residual`,
+    /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
+    /// `residual`,
     /// `max_iterations` and `max_particles`.
     pub method: Method,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
@@ -121,8 +122,8 @@ pub struct Settings {
     pub law_scale: f64,
     /// Smallest radius of an adaptive particle, a length.
     pub radius_min: f64,
-    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius at
-    /// which a particle divides whatever it feels; 0 has it measured.
+    /// Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius
+    /// at which a particle divides whatever it feels; 0 has it measured.
     pub radius_max: f64,
     /// An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
     /// them as they are, which is 1: on a lattice, where the two are equal, rounding then decides.

@@ -63,8 +63,8 @@ impl Snapshots {
         }
     }
 
-    /// The last chapter up to this one whose beginning is kept, and that beginning. `now` are the particles at the end of the run so
-    /// far.
+    /// The last chapter up to this one whose beginning is kept, and that beginning. `now` are the particles at the end of the run
+    /// so far.
     pub(super) fn before(&self, chapter: usize, now: &[Particle]) -> (usize, Place, Vec<Particle>) {
         let mut from = chapter;
         loop {

@@ -58,8 +58,8 @@ fn largest(setup: &Setup) -> f64 {
     }
 }
 
-/// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of particle i due to j, and its part of the
-/// velocities of both.
+/// "Compute the energy of the set of particles": E_ij = α exp(−|r_ij|²/2σ_i²), the energy of particle i due to j, and its part of
+/// the velocities of both.
 ///
 /// D_i = Σⱼ E_ij, and P_i = σ_i² Σⱼ r_ij (E_ij/σ_i² + E_ji/σ_j²). Equation 9 of the source subtracts the two terms as printed; its
 /// erratum adds them. Every pair is met from both sides, each with its own σ.

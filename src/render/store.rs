@@ -40,7 +40,8 @@ impl Store {
         Self { strides: [record as u64, colours as u64], chunks: Vec::new() }
     }
 
-    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the capacity of the buffers are dropped.
+    /// Uploads a part of the records from `first` on, whose bytes these are. Records beyond the capacity of the buffers are
+    /// dropped.
     pub(super) fn write(&self, queue: &wgpu::Queue, part: Part, first: u32, bytes: &[u8]) {
         let stride = self.strides[part as usize];
         let count = (bytes.len() as u64 / stride) as u32;

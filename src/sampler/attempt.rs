@@ -45,7 +45,7 @@ pub(super) struct Attempt {
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
     packing: f64,
     /// Times that the radius of the front is halved by the refinement, after which it is `radius`; `None` where the front stands.
-    pub(super) levels: Option<u32>,
+    pub(super) halvings: Option<u32>,
     /// Whether this attempt only measures the packing.
     is_pilot: bool,
     /// Attempts completed before this one.
@@ -66,7 +66,7 @@ impl Default for Attempt {
             graded: None,
             area: 0.0,
             packing: PACKING,
-            levels: None,
+            halvings: None,
             is_pilot: false,
             completed: 0,
             bend: Vec3::ZERO,
@@ -107,9 +107,9 @@ impl Attempt {
         self.area * self.packing / (2.0 * SQRT_3)
     }
 
-    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it, if
-    /// that can be. There is no pilot run: the refinement meets the wanted count by itself. Returns why it cannot be; the front with
-    /// its relaxation is attempted then.
+    /// Makes this an attempt at a coarse front to be refined, on a surface with these largest curvatures at points spread over it,
+    /// if that can be. There is no pilot run: the refinement meets the wanted count by itself. Returns why it cannot be; the front
+    /// with its relaxation is attempted then.
     pub(super) fn refine(
         &mut self,
         settings: &Settings,
@@ -123,22 +123,22 @@ impl Attempt {
         curvature.sort_by(f64::total_cmp);
         let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
         let is_graded = self.sizing.is_some();
-        let levels_at = |curvature: f64| refine::levels(curvature * 2.0 * radius, count, is_graded);
+        let levels_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count, is_graded);
         // What bends too much may be a component of its own, beside which others can be refined.
         let is_mostly_smooth = || largest.is_finite() && levels_at(curvature[curvature.len() / 2]).is_some();
-        let levels = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
+        let halvings = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
         if count > f64::from(settings.max_particles) {
             return Some(Refusal::Full);
         }
         // There is no radius where there is no surface.
         let expected = if radius > 0.0 { count } else { 0.0 };
-        if refine::levels(0.0, expected, is_graded).is_none() {
+        if refine::halvings(0.0, expected, is_graded).is_none() {
             return Some(Refusal::Few { expected: expected as u64 });
         }
-        if levels.is_none() {
+        if halvings.is_none() {
             return Some(Refusal::Bent { at: self.bend.into() });
         }
-        (self.radius, self.levels, self.is_pilot) = (radius, levels, false);
+        (self.radius, self.halvings, self.is_pilot) = (radius, halvings, false);
         self.graded = self.sizing.take();
         if let Some(sizing) = &mut self.graded {
             sizing.scale_to(count / self.packing);
@@ -154,7 +154,7 @@ impl Attempt {
             (SizeMode::Radius, Some(sizing)) => refine::Count::Total(self.packing * sizing.predicted_count()),
         };
         let grading = self.graded.as_ref().map(Sizing::slope);
-        self.levels.map(|levels| refine::Target { levels, radius: self.radius as f32, grading, count })
+        self.halvings.map(|halvings| refine::Target { halvings, radius: self.radius as f32, grading, count })
     }
 
     /// The first attempt at the front that stands because this one's was refused.
@@ -165,18 +165,18 @@ impl Attempt {
     /// Ends the refinement: the particles have the radii of the radius field, if there is one.
     pub(super) fn end_refinement(&mut self) {
         self.sizing = self.sizing.take().or(self.graded.take());
-        self.levels = None;
+        self.halvings = None;
     }
 
     /// Radius of the front.
     pub(super) fn front_radius(&self) -> f64 {
-        let coarse = |levels: u32| refine::FRONT_RADIUS * f64::from(1_u32 << levels);
-        self.radius * self.levels.map_or(1.0, coarse)
+        let coarse = |halvings: u32| refine::FRONT_RADIUS * f64::from(1_u32 << halvings);
+        self.radius * self.halvings.map_or(1.0, coarse)
     }
 
     /// The box in which the front grows, when particles are wanted in `bounds`.
     pub(super) fn front_bounds(&self, bounds: &Bounds) -> Bounds {
-        if self.levels.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
+        if self.halvings.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
     }
 
     /// Takes the radius from the radius field, if there is one.

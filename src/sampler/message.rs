@@ -18,11 +18,11 @@ impl Sampler {
                 "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
             }
             StopReason::NoSurface | StopReason::OneParticle
-                if !self.seeds.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
+                if !self.components.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
             {
                 let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
                 let distance = |p: &DVec3| (*p - middle).length_squared();
-                let points = self.seeds.singular().iter().map(|point| point.position);
+                let points = self.components.singular().iter().map(|point| point.position);
                 let nearest = points.min_by(|a, b| distance(a).total_cmp(&distance(b)));
                 let [x, y, z] = nearest.unwrap_or_default().to_array().map(|x| shortest_text(rounded(x)));
                 format!(

@@ -1,8 +1,9 @@
 //! The sampler is a state machine that covers a surface with particles and relaxes them.
 //!
-//! [`Sampler::start`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of
-//! work and returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps
-//! does not change its result by a bit. Nothing is allocated inside a step but the growth of the columns.
+//! [`Sampler::start`] surveys the field and fixes the radius; [`Sampler::step`] then does a given number of units of work and
+//! returns, as often as the caller likes. A budget is a count, never a time, and how a run is cut into steps does not change its
+//! result by a bit. Placing and relaxing allocate nothing for a particle but the growth of the columns; the search for components,
+//! the audit and the refinement make memory of their own.
 
 mod attempt;
 pub(crate) mod discovery;
@@ -34,19 +35,19 @@ pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 pub(crate) use attempt::COUNT_TOLERANCE;
 
 use crate::field::Field;
-use crate::field::scaled::{Scaled, comfortable_factor, spread};
+use crate::field::scaled::{Scaled, comfortable_scale, spread};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use attempt::Attempt;
 use discovery::precision;
-use discovery::seeds::Seeds;
+use discovery::search::ComponentSearch;
 use discovery::survey::{Absence, Survey, survey};
 use front::Front;
 use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
 use projection::Projector;
-use refine::Fronts;
+use refine::CoarseFronts;
 use relaxation::Relaxation;
 use run::Input;
 use sizing::Sizing;
@@ -72,10 +73,10 @@ pub struct Sampler {
     attempt: Attempt,
     phase: PhaseState,
     projector: Projector,
-    seeds: Seeds,
+    components: ComponentSearch,
     front: Front,
     /// Coarse fronts, of which a refinement takes several where the surface has several components.
-    fronts: Fronts,
+    coarse: CoarseFronts,
     relaxation: Relaxation,
     neighbours: PackedNeighbours,
     particles: Particles,
@@ -107,9 +108,9 @@ impl Sampler {
             attempt: Attempt::default(),
             phase: PhaseState::Idle,
             projector: Projector::new(),
-            seeds: Seeds::default(),
+            components: ComponentSearch::default(),
             front: Front::new(),
-            fronts: Fronts::default(),
+            coarse: CoarseFronts::default(),
             relaxation: Relaxation::new(),
             neighbours: PackedNeighbours::default(),
             particles: Particles::default(),
@@ -121,15 +122,15 @@ impl Sampler {
         }
     }
 
-    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. What a coarse
-    /// front has placed beyond the box is not among them.
+    /// The particles so far. Those of a level under way may be provisional: [`Progress::particles`] says how many stay. What a
+    /// coarse front has placed beyond the box is not among them.
     #[must_use]
     pub fn particles(&self) -> &Particles {
         self.inside.as_ref().unwrap_or(&self.particles)
     }
 
-    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold whose
-    /// border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
+    /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold
+    /// whose border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         self.corners.as_chunks().0
@@ -156,8 +157,8 @@ impl Sampler {
         self.attempt.radius
     }
 
-    /// Whether it is proven that there is a witness on every connected component, and of each witness that it is on the component of
-    /// a particle or [named](Sampled::without).
+    /// Whether it is proven that there is a witness on every connected component, and of each witness that it is on the component
+    /// of a particle or [named](Sampled::without).
     #[must_use]
     pub fn search(&self) -> Search {
         if self.doubts().is_empty() { Search::Proven } else { Search::Searched }
@@ -166,7 +167,7 @@ impl Sampler {
     /// Why that is not proven; nothing where it is.
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
-        self.seeds.doubts(self.survey.nearness, self.least_gap())
+        self.components.doubts(self.survey.nearness, self.least_gap())
     }
 
     /// Sheets nearer to each other than this are not told apart.
@@ -177,21 +178,21 @@ impl Sampler {
     /// Which of the components hold particles.
     #[must_use]
     pub fn sampled(&self) -> Sampled {
-        self.seeds.sampled(self.doubts().is_empty())
+        self.components.sampled(self.doubts().is_empty())
     }
 
-    /// Number of cells of the box in which the proof could not decide whether they hold the first point of a component; `None`
-    /// where no proof was attempted.
+    /// Number of cells in which the proof could not decide whether they hold the first point of a component, and of witnesses of
+    /// which it could not decide whether their component holds a particle; `None` where no proof was attempted.
     #[must_use]
     pub fn undecided_cells(&self) -> Option<u64> {
-        self.seeds.open_cells()
+        self.components.open_questions()
     }
 
     /// Number of points of the surface where f has no gradient, a curve of them counted as one; `None` where they were not
     /// searched.
     #[must_use]
     pub fn singular_points(&self) -> Option<u64> {
-        self.seeds.open_cells().map(|_| discovery::singular::places(self.seeds.singular()))
+        self.components.open_questions().map(|_| discovery::singular::places(self.components.singular()))
     }
 
     /// The scale at which the field of the last start is evaluated in double precision, if it is.
@@ -254,7 +255,7 @@ impl Sampler {
         self.particles.origin = field.origin();
         self.inside = None;
         self.corners = Vec::new();
-        self.fronts = Fronts::default();
+        self.coarse = CoarseFronts::default();
         self.relaxation.clear();
         self.counts = Counts::default();
         self.projector.evaluations = 0;
@@ -262,17 +263,17 @@ impl Sampler {
         self.counts.seeding_evaluations = self.projector.evaluations;
 
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
-            let field = &mut Scaled::new(field, self.survey.factor);
+            let field = &mut Scaled::new(field, self.survey.scale);
             Sizing::new(field, bounds, settings, &self.survey, &mut self.counts.seeding_evaluations)
         });
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
-            let field = &mut Scaled::new(field, self.survey.factor);
+            let field = &mut Scaled::new(field, self.survey.scale);
             let curvature = refine::largest_curvatures(field, &self.survey.position);
             self.counts.refusal = self.attempt.refine(settings, &self.survey.position, curvature);
         }
         let predicted = self.attempt.predicted_count(settings);
-        self.seeds.expect(predicted.min(f64::from(settings.max_particles)));
+        self.components.expect(predicted.min(f64::from(settings.max_particles)));
         let warnings = self.warnings(predicted);
         if settings.size_mode == SizeMode::Count && settings.count <= settings.max_particles {
             let room = (f64::from(settings.count) * COUNT_ROOM) as u32;
@@ -290,29 +291,29 @@ impl Sampler {
     /// Surveys the field, unless it `is_known`. Where the survey finds no point, the search is carried to its end at once: the
     /// area is then that of spheres with the curvature at the points that it finds.
     fn look_over(&mut self, field: &mut dyn Field, is_known: bool) {
-        self.seeds.begin(field, &self.bounds);
-        self.seeds.expect(0.0);
+        self.components.begin(field, &self.bounds);
+        self.components.expect(0.0);
         if is_known {
             field.use_double(self.survey.double);
         } else {
             field.use_double(None);
             let double = precision::double_scale(field, &self.bounds);
             field.use_double(double);
-            let factor = comfortable_factor(field, spread(&self.bounds));
+            let scale = comfortable_scale(field, spread(&self.bounds));
             let is_dense = !field.has_bounds();
-            let scaled = &mut Scaled::new(field, factor);
+            let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(scaled, &self.bounds, is_dense, &mut self.projector);
-            (self.survey.factor, self.survey.double) = (factor, double);
+            (self.survey.scale, self.survey.double) = (scale, double);
             if self.survey.absence == Absence::Undefined && precision::overflows_double(field, &self.bounds) {
                 self.survey.absence = Absence::TooLarge;
             }
         }
         if self.survey.area == 0.0 {
-            let field = &mut Scaled::new(field, self.survey.factor);
+            let field = &mut Scaled::new(field, self.survey.scale);
             let limits = (self.survey.tolerance(), self.least_gap());
-            while self.seeds.search(field, &mut self.projector, &self.bounds, limits, u32::MAX) == 0 {}
-            let found = self.seeds.points().iter().map(|seed| (seed.position, seed.normal));
-            self.survey.adopt(field, found, &self.bounds, self.seeds.witnessed());
+            while self.components.search(field, &mut self.projector, &self.bounds, limits, u32::MAX) == 0 {}
+            let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
+            self.survey.adopt(field, found, &self.bounds, self.components.witnessed());
         }
     }
 
@@ -372,7 +373,7 @@ impl Sampler {
     /// Returns early where the search or the relaxation begins, so that the caller can show the particles of the front, and now
     /// and then during both.
     pub fn step(&mut self, field: &mut dyn Field, budget: u32) -> Progress {
-        let field = &mut Scaled::new(field, self.survey.factor);
+        let field = &mut Scaled::new(field, self.survey.scale);
         let mut left = budget;
         let first = self.phase.name();
         while self.is_under_way() && left > 0 && (self.phase.name() == first || !self.is_turning()) {
@@ -392,7 +393,7 @@ impl Sampler {
     /// Finds the particles to be shown of a front that marches beyond the box.
     fn look_inside(&mut self) {
         let is_marching = match self.phase.name() {
-            Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.levels.is_some(),
+            Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.halvings.is_some(),
             _ => false,
         };
         let settled = self.settled();
@@ -414,7 +415,7 @@ impl Sampler {
     /// Whether a step returns before it does any work of the present phase, once it has come from another one.
     fn is_turning(&self) -> bool {
         match self.phase {
-            PhaseState::Search => !self.seeds.is_searched(),
+            PhaseState::Search => !self.components.is_searched(),
             PhaseState::Relaxation => true,
             _ => false,
         }

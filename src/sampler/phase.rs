@@ -17,7 +17,7 @@ pub enum Phase {
     Generation,
     /// Refining a coarse front.
     Refinement,
-    /// Looking for components that the survey has missed.
+    /// Looking for components that the survey has missed; at the end of a run, finding out which of them hold particles.
     Search,
     /// Relaxing the particles.
     Relaxation,
@@ -40,7 +40,7 @@ pub enum StopReason {
     NoSurface,
     /// f has the same value everywhere.
     Constant,
-    /// f has no value anywhere in the box.
+    /// f has no value in the box, or none that double precision holds.
     Undefined,
     /// The radius is too large for the surface: no child fits.
     OneParticle,
@@ -83,7 +83,7 @@ pub(super) enum PhaseState {
     Refinement(Box<Components>),
     /// Moves the particles to more even distances.
     Relaxation,
-    /// Asks which components hold particles.
+    /// Finds out which components hold particles.
     Audit(StopReason),
     /// Marks the particles next to singular points. This costs no budget: a run that has ended is marked.
     Marking(StopReason),

@@ -59,7 +59,7 @@ pub struct Progress {
 /// Evaluations by phase, and what became of the children.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Counts {
-    /// Evaluations of the survey.
+    /// Evaluations of the survey, of the radius field, of the tests whether seeds are covered, and of the audit.
     pub seeding_evaluations: u64,
     /// Evaluations of the fronts, all attempts at a wanted count.
     pub generation_evaluations: u64,
@@ -71,7 +71,7 @@ pub struct Counts {
     pub fates: FateCounts,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,
-    /// Fronts started, each from a seed of its own.
+    /// CoarseFronts started, each from a seed of its own.
     pub seeds: u32,
     /// Seeds that stayed alone beside other particles and were taken back.
     pub left_out: u32,
@@ -90,7 +90,7 @@ impl Sampler {
         let settled = self.settled();
         let particles = self.inside.as_ref().map_or(settled, Particles::len);
         let (refine_level, refine_levels) = match &self.phase {
-            PhaseState::Refinement(refinement) => refinement.levels(),
+            PhaseState::Refinement(refinement) => refinement.level(),
             _ => (0, 0),
         };
         Progress {
@@ -133,7 +133,7 @@ impl Sampler {
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run.
-                let share = self.attempt.levels.map_or(generation, refine::coarse_share);
+                let share = self.attempt.halvings.map_or(generation, refine::coarse_share);
                 share * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
             }
         }

@@ -26,7 +26,7 @@ pub(crate) const MIN_COS: f32 = -0.18;
 const MIN_CROSSING: f32 = 0.1;
 
 /// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over.
-const MIN_DECREASE: f32 = 0.7;
+const MAX_RATIO: f32 = 0.7;
 
 /// Number of intervals into which the bracketed search divides the arc.
 const ARC_SAMPLES: usize = 32;
@@ -229,7 +229,7 @@ impl Projector {
                 let derivative = gradient.dot(circle.tangent(a.turn));
                 let half = (-0.5 * value / derivative).clamp(-MAX_TURN, MAX_TURN);
                 a.turn = turned(a.turn, half);
-                let settles = value.abs() <= MIN_DECREASE * a.last
+                let settles = value.abs() <= MAX_RATIO * a.last
                     && derivative.abs() > MIN_CROSSING * slope * circle.radius
                     && a.turn[0] > MIN_COS
                     && a.steps < MAX_NEWTON_STEPS;
@@ -250,8 +250,8 @@ impl Projector {
         }
     }
 
-    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the centre
-    /// where others are near.
+    /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the
+    /// centre where others are near.
     pub(crate) fn walk(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
         /// Steps from the centre to the circle.
         const STEPS: u32 = 8;
@@ -477,8 +477,8 @@ impl Accuracy {
     }
 }
 
-/// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual `gradient_scale` is cancellation noise
-/// at a singular point.
+/// Returns the tolerance for particles of a radius. A gradient below a millionth of the usual `gradient_scale` is cancellation
+/// noise at a singular point.
 pub(crate) fn tolerance(radius: f32, accuracy: Accuracy, gradient_scale: f32) -> Tolerance {
     Tolerance { residual: accuracy.residual(radius), min_gradient: 1e-6 * gradient_scale }
 }

@@ -4,7 +4,7 @@ use super::Sampler;
 use crate::field::Field;
 use crate::sampler::attempt::Attempt;
 use crate::sampler::discovery::audit::holds_any;
-use crate::sampler::discovery::seeds::Cover;
+use crate::sampler::discovery::search::Cover;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
@@ -21,7 +21,7 @@ const SEARCH_SLICE: u32 = 8_192;
 /// The same for the relaxation, in whose stages the time of a unit differs by a factor of ten.
 const RELAXATION_SLICE: u32 = 16_384;
 /// Seeds that may be taken back in an attempt, and one more for every particle.
-const MOST_LEFT_OUT: usize = 256;
+const MOST_LONE_SEEDS: usize = 256;
 
 /// The events that change the state.
 pub(super) enum Input<'a> {
@@ -57,7 +57,7 @@ impl Sampler {
                 | PhaseState::Search
                 | PhaseState::Filling => {
                     self.front.active_mut().stop(&mut self.particles);
-                    self.particles = self.fronts.end().unwrap_or(core::mem::take(&mut self.particles));
+                    self.particles = self.coarse.end().unwrap_or(core::mem::take(&mut self.particles));
                     self.drop_beyond();
                     self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
@@ -98,7 +98,7 @@ impl Sampler {
         self.particles.reserve(expected);
         self.neighbours.reserve(expected);
         let mut settings = self.settings;
-        if self.attempt.levels.is_some() {
+        if self.attempt.halvings.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
             settings.sampling = Sampling::Uniform;
         }
@@ -110,11 +110,11 @@ impl Sampler {
             radii: self.attempt.radii(),
             expected,
         });
-        if self.fronts.seed().is_none() {
+        if self.coarse.seed().is_none() {
             self.counts.seeds = 0;
             (self.counts.left_out, self.counts.ended_early) = (0, false);
             self.counts.front_evaluations = 0;
-            self.seeds.restart();
+            self.components.restart();
         }
         let random = rand_pcg::Pcg32::seed_from_u64(self.settings.seed).next_u64();
         PhaseState::Seeding(SurveyCursor::new(self.survey.position.len(), random))
@@ -122,11 +122,11 @@ impl Sampler {
 
     /// Looks for the next survey point that no particle covers and starts a front there.
     fn find_seed(&mut self, field: &mut dyn Field, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
-        if let Some((position, normal)) = self.fronts.seed() {
+        if let Some((position, normal)) = self.coarse.seed() {
             return self.begin_front(field, position, normal, None).unwrap_or(PhaseState::Search);
         }
         while *left > 0 {
-            if self.has_no_room() {
+            if self.has_too_many_lone_seeds() {
                 return PhaseState::Search;
             }
             let Some(i) = cursor.next() else { return PhaseState::Search };
@@ -162,7 +162,7 @@ impl Sampler {
         }
         let is_started = self.with_front(field, |front, context| front.add_seed(context, position, normal));
         is_started.then(|| {
-            self.counts.seeds += u32::from(self.fronts.seed().is_none());
+            self.counts.seeds += u32::from(self.coarse.seed().is_none());
             PhaseState::Generation(after)
         })
     }
@@ -181,11 +181,11 @@ impl Sampler {
         }
     }
 
-    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own. Says
-    /// whether it was.
+    /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own.
+    /// Says whether it was.
     fn drop_lone_seed(&mut self, field: &mut dyn Field, is_witness: bool) -> bool {
         let is_lone = self.with_front(field, |front, context| front.has_lone_seed(context.particles));
-        let is_kept = is_lone && is_witness && self.fronts.seed().is_none() && self.is_on_own_piece(field);
+        let is_kept = is_lone && is_witness && self.coarse.seed().is_none() && self.is_on_own_piece(field);
         if is_lone && !is_kept {
             self.with_front(field, |front, context| front.drop_last_seed(context));
         }
@@ -197,7 +197,7 @@ impl Sampler {
         /// The reach of a piece is measured along a few paths.
         const ROOM: f64 = 1.05;
         let last = self.particles.len() - 1;
-        let Some((seed, reach)) = self.seeds.small_piece(field, self.particles.radius[last]) else {
+        let Some((seed, reach)) = self.components.small_piece(field, self.particles.radius[last]) else {
             return false;
         };
         let reach = ROOM * reach;
@@ -243,33 +243,39 @@ impl Sampler {
         if self.front.is_capped() {
             return self.end_generation(field);
         }
-        if self.fronts.seed().is_some() {
+        if self.coarse.seed().is_some() {
             return self.begin_filling(field);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
         let limits = (tolerance, self.least_gap());
-        let unused = self.seeds.search(field, &mut self.projector, &self.bounds, limits, slice);
+        let unused = self.components.search(field, &mut self.projector, &self.bounds, limits, slice);
         if unused == 0 {
             *left = 0;
             return PhaseState::Search;
         }
         *left -= slice - unused;
         while *left > 0 {
-            if self.has_no_room() {
+            if self.has_too_many_lone_seeds() {
                 return self.begin_filling(field);
             }
-            let (witness, unused) = self.seeds.next(*left);
+            let (witness, unused) = self.components.next(*left);
             *left = unused;
             let Some(seed) = witness else {
                 return self.begin_filling(field);
             };
             let rule = self.front.active().rule();
-            let mut near = self.seeds.take_near();
+            let mut near = self.components.take_near();
             self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
             let start = self.projector.evaluations;
-            let cover =
-                self.seeds.cover(field, &mut self.projector, &self.particles, seed, near, (tolerance, rule));
+            let cover = self.components.cover(
+                field,
+                &mut self.projector,
+                &self.particles,
+                seed,
+                near,
+                (tolerance, rule),
+            );
             self.counts.seeding_evaluations += self.projector.evaluations - start;
             if cover == Cover::Bare
                 && let Some(next) = self.begin_front(field, seed.position, seed.normal, None)
@@ -283,8 +289,8 @@ impl Sampler {
     /// Whether so many seeds were taken back, because they stayed alone beside other particles, that no more are tried. A front
     /// costs the same whether it places a particle or none: without a bound, a radius larger than the distances between
     /// thousands of sheets makes a long run of few particles.
-    fn has_no_room(&mut self) -> bool {
-        let is_over = self.counts.left_out as usize > MOST_LEFT_OUT + self.particles.len();
+    fn has_too_many_lone_seeds(&mut self) -> bool {
+        let is_over = self.counts.left_out as usize > MOST_LONE_SEEDS + self.particles.len();
         self.counts.ended_early |= is_over;
         is_over
     }
@@ -333,12 +339,12 @@ impl Sampler {
     /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser.
     fn begin_refinement(&mut self, field: &mut dyn Field, target: Target) -> PhaseState {
         let sizing = self.attempt.graded.as_ref();
-        let next = if let Some(point) = self.seeds.singular().first() {
+        let next = if let Some(point) = self.components.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
         } else if self.front.is_capped() {
             Err(Refusal::Full)
         } else {
-            let witnesses = self.seeds.points().iter().map(|seed| seed.position);
+            let witnesses = self.components.points().iter().map(|seed| seed.position);
             let surface = Surface {
                 points: self.survey.position.iter().copied().chain(witnesses).collect(),
                 bounds: self.bounds,
@@ -346,11 +352,11 @@ impl Sampler {
                 bend: self.attempt.bend,
                 failures: self.attempt.failures,
             };
-            self.fronts.take_in(field, &surface, &mut self.particles, target)
+            self.coarse.take_in(field, &surface, &mut self.particles, target)
         };
         match next {
-            Ok(Next::Front(levels)) => {
-                self.attempt.levels = Some(levels);
+            Ok(Next::Front(halvings)) => {
+                self.attempt.halvings = Some(halvings);
                 self.begin_attempt()
             }
             Ok(Next::Refine(components)) => {
@@ -358,7 +364,7 @@ impl Sampler {
                 // They are those of the front.
                 self.neighbours.clear();
                 // The last front was one of several.
-                self.moved |= self.fronts.are_several;
+                self.moved |= self.coarse.are_several;
                 self.drop_beyond();
                 PhaseState::Refinement(components)
             }
@@ -366,17 +372,17 @@ impl Sampler {
         }
     }
 
-    /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it leaves
-    /// coarser ones to other components.
+    /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it
+    /// leaves coarser ones to other components.
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
-        let least = if self.fronts.are_several { 0 } else { 1 };
-        self.fronts.end();
-        self.attempt.levels = match self.attempt.levels {
-            Some(levels) if levels > least && refusal.is_coarse() => Some(levels - 1),
+        let least = if self.coarse.are_several { 0 } else { 1 };
+        self.coarse.end();
+        self.attempt.halvings = match self.attempt.halvings {
+            Some(halvings) if halvings > least && refusal.is_coarse() => Some(halvings - 1),
             _ => None,
         };
-        if self.attempt.levels.is_none() {
-            // That no coarser front is left to try says less than why the ones before it failed.
+        if self.attempt.halvings.is_none() {
+            // Why a refinement failed says more than the last refusal, which may only be that no other front can be tried.
             self.counts.refusal = self.attempt.failure.or(Some(refusal));
             self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
         }
@@ -398,7 +404,8 @@ impl Sampler {
             Err(refusal) => {
                 self.attempt.failures += 1;
                 self.attempt.failure = Some(refusal);
-                self.attempt.levels = Some(refinement.times()[0]);
+                // The component that was refined least sets how coarse the next front may be.
+                self.attempt.halvings = Some(refinement.fewest_halvings());
                 self.refuse(refusal)
             }
             Ok((units, has_changed)) => {
@@ -407,7 +414,7 @@ impl Sampler {
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
                 }
-                self.counts.refined_levels = Some(refinement.times()[1]);
+                self.counts.refined_levels = Some(refinement.most_halvings());
                 self.corners = refinement.into_corners();
                 self.attempt.end_refinement();
                 self.begin_audit(StopReason::Complete)
@@ -417,7 +424,7 @@ impl Sampler {
 
     /// Drops the particles of a coarse front that has grown beyond the box.
     fn drop_beyond(&mut self) {
-        if self.attempt.levels.is_some() {
+        if self.attempt.halvings.is_some() {
             let count = self.particles.len();
             self.particles.keep_within(&self.bounds);
             self.moved |= self.particles.len() < count;
@@ -470,7 +477,7 @@ impl Sampler {
     }
 
     fn begin_audit(&mut self, reason: StopReason) -> PhaseState {
-        self.seeds.restart_audit();
+        self.components.restart_audit();
         PhaseState::Audit(reason)
     }
 
@@ -479,7 +486,7 @@ impl Sampler {
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
         let start = self.projector.evaluations;
-        let unused = self.seeds.audit(
+        let unused = self.components.audit(
             field,
             &mut self.projector,
             &self.particles,
@@ -501,8 +508,8 @@ impl Sampler {
 
     /// Marks the particles next to singular points, where there are any.
     fn mark(&mut self, field: &mut dyn Field, reason: StopReason) -> PhaseState {
-        if !self.seeds.singular().is_empty() {
-            singular::mark(field, self.seeds.singular(), &mut self.particles);
+        if !self.components.singular().is_empty() {
+            singular::mark(field, self.components.singular(), &mut self.particles);
             self.moved = true;
         }
         PhaseState::Done(reason)

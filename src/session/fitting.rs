@@ -58,8 +58,8 @@ impl Fitting {
 
 impl Session {
     /// Finds the box of the next run with these settings, up to `budget` slices of the work of some 10 to 50 microseconds each: the
-    /// field with its box, once it is known. [`Session::start`] does what is left. A box that `only_grows` holds the one before it as
-    /// long as the formula stays the same: while a slider moves.
+    /// field with its box, once it is known. [`Session::start`] does what is left. A box that `only_grows` holds the one before it
+    /// as long as the formula stays the same: while a slider moves.
     pub fn fit(&mut self, settings: &Settings, only_grows: bool, budget: u32) -> Option<FieldAnswer> {
         let formula = match &self.source {
             Source::Formula(field) if self.is_to_fit(settings) && !field.is_constant() => field,

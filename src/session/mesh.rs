@@ -85,8 +85,8 @@ impl MeshAnswer {
 
 impl Session {
     /// Joins the particles to a mesh: up to `budget` slices of the work, some 10 to 50 microseconds each; what it adds up to, once
-    /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays until
-    /// the particles change.
+    /// it is complete. A refined run has led to a mesh, which is taken as it is. Call it when the run has ended. The mesh stays
+    /// until the particles change.
     pub fn join(&mut self, budget: u32) -> Option<MeshAnswer> {
         if let Mesh::None = self.mesh {
             let count = self.count();

@@ -130,7 +130,8 @@ pub struct Report {
     pub search: Search,
     /// Which of the witnessed components hold particles.
     pub sampled: Sampled,
-    /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was attempted.
+    /// Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
+    /// attempted.
     pub undecided_cells: Option<u64>,
     /// Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for.
     pub singular_points: Option<u64>,
@@ -673,7 +674,7 @@ impl Session {
         if let Some(opening) = self.measured.opening.filter(|_| !is_unresolved) {
             warnings.push(warnings::about_opening(&opening, origin, radius));
         }
-        // What sheets that are not told apart leave open has that cause.
+        // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already.
         let told = doubts.iter().filter(|doubt| !(is_unresolved && matches!(doubt, Doubt::Witnesses { .. })));
         warnings.extend(told.filter_map(|doubt| warnings::about_doubt(doubt, origin, radius)));
         let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);

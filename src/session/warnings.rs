@@ -35,8 +35,8 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
     })
 }
 
-/// Warnings about what became of `total` particles, of which `close` face another sheet that a smaller radius would tell apart. Where
-/// the run `is_audited`, components without particles are named elsewhere.
+/// Warnings about what became of `total` particles, of which `close` face another sheet that a smaller radius would tell apart.
+/// Where the run `is_audited`, components without particles are named elsewhere.
 pub(super) fn about(total: usize, close: usize, counts: &Counts, is_audited: bool) -> Vec<String> {
     let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };

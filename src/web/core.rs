@@ -57,8 +57,8 @@ impl Core {
         }))
     }
 
-    /// Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once it
-    /// is known, nothing before. While a slider moves the box `only_grows`.
+    /// Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
+    /// it is known, nothing before. While a slider moves the box `only_grows`.
     pub fn fit(&mut self, settings: JsValue, only_grows: bool, budget: u32) -> Option<JsValue> {
         let field = match read(settings, FaultKind::Settings) {
             Ok(settings) => Ok(self.session.fit(&settings, only_grows, budget)?),
@@ -103,7 +103,8 @@ impl Core {
         self.exact_positions(from).into_iter().map(|coordinate| coordinate as f32).collect()
     }
 
-    /// Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere nothing.
+    /// Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere
+    /// nothing.
     pub fn exact_positions(&self, from: usize) -> Vec<f64> {
         let particles = self.session.particles();
         if particles.origin == DVec3::ZERO {
@@ -182,8 +183,8 @@ impl Core {
         self.session.triangles().as_flattened().to_vec()
     }
 
-    /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete, undefined
-    /// before; null for another extension or if it is too large.
+    /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
+    /// undefined before; null for another extension or if it is too large.
     pub fn mesh_file(&mut self, extension: &str, budget: u32) -> JsValue {
         let Some(format) = MeshFormat::of_extension(extension) else { return JsValue::NULL };
         match self.session.mesh_file(format, budget) {

@@ -1,6 +1,7 @@
 //! Values that cross between Rust and JavaScript, as plain objects.
 //!
-//! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be code and tables for decimal digits.
+//! Through JSON text the core would be larger by 61 kB (gzip) and not by 29: half of that would be code and tables for decimal
+//! digits.
 
 use crate::answer::Answer;
 use serde::Serialize;

@@ -370,8 +370,8 @@ fn levels_increase_along_the_columns() {
     }
 }
 
-/// The reference pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there are
-/// as many, and they are as large.
+/// The reference pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there
+/// are as many, and they are as large.
 #[test]
 fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_reference() {
     use marching_particles::reference::{self, Reference};

@@ -531,7 +531,7 @@ fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
     }
     assert!(known("1/x + 1", [-0.5, 0.7]).may_vanish);
     // The zeros of a product are those of its factors.
-    assert_eq!(parse("-3x^2 (y - 1)/(z - 2)").parts(), 2);
+    assert_eq!(parse("-3x^2 (y - 1)/(z - 2)").factors(), 2);
     assert_eq!(known("-3x^2/(z - 2)", [-0.5, 0.7]).gradient, [[1.0, 1.0], [0.0, 0.0], [0.0, 0.0]]);
     assert!(known("tan(x)", [1.5, 3.2]).may_vanish);
     for (text, jump) in

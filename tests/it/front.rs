@@ -110,9 +110,9 @@ fn where_the_front_leaves_the_reference_rounding_has_decided() {
     }
 }
 
-/// Of each level the reference treats the fast front's own particles, so that rounding does not add up: every particle is held, also those
-/// that follow the first close call. With larger particles, at whose size the surface folds, the fast search gives children up
-/// that the reference's finds.
+/// Of each level the reference treats the fast front's own particles, so that rounding does not add up: every particle is held,
+/// also those that follow the first close call. With larger particles, at whose size the surface folds, the fast search gives
+/// children up that the reference's finds.
 #[test]
 fn every_level_of_the_front_is_what_the_reference_makes_of_the_one_before() {
     for (id, share) in [("tanglecube", 0.006), ("tanglecube", 0.008), ("ellipsoid", 0.012), ("torus", 0.02)] {

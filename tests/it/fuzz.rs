@@ -1,5 +1,5 @@
-//! Mutated formulas, files and requests, by the checks that libFuzzer runs for long (`fuzz/`), and whole runs on damaged formulas of
-//! the gallery. `FUZZ_CASES` multiplies the number of each.
+//! Mutated formulas, files and requests, by the checks that libFuzzer runs for long (`fuzz/`), and whole runs on damaged formulas
+//! of the gallery. `FUZZ_CASES` multiplies the number of each.
 
 use marching_particles::field::formula::MAX_FORMULA_BYTES;
 use marching_particles::field::gallery;

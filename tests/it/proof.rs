@@ -83,8 +83,8 @@ impl Piece {
     }
 }
 
-/// Smallest gap above which sheets have to be told apart in a box of half-width 1, where two units in the last place are 2⁻²²: 48 of
-/// these, and half as much again.
+/// Smallest gap above which sheets have to be told apart in a box of half-width 1, where two units in the last place are 2⁻²²: 48
+/// of these, and half as much again.
 const RESOLVED: f64 = 2e-5;
 /// Usual share of gaps below a thousandth of the radius.
 const TINY_SHARE: f64 = 0.2;
@@ -212,8 +212,8 @@ fn holds(case: &Case, context: &str) -> bool {
     true
 }
 
-/// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must be proven. The search takes the factors
-/// of a formula one by one.
+/// Runs the cases of a family. At least this share of those without a gap below [`RESOLVED`] must be proven. The search takes the
+/// factors of a formula one by one.
 fn family(name: &str, share: f64, make: impl Fn(&mut Random, f64) -> Vec<Piece>) {
     family_of(name, share, (400, TINY_SHARE), |factors| factors.join("*"), make);
 }

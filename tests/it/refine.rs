@@ -172,8 +172,8 @@ fn on_small_sphere(particles: &Particles) -> usize {
 #[test]
 fn each_component_is_refined_as_often_as_it_allows() {
     let (mut field, bounds) = two_spheres();
-    // With one number of levels for both there is none with 180 particles on the small sphere, and the front stands: six is 0.93, 0.965
-    // and 0.97.
+    // With one number of levels for both there is none with 180 particles on the small sphere, and the front stands: six is 0.93,
+    // 0.965 and 0.97.
     for (count, levels, six) in [(4_000, 2, 0.965), (14_000, 3, 0.985), (40_000, 3, 0.985)] {
         let sampler = sampled(&mut field, &bounds, &refined(count, 0), 10_000);
         let counts = sampler.counts();

@@ -208,8 +208,8 @@ fn rust_flags(project: &Project) -> Vec<String> {
     flags
 }
 
-/// The target folder of all that makes the bundles. Cargo lets one build at a time into a folder, and this one has its own so that the
-/// native checks can run meanwhile.
+/// The target folder of all that makes the bundles. Cargo lets one build at a time into a folder, and this one has its own so that
+/// the native checks can run meanwhile.
 fn target_folder(project: &Project) -> PathBuf {
     project.target.join("wasm")
 }

@@ -61,8 +61,8 @@ const ALL: [Part; 11] = [
     Part::Engines,
 ];
 
-/// What makes and checks the bundles of the page. These parts run beside those that compile natively, because the last crate of every
-/// build takes one processor only.
+/// What makes and checks the bundles of the page. These parts run beside those that compile natively, because the last crate of
+/// every build takes one processor only.
 const BUNDLES: [Part; 2] = [Part::Parity, Part::Page];
 
 /// What drives a browser, which takes all processors and waits for time to pass: it runs last and alone.

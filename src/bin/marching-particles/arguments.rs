@@ -102,8 +102,9 @@ pub(crate) struct Sample {
     #[command(flatten)]
     pub(crate) sampling: Sampling,
 
-    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence,
-    /// distance to the nearest particle, residual, and whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given again; replaces what is there
+    /// File to write; its extension is its format: ply (position, normal, radius, level, parent, valence, distance to the nearest
+    /// particle, residual, and whether a singular point is near), csv (the same), xyz or npy (position, normal). May be given
+    /// again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) out: Vec<PathBuf>,
 

@@ -29,7 +29,7 @@ pub(super) struct Compiled {
     value_nodes: Vec<Id>,
     gradient_nodes: Vec<Id>,
     /// Empty until it is compiled.
-    parts: Vec<interval::Part>,
+    factors: Vec<interval::Factor>,
 }
 
 impl Compiled {
@@ -65,7 +65,7 @@ impl Compiled {
             value_program,
             gradient_program,
             hessian_program: None,
-            parts: Vec::new(),
+            factors: Vec::new(),
         };
         let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
         compiled.set_parameters(&values);
@@ -84,8 +84,8 @@ impl Compiled {
         if let Some(program) = &mut self.hessian_program {
             program.set_parameters(values);
         }
-        for part in &mut self.parts {
-            part.set_parameters(values);
+        for factor in &mut self.factors {
+            factor.set_parameters(values);
         }
     }
 
@@ -103,14 +103,14 @@ impl Compiled {
     }
 
     /// Programs for the bounds of the factors of f; there is at least one.
-    pub(super) fn parts(&mut self, values: &[f64]) -> &mut [interval::Part] {
-        if self.parts.is_empty() {
-            self.parts = interval::parts(&mut self.graph, self.root, self.gradient);
-            for part in &mut self.parts {
-                part.set_parameters(values);
+    pub(super) fn factors(&mut self, values: &[f64]) -> &mut [interval::Factor] {
+        if self.factors.is_empty() {
+            self.factors = interval::factors(&mut self.graph, self.root, self.gradient);
+            for factor in &mut self.factors {
+                factor.set_parameters(values);
             }
         }
-        &mut self.parts
+        &mut self.factors
     }
 
     /// f at `p` in double precision. `scratch` keeps the values of the nodes.

@@ -9,9 +9,9 @@
 //! two thousand, `2e` is twice Euler's number. Superscript digits, `−`, `×`, `·`, `÷`, `√`, `π`, `τ`, `φ` and full-width
 //! characters are accepted.
 //!
-//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a function without brackets where there is
-//! one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of a definition `f(x, y, z) = …`, and what LaTeX has for all
-//! this: `\frac{1}{2}`, `\sqrt[3]{x}`, `x^{2}`, `\left|x\right|`, `\sin\theta`, `\cdot`.
+//! Other ways to write the same are read too: `|x|`, `**` and `==`, brackets of any kind, a function without brackets where there
+//! is one reading (`sin 2x`, `sin^2 x cos y`, but not `sin x y`), the head of a definition `f(x, y, z) = …`, and what LaTeX has for
+//! all this: `\frac{1}{2}`, `\sqrt[3]{x}`, `x^{2}`, `\left|x\right|`, `\sin\theta`, `\cdot`.
 //!
 //! An unknown name becomes an *automatic* parameter, unless it looks like a misspelling. There are at most
 //! [`MAX_AUTOMATIC_PARAMETERS`] of them.
@@ -490,7 +490,7 @@ impl Field for FormulaField {
 
     fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
         self.on_formula_boxes(&[[lo, hi]], |field, boxes| {
-            field.compiled.parts(&field.values)[0].first.whole(boxes[0])
+            field.compiled.factors(&field.values)[0].first.whole(boxes[0])
         })
     }
 
@@ -502,19 +502,19 @@ impl Field for FormulaField {
         self.origin
     }
 
-    fn parts(&mut self) -> usize {
-        self.compiled.parts(&self.values).len()
+    fn factors(&mut self) -> usize {
+        self.compiled.factors(&self.values).len()
     }
 
-    fn enclose(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         self.on_formula_boxes(boxes, |field, boxes| {
-            field.compiled.parts(&field.values)[part].first.enclose(boxes, out);
+            field.compiled.factors(&field.values)[factor].first.enclose(boxes, out);
         });
     }
 
-    fn enclose_second(&mut self, part: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
         self.on_formula_boxes(boxes, |field, boxes| {
-            match &mut field.compiled.parts(&field.values)[part].second {
+            match &mut field.compiled.factors(&field.values)[factor].second {
                 Some(program) => program.enclose_second(boxes, out),
                 None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
             }

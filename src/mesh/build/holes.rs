@@ -203,8 +203,8 @@ mod tests {
         if last < 2 { 0.0 } else { (1..last).map(with_corner).fold(f64::INFINITY, f64::min) }
     }
 
-    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already. Numbers stand for
-    /// corners, and those beyond for the other points.
+    /// Cuts the hole between convex corners, counter-clockwise in the plane, beside triangles that are there already. Numbers stand
+    /// for corners, and those beyond for the other points.
     fn cut(corners: &[Vec3], others: &[Vec3], triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
         with_plane(&[corners, others].concat(), triangles, |patch, tree, in_tree| {
             let is_cut = Cutter::default().cut(patch, &in_tree[..corners.len()], faces_as_corners);

@@ -47,8 +47,8 @@ fn depth(patch: &Patch, id: u32, v: u32) -> f64 {
     share(a, b).min(share(b, c)).min(share(c, a))
 }
 
-/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline, unless one
-/// of these faces another way than its corners.
+/// Replaces a triangle, and those behind it whose circles hold the point, by the triangles of the point with their outline, unless
+/// one of these faces another way than its corners.
 fn replace(patch: &mut Patch, id: u32, v: u32) {
     let [a, b, c] = patch.triangle(id);
     let mut gone = vec![id];

@@ -297,8 +297,8 @@ fn quarter_turns(x: f32, y: f32) -> f32 {
     }
 }
 
-/// Does something with the patch of these triangles, over points whose normals are those of the plane z = 0. It is handed the points'
-/// tree, and for each point its number there.
+/// Does something with the patch of these triangles, over points whose normals are those of the plane z = 0. It is handed the
+/// points' tree, and for each point its number there.
 #[cfg(test)]
 pub(super) fn with_plane<T>(
     points: &[Vec3],

@@ -42,8 +42,8 @@ impl HalfEdges {
         }
     }
 
-    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no neighbours yet. Both ends keep at least
-    /// three faces then, because around an inner vertex with three faces all neighbours are neighbours of each other.
+    /// Whether the edge of `h` can be flipped: it has two faces, and the vertices across are no neighbours yet. Both ends keep at
+    /// least three faces then, because around an inner vertex with three faces all neighbours are neighbours of each other.
     #[must_use]
     pub fn can_flip(&self, h: u32) -> bool {
         let t = self.twin(h);

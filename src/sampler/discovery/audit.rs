@@ -146,14 +146,14 @@ impl Audit {
     /// Decides whether the component of a witness holds one of the particles near it.
     fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[(f32, u32)]) {
         let Audited { field, projector, particles, slack, radius, rule, within, .. } = audited;
-        let Seed { exact, part, .. } = seed;
-        let from = (exact, value_at(*field, part, exact).1.try_normalize().unwrap_or(DVec3::Z));
+        let Seed { exact, factor, .. } = seed;
+        let from = (exact, value_at(*field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z));
         // On the factor of the witness: the others are on other sheets.
         let mut on_part = near.to_vec();
         let boxes: Vec<[DVec3; 2]> =
             near.iter().map(|&(_, j)| [particles.position[j as usize].as_dvec3(); 2]).collect();
         let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
-        field.enclose(part, &boxes, &mut known);
+        field.enclose(factor, &boxes, &mut known);
         let mut place = known.iter().zip(&boxes).map(|(known, &[p, _])| {
             let steepest = DVec3::from_array(known.gradient.map(|[lo, hi]| hi.max(-lo))).length();
             // As near as the particle is to its own sheet: that of another factor may be within the slack too.
@@ -165,11 +165,11 @@ impl Audit {
         let place_of = |j: u32| particles.position[j as usize].as_dvec3();
         let pairs: Vec<(Oriented, DVec3)> =
             on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
-        let is_held = are_connected(*field, part, &pairs, *slack, None).contains(&true)
+        let is_held = are_connected(*field, factor, &pairs, *slack, None).contains(&true)
             || on_part
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&(_, j)| is_connected(*field, part, from, place_of(j), *slack, *within));
+                .any(|&(_, j)| is_connected(*field, factor, from, place_of(j), *slack, *within));
         if is_held {
             return;
         }
@@ -189,14 +189,14 @@ impl Audit {
             return;
         }
         let followed = FOLLOWED * *radius;
-        if self.is_on_named(*field, part, from, (*slack, *within), followed) {
+        if self.is_on_named(*field, factor, from, (*slack, *within), followed) {
             return;
         }
         if self.without.len() >= MOST_NAMED {
             self.leave_open(exact, 1);
             return;
         }
-        let Piece { reach, goes_on } = follow(*field, part, exact, followed);
+        let Piece { reach, goes_on } = follow(*field, factor, exact, followed);
         self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
         self.named.push(seed);
     }
@@ -205,33 +205,33 @@ impl Audit {
     fn is_on_named(
         &self,
         field: &mut dyn Field,
-        part: usize,
+        factor: usize,
         from: Oriented,
         (slack, within): (f64, ([DVec3; 2], f64)),
         reach: f64,
     ) -> bool {
-        let of_part = self.named.iter().filter(|named| named.part == part);
+        let of_part = self.named.iter().filter(|named| named.factor == factor);
         let mut near: Vec<(f64, DVec3)> = of_part
             .map(|named| (named.exact.distance(from.0), named.exact))
             .filter(|&(distance, _)| distance <= reach)
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         near.truncate(MOST_TRIED_BY_SEGMENTS);
-        near.into_iter().any(|(_, place)| is_connected(field, part, from, place, slack, within))
+        near.into_iter().any(|(_, place)| is_connected(field, factor, from, place, slack, within))
     }
 }
 
 /// Whether two points of the surface are connected by proof, straight or by a way around.
 fn is_connected(
     field: &mut dyn Field,
-    part: usize,
+    factor: usize,
     from: Oriented,
     to: DVec3,
     slack: f64,
     within: ([DVec3; 2], f64),
 ) -> bool {
-    is_connected_by_segments(field, part, from, to, slack, within)
-        || is_connected_around(field, part, from, to, slack, within)
+    is_connected_by_segments(field, factor, from, to, slack, within)
+        || is_connected_around(field, factor, from, to, slack, within)
 }
 
 /// How far the part of the surface around a point reaches.
@@ -243,20 +243,20 @@ pub(crate) struct Piece {
     pub(crate) goes_on: bool,
 }
 
-/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight half-planes
-/// through the normal.
-pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64) -> Piece {
+/// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight
+/// half-planes through the normal.
+pub(crate) fn follow(field: &mut dyn Field, factor: usize, from: DVec3, most: f64) -> Piece {
     const PATHS: usize = 8;
     /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of 1 and 3 takes 200.
     const STEPS: u32 = 256;
     /// A step as a share of the radius of curvature, and largest step as a share of `most`.
     const SHARE: f64 = 0.2;
     const LARGEST: f64 = 1.0 / 16.0;
-    let gradient = value_at(field, part, from).1;
+    let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
     let (u, v) = crate::math::tangent_frame(normal.as_vec3());
     let mut second = [[[0.0; 2]; 6]];
-    field.enclose_second(part, &[[from, from]], &mut second);
+    field.enclose_second(factor, &[[from, from]], &mut second);
     let mut known = [Enclosure::UNKNOWN; PATHS];
     let bend =
         second[0].iter().fold(0.0_f64, |most, [lo, hi]| most.max(hi.abs()).max(lo.abs())) / gradient.length();
@@ -278,7 +278,7 @@ pub(crate) fn follow(field: &mut dyn Field, part: usize, from: DVec3, most: f64)
         let mut next: [DVec3; PATHS] = core::array::from_fn(|k| at[k] + heading[k] * step);
         // Two Newton steps in the half-planes.
         for _ in 0..2 {
-            field.enclose(part, &next.map(|p| [p, p]), &mut known);
+            field.enclose(factor, &next.map(|p| [p, p]), &mut known);
             for k in 0..PATHS {
                 let (value, gradient) = known[k].middle();
                 let within = gradient - across[k] * gradient.dot(across[k]);
@@ -317,7 +317,7 @@ pub(crate) fn holds_any(
 ) -> bool {
     indices.any(|j| {
         let p = particles.position[j].as_dvec3();
-        let (value, gradient) = value_at(field, seed.part, p);
+        let (value, gradient) = value_at(field, seed.factor, p);
         (p - seed.exact).length() <= reach && value.abs() <= 2.0 * slack * gradient.length()
     })
 }

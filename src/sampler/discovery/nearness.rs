@@ -1,16 +1,16 @@
 //! How near another sheet of the surface is, in double precision: single precision may hold both at one place.
 //!
 //! Beside another sheet at a distance g the field along the normal is about s t (1 − t/g), so that its second derivative is large
-//! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field beyond
-//! decides, and bisection finds the distance.
+//! against its slope s. One evaluation shows where that is not so, which is nearly everywhere. Elsewhere the sign of the field
+//! beyond decides, and bisection finds the distance.
 
 use crate::field::Field;
 use glam::DVec3;
 
-/// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of many: a
-/// particle may be one such distance away from its sheet, and the lift of two particles has to be four times that (see
-/// [`SheetRule`](super::sheets::SheetRule)). Of three concentric spheres, particles of one size have the right components and Euler number
-/// from 8 of them on, and particles of many sizes from 55 on, but not at 33.
+/// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of
+/// many: a particle may be one such distance away from its sheet, and the lift of two particles has to be four times that (see
+/// [`SheetRule`](super::sheets::SheetRule)). Of three concentric spheres, particles of one size have the right components and Euler
+/// number from 8 of them on, and particles of many sizes from 55 on, but not at 33.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
 /// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of three sheets at equal distances the
 /// quadratic puts the second one at two thirds of its distance.
@@ -31,8 +31,8 @@ pub(crate) struct Nearness {
     pub(crate) slope: f64,
 }
 
-/// The point of the surface that Newton's method finds from `p`, the unit normal there, the slope and the second derivative along it. None
-/// where another zero can be no nearer than `most`, and where there is no point.
+/// The point of the surface that Newton's method finds from `p`, the unit normal there, the slope and the second derivative along
+/// it. None where another zero can be no nearer than `most`, and where there is no point.
 fn profile(field: &mut dyn Field, mut p: DVec3, most: f64) -> Option<(DVec3, DVec3, f64, f64)> {
     /// Far from several sheets at once each step goes only a part of the way.
     const STEPS: u32 = 48;

@@ -13,17 +13,17 @@
 //! J. Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*, the other free ones are
 //! *sides*, and q satisfies as many equations as there are free coordinates: as a rule such points are isolated, and few.
 //!
-//! So each stratum is subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is *discarded*
-//! if an interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is monotone along
-//! up, not only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface through any point of
-//! C cannot leave it over that footprint: by the mean value theorem it rises or falls by no more than
-//! t = Σ max|∂f/∂side| · width / min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole
-//! footprint, connected, and meets the line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder,
-//! "Interval analysis for computer graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic
-//! approximation of implicit curves and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that
-//! meets the surface, and obtain its topology; one point on each component is cheaper.) If the highest point of a component lies in C, the
-//! witness lies on that component: along the graph it never leaves through the top of the box, because nothing of the component is
-//! higher, and a graph that might leave through the bottom is not accepted.
+//! So each stratum is subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is *discarded* if an
+//! interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is monotone along up, not
+//! only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface through any point of C cannot
+//! leave it over that footprint: by the mean value theorem it rises or falls by no more than t = Σ max|∂f/∂side| · width /
+//! min|∂f/∂up|, all over H. Then the surface in H is the graph of a function over the whole footprint, connected, and meets the
+//! line through any place of it in one point, the *witness*; or C holds no point of it. (Snyder, "Interval analysis for computer
+//! graphics", SIGGRAPH 1992, calls this global parametrisability; Plantinga & Vegter, "Isotopic approximation of implicit curves
+//! and surfaces", SGP 2004, ask for a small variation of the normal instead, of every cell that meets the surface, and obtain its
+//! topology; one point on each component is cheaper.) If the highest point of a component lies in C, the witness lies on that
+//! component: along the graph it never leaves through the top of the box, because nothing of the component is higher, and a graph
+//! that might leave through the bottom is not accepted.
 //!
 //! The bounds are those of the expressions, and, since these are loose in all but small cells, also those of the mean value forms:
 //! g(C) ⊆ g(m) + g′(C)(C − m) with m the middle of C, for the derivatives (with bounds of the second derivatives) and for f itself.
@@ -31,10 +31,12 @@
 //! one factor the others do not matter, and where two vanish together the product has no gradient but each factor has.
 //!
 //! Around a point where f has no gradient no cell can be decided. A [box](super::singular) around it through whose boundary every
-//! component in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the rest.
+//! component in it passes is left out of the search, as if it did not belong to the box; its faces and edges are strata of the
+//! rest.
 //!
-//! Of the others only the [part](super::interval_newton) is kept that can hold a highest point. What is neither is halved along its longer sides, down to [`DEPTH`]; the cells still open then are *undecided* and reported:
-//! where the gradient vanishes on the surface no interval decides.
+//! A cell that is neither discarded nor decided is [narrowed](super::interval_newton) to the part that can hold a highest point.
+//! The rest is halved along its longer sides, down to [`DEPTH`]. Cells that are still open then are *undecided* and reported: where
+//! the gradient vanishes on the surface no interval decides.
 //!
 //! # What is proven
 //!
@@ -53,9 +55,9 @@ use glam::{DVec3, Vec3};
 const DEPTH: u8 = 16;
 /// The same where f jumps or is not defined. Such cells lie along curves and faces, so there are many.
 const IRREGULAR_DEPTH: u8 = 6;
-/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third of a
-/// particle. Smooth surfaces of the gallery take a hundred to eight thousand, but for two that take sixty and seventy thousand,
-/// and those with up to sixteen cone points no more; the fifty of Barth's sextic take 36,000.
+/// Largest number of cells visited, and how many more for every particle that is expected: a cell takes about as long as a third of
+/// a particle. Most smooth surfaces of the gallery take 100 to 8,000 cells, and two take 60,000 to 70,000. Sixteen cone points add
+/// none; Barth's sextic with fifty takes 36,000.
 const MOST_CELLS: usize = 8_192;
 const CELLS_PER_PARTICLE: f64 = 0.5;
 /// Largest number of cells visited where each level has hardly more of them than the one before it: the search is then near its
@@ -65,7 +67,7 @@ const HARDLY_MORE: f64 = 1.3;
 /// Halvings before singular points are searched in a cell, and halvings between two tries.
 const SINGULAR_FROM: u8 = 3;
 const SINGULAR_EVERY: u8 = 2;
-/// Largest number of cells of a part in which they are searched. There are more where they form a curve.
+/// Largest number of cells of a factor in which they are searched. There are more where they form a curve.
 const MOST_TRIED: usize = 512;
 /// Two singular points count as one if they are nearer to each other than this share of a cell.
 const SAME: f64 = 1e-6;
@@ -103,7 +105,7 @@ impl Cell {
         self.lo + CUT * (self.hi - self.lo)
     }
 
-    /// The free axes but up, then up.
+    /// The sides of the footprint, then up.
     fn axes(&self) -> ([Option<usize>; 2], usize) {
         let free = |axis: usize| (self.lo[axis] < self.hi[axis]).then_some(axis);
         match [free(0), free(1), free(2)] {
@@ -129,11 +131,11 @@ enum SearchState {
     Done,
 }
 
-/// A point of the surface, and the part of the field that vanishes there.
+/// A point of the surface, and the factor of the field that vanishes there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Witness {
     pub(crate) position: DVec3,
-    pub(crate) part: usize,
+    pub(crate) factor: usize,
 }
 
 /// A witness on the surface as single precision computes it.
@@ -143,8 +145,8 @@ pub(crate) struct Seed {
     pub(crate) normal: Vec3,
     /// The witness itself.
     pub(crate) exact: DVec3,
-    /// The part of the field that vanishes there.
-    pub(crate) part: usize,
+    /// The factor of the field that vanishes there.
+    pub(crate) factor: usize,
 }
 
 /// The search for witnesses, and what it has found.
@@ -156,11 +158,11 @@ pub(crate) struct Octree {
     /// Corners of the enlarged box.
     lo: DVec3,
     hi: DVec3,
-    /// Number of parts of the field, which are searched one after the other.
-    parts: usize,
-    /// Most cells that all parts together may take.
+    /// Number of factors of the field, which are searched one after the other.
+    factors: usize,
+    /// Most cells that all factors together may take.
     most: usize,
-    search: PartSearch,
+    search: FactorSearch,
     bounds: BoxBounds,
     batch: CellBatch,
     /// Points where f and its gradient vanish; of curves of them a selection.
@@ -171,10 +173,10 @@ pub(crate) struct Octree {
     pub(crate) undecided: Vec<[DVec3; 2]>,
 }
 
-/// The search of one part of the field.
+/// The search of one factor of the field.
 #[derive(Clone, Debug, Default)]
-struct PartSearch {
-    part: usize,
+struct FactorSearch {
+    factor: usize,
     /// Cells of the level under way; those before `next` have been visited.
     level: Vec<Cell>,
     next: usize,
@@ -186,10 +188,10 @@ struct PartSearch {
     cells: usize,
     /// Boxes left out of the search.
     isolated: Vec<[DVec3; 2]>,
-    /// Number of cells in which singular points were searched.
-    tries: usize,
-    /// Singular points around which such a box was searched.
-    tried: Vec<DVec3>,
+    /// Number of cells in which a singular point was looked for.
+    searched: usize,
+    /// Singular points that were found, so that each is treated once.
+    met: Vec<DVec3>,
 }
 
 /// Boxes and the bounds of the field over them.
@@ -215,15 +217,15 @@ struct CellBatch {
 
 impl BoxBounds {
     /// Bounds f and its gradient over the boxes.
-    fn enclose(&mut self, field: &mut dyn Field, part: usize) {
+    fn enclose(&mut self, field: &mut dyn Field, factor: usize) {
         let n = self.boxes.len();
         self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
-        field.enclose(part, &self.boxes, &mut self.known[..n]);
+        field.enclose(factor, &self.boxes, &mut self.known[..n]);
     }
 
     /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds stand those in the middles
     /// of the boxes.
-    fn refine(&mut self, field: &mut dyn Field, part: usize) {
+    fn refine(&mut self, field: &mut dyn Field, factor: usize) {
         let n = self.boxes.len();
         if n == 0 {
             return;
@@ -233,10 +235,10 @@ impl BoxBounds {
             let middle = 0.5 * (lo + hi);
             self.boxes.push([middle, middle]);
         }
-        self.enclose(field, part);
+        self.enclose(field, factor);
         self.boxes.truncate(n);
         self.second.resize(n.max(self.second.len()), UNBOUNDED);
-        field.enclose_second(part, &self.boxes, &mut self.second[..n]);
+        field.enclose_second(factor, &self.boxes, &mut self.second[..n]);
         for k in 0..n {
             let [lo, hi] = self.boxes[k];
             let middle = self.known[n + k];
@@ -275,14 +277,14 @@ impl Octree {
         self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
     }
 
-    /// Begins the search of a part of the field with the box, its faces and its edges.
-    fn begin_part(&mut self, part: usize) {
-        self.search.part = part;
+    /// Begins the search of a factor of the field with the box, its faces and its edges.
+    fn begin_factor(&mut self, factor: usize) {
+        self.search.factor = factor;
         (self.search.next, self.search.cells, self.search.is_ending) = (0, 0, false);
         self.search.level.clear();
         self.search.isolated.clear();
-        self.search.tried.clear();
-        self.search.tries = 0;
+        self.search.met.clear();
+        self.search.searched = 0;
         self.search.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
         push_boundary(&mut self.search.level, [self.lo, self.hi]);
     }
@@ -302,10 +304,10 @@ impl Octree {
         self.most = MOST_CELLS + (CELLS_PER_PARTICLE * particles) as usize;
     }
 
-    /// Largest number of cells of the part that may be visited.
+    /// Largest number of cells of the factor that may be visited.
     fn allowed(&self) -> usize {
         let most = if self.search.is_ending { self.most.max(MOST_AT_THE_END) } else { self.most };
-        most / self.parts
+        most / self.factors
     }
 
     /// Whether the field can be searched by bounds.
@@ -321,10 +323,10 @@ impl Octree {
     /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
     pub(crate) fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
-            self.parts = field.parts();
+            self.factors = field.factors();
             if bounds_say_something(field, [self.lo, self.hi]) {
                 self.state = SearchState::Running;
-                self.begin_part(0);
+                self.begin_factor(0);
             } else {
                 self.state = SearchState::Unavailable;
             }
@@ -347,8 +349,8 @@ impl Octree {
                 let open = open.filter(|cell| !is_left_out(cell, &self.search.isolated));
                 self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
                 self.search.halves.clear();
-                if self.search.part + 1 < self.parts {
-                    self.begin_part(self.search.part + 1);
+                if self.search.factor + 1 < self.factors {
+                    self.begin_factor(self.search.factor + 1);
                 } else {
                     self.state = SearchState::Done;
                 }
@@ -365,7 +367,7 @@ impl Octree {
         self.batch.open.extend(searched);
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
-        self.bounds.enclose(field, self.search.part);
+        self.bounds.enclose(field, self.search.factor);
         let mut kept = 0;
         for k in 0..self.batch.open.len() {
             let (cell, known) = (self.batch.open[k], self.bounds.known[k]);
@@ -382,7 +384,7 @@ impl Octree {
         self.batch.open.truncate(kept);
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
-        self.bounds.refine(field, self.search.part);
+        self.bounds.refine(field, self.search.factor);
         self.batch.tall.clear();
         for k in 0..self.batch.open.len() {
             let (mut cell, known, middle) =
@@ -419,21 +421,21 @@ impl Octree {
         let (sides, _) = cell.axes();
         let is_tried = cell.level >= SINGULAR_FROM
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
-            && self.search.tries < MOST_TRIED
+            && self.search.searched < MOST_TRIED
             && sides.iter().all(Option::is_some)
             && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
         if !is_tried {
             return false;
         }
-        self.search.tries += 1;
+        self.search.searched += 1;
         let reach = (cell.hi - cell.lo).length();
         let Some(point) = singular_point(field, cell.probe(), reach) else { return false };
         let at = point.position;
         let is_known = |p: &DVec3| (*p - at).length_squared() <= SAME * SAME * reach * reach;
-        if self.search.tried.iter().any(is_known) {
+        if self.search.met.iter().any(is_known) {
             return false;
         }
-        self.search.tried.push(at);
+        self.search.met.push(at);
         if point.is_zero && at.cmpge(self.lo).all() && at.cmple(self.hi).all() {
             self.singular.push(point);
         }
@@ -442,7 +444,7 @@ impl Octree {
             return false;
         }
         let within = [self.lo, self.hi];
-        let Some(around) = isolating_box(field, self.search.part, at, within, &self.search.isolated) else {
+        let Some(around) = isolating_box(field, self.search.factor, at, within, &self.search.isolated) else {
             return false;
         };
         self.search.isolated.push(around);
@@ -460,7 +462,7 @@ impl Octree {
         };
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(self.batch.tall.iter().map(taller));
-        self.bounds.refine(field, self.search.part);
+        self.bounds.refine(field, self.search.factor);
         // The most that the surface rises, where it is a graph over the whole footprint.
         self.batch.rises.clear();
         self.batch.rises.extend(self.batch.tall.iter().zip(&self.bounds.known).map(
@@ -480,7 +482,7 @@ impl Octree {
                 [p, p]
             }));
         }
-        self.bounds.enclose(field, self.search.part);
+        self.bounds.enclose(field, self.search.factor);
         self.batch.lines.clear();
         for k in 0..self.batch.tall.len() {
             let (cell, _) = self.batch.tall[k];
@@ -507,7 +509,7 @@ impl Octree {
             if height - beside >= self.lo[up] || sides == [None; 2] {
                 let mut position = cell.probe();
                 position[up] = height;
-                self.witnesses.push(Witness { position, part: self.search.part });
+                self.witnesses.push(Witness { position, factor: self.search.factor });
             } else {
                 self.halve(cell, DEPTH);
             }
@@ -530,7 +532,7 @@ impl Octree {
                 p[cell.axes().1] = height;
                 self.bounds.boxes.push([p, p]);
             }
-            self.bounds.enclose(field, self.search.part);
+            self.bounds.enclose(field, self.search.factor);
             settled = true;
             for (line, known) in self.batch.lines.iter_mut().zip(&self.bounds.known) {
                 let (k, lo, hi, height) = *line;
@@ -558,14 +560,14 @@ impl Octree {
         let size = cell.hi - cell.lo;
         let middle = cell.lo + CUT * size;
         let long = LONG * size.max_element();
-        let parts = |axis: usize| if size[axis] > long { 2 } else { 1 };
-        for z in 0..parts(2) {
-            for y in 0..parts(1) {
-                for x in 0..parts(0) {
+        let pieces = |axis: usize| if size[axis] > long { 2 } else { 1 };
+        for z in 0..pieces(2) {
+            for y in 0..pieces(1) {
+                for x in 0..pieces(0) {
                     let mut half = Cell { level: cell.level + 1, ..cell };
-                    for (axis, part) in [x, y, z].into_iter().enumerate() {
-                        if parts(axis) == 2 {
-                            let end = if part == 0 { &mut half.hi } else { &mut half.lo };
+                    for (axis, piece) in [x, y, z].into_iter().enumerate() {
+                        if pieces(axis) == 2 {
+                            let end = if piece == 0 { &mut half.hi } else { &mut half.lo };
                             end[axis] = middle[axis];
                         }
                     }
@@ -681,9 +683,9 @@ mod tests {
             "atan((x^2 + y^2 + z^2 - 0.25)((x-0.6)^2 + y^2 + z^2 - 0.003)(x^2 + (y+0.3)^2 + z^2 - 0.01))";
         let mut field = FormulaField::parse(text, &[]).expect("a formula");
         let begun = || {
-            let mut octree = Octree { parts: 1, most: MOST_CELLS, ..Octree::default() };
+            let mut octree = Octree { factors: 1, most: MOST_CELLS, ..Octree::default() };
             octree.begin(true, &Bounds::cube(1.0));
-            octree.begin_part(0);
+            octree.begin_factor(0);
             octree
         };
         // All that visiting the cells leads to, and the cells of the next level among it.

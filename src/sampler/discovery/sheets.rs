@@ -32,7 +32,8 @@ fn is_doubtful(offset: Vec3, normal: Vec3, other: Vec3, spacing: f32) -> bool {
 /// How two points that face the same way are told to be on one sheet or on two.
 ///
 /// As a rule a large lift makes a pair doubtful, and one evaluation between the two decides. That misses sheets nearer to each
-/// other than such a lift. Where the survey has seen sheets as near as that, every pair is doubtful whose lift can be told from 0, and the field is followed from one point to the other.
+/// other than such a lift. Where the survey has seen sheets as near as that, every pair is doubtful whose lift can be told from 0,
+/// and the field is followed from one point to the other.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SheetRule {
     /// Least distance at which sheets are told apart, where some may be so near.
@@ -215,7 +216,7 @@ pub(crate) type Oriented = (DVec3, DVec3);
 /// the rectangle between the two, and meets the line through the second point exactly once.
 pub(crate) fn are_connected(
     field: &mut dyn Field,
-    part: usize,
+    factor: usize,
     pairs: &[(Oriented, DVec3)],
     slack: f64,
     within: Option<[DVec3; 2]>,
@@ -226,11 +227,11 @@ pub(crate) fn are_connected(
         let (around, _, _) = graph_box(a, b, normal, slack);
         boxes[3 * k..3 * k + 3].copy_from_slice(&[around, [a, a], [b, b]]);
     }
-    field.enclose(part, &boxes[..3 * pairs.len()], &mut known);
+    field.enclose(factor, &boxes[..3 * pairs.len()], &mut known);
     core::array::from_fn(|k| {
         let Some(&((a, normal), b)) = pairs.get(k) else { return false };
         let (around, up, room) = graph_box(a, b, normal, slack);
-        let [known, ends @ ..] = [0, 1, 2].map(|part| known[3 * k + part]);
+        let [known, ends @ ..] = [0, 1, 2].map(|m| known[3 * k + m]);
         let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
         // Ends that are not quite on the surface have it within 2 slacks above or below.
         within.is_none_or(|[lo, hi]| around[0].cmpge(lo).all() && around[1].cmple(hi).all())
@@ -245,7 +246,7 @@ pub(crate) fn are_connected(
 /// turns.
 pub(crate) fn is_connected_by_segments(
     field: &mut dyn Field,
-    part: usize,
+    factor: usize,
     from: Oriented,
     to: DVec3,
     slack: f64,
@@ -264,16 +265,16 @@ pub(crate) fn is_connected_by_segments(
         count -= tried;
         let mut pairs = [(from, to); TOGETHER];
         pairs[..tried].copy_from_slice(&waiting[count..count + tried]);
-        let connected = are_connected(field, part, &pairs[..tried], slack, None);
+        let connected = are_connected(field, factor, &pairs[..tried], slack, None);
         for k in (0..tried).filter(|&k| !connected[k]) {
             let (start, end) = pairs[k];
             let chord = end - start.0;
-            let Some(mut middle) = land(field, part, start.0 + 0.5 * chord) else { return false };
+            let Some(mut middle) = land(field, factor, start.0 + 0.5 * chord) else { return false };
             for _ in 0..MOST_TURNS {
                 if is_inside(middle.0) {
                     break;
                 }
-                let Some(next) = land(field, part, middle.0.clamp(lo + margin, hi - margin)) else {
+                let Some(next) = land(field, factor, middle.0.clamp(lo + margin, hi - margin)) else {
                     return false;
                 };
                 middle = next;
@@ -297,11 +298,11 @@ pub(crate) fn is_connected_by_segments(
     false
 }
 
-/// The same by way of a point beside the chord: the middle of the chord between opposite points of a small piece lies inside it, where
-/// no step leads to the surface.
+/// The same by way of a point beside the chord: the middle of the chord between opposite points of a small piece lies inside it,
+/// where no step leads to the surface.
 pub(crate) fn is_connected_around(
     field: &mut dyn Field,
-    part: usize,
+    factor: usize,
     from: Oriented,
     to: DVec3,
     slack: f64,
@@ -313,19 +314,19 @@ pub(crate) fn is_connected_around(
     let (u, v) = (u.as_dvec3(), v.as_dvec3());
     [u, -u, v, -v].into_iter().any(|side| {
         let beside = from.0 + 0.5 * (chord + side * chord.length());
-        land(field, part, beside).is_some_and(|middle| {
-            is_connected_by_segments(field, part, from, middle.0, slack, within)
-                && is_connected_by_segments(field, part, middle, to, slack, within)
+        land(field, factor, beside).is_some_and(|middle| {
+            is_connected_by_segments(field, factor, from, middle.0, slack, within)
+                && is_connected_by_segments(field, factor, middle, to, slack, within)
         })
     })
 }
 
 /// The point at which Newton's method along the gradient finds, from `p`, a zero of a factor of the field; and the unit normal
 /// there.
-fn land(field: &mut dyn Field, part: usize, mut p: DVec3) -> Option<Oriented> {
+fn land(field: &mut dyn Field, factor: usize, mut p: DVec3) -> Option<Oriented> {
     const STEPS: u32 = 8;
     for _ in 0..STEPS {
-        let (value, gradient) = value_at(field, part, p);
+        let (value, gradient) = value_at(field, factor, p);
         let step = gradient * (value / gradient.length_squared());
         if !step.is_finite() {
             return None;
@@ -339,9 +340,9 @@ fn land(field: &mut dyn Field, part: usize, mut p: DVec3) -> Option<Oriented> {
 }
 
 /// Value and gradient of a factor of the field at a point: the middles of their bounds.
-pub(crate) fn value_at(field: &mut dyn Field, part: usize, p: DVec3) -> (f64, DVec3) {
+pub(crate) fn value_at(field: &mut dyn Field, factor: usize, p: DVec3) -> (f64, DVec3) {
     let mut known = [Enclosure::UNKNOWN];
-    field.enclose(part, &[[p, p]], &mut known);
+    field.enclose(factor, &[[p, p]], &mut known);
     known[0].middle()
 }
 

@@ -147,11 +147,11 @@ fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
 
-/// The largest of [`SIZES`] boxes around the singular point `at` in which one part of the field has no local extremum. It lies in
+/// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field has no local extremum. It lies in
 /// the box from `lo` to `hi` and meets none of the boxes `taken`.
 pub(crate) fn isolating_box(
     field: &mut dyn Field,
-    part: usize,
+    factor: usize,
     at: DVec3,
     [lo, hi]: [DVec3; 2],
     taken: &[[DVec3; 2]],
@@ -166,12 +166,12 @@ pub(crate) fn isolating_box(
         bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
     };
     let mut is_so = [false; SUB_BOXES];
-    has_no_extremum(field, part, &boxes, &mut is_so);
+    has_no_extremum(field, factor, &boxes, &mut is_so);
     let as_one = is_so[..SIZES].iter().position(|&is_so| is_so)?;
     // Larger boxes may be proven in sub-boxes, whose bounds are tighter.
     let in_sub_boxes = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
         fits(&boxes[k]) && {
-            has_no_extremum(field, part, &sub_boxes(boxes[k]), &mut is_so);
+            has_no_extremum(field, factor, &sub_boxes(boxes[k]), &mut is_so);
             is_so.iter().all(|&is_so| is_so)
         }
     });
@@ -189,11 +189,11 @@ fn sub_boxes([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; SUB_BOXES] {
 
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
 /// function [is a saddle](is_saddle) throughout.
-fn has_no_extremum(field: &mut dyn Field, part: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
+fn has_no_extremum(field: &mut dyn Field, factor: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
     let mut known = [Enclosure::UNKNOWN; SUB_BOXES];
     let mut second = [[[0.0; 2]; 6]; SUB_BOXES];
-    field.enclose(part, boxes, &mut known);
-    field.enclose_second(part, boxes, &mut second);
+    field.enclose(factor, boxes, &mut known);
+    field.enclose_second(factor, boxes, &mut second);
     for (k, out) in out[..boxes.len()].iter_mut().enumerate() {
         let Enclosure { defined, continuous, smooth, gradient, .. } = known[k];
         let is_steep = gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0);

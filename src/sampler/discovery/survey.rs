@@ -21,8 +21,8 @@ const RESOLUTION_SAMPLES: usize = 48;
 /// Distance to either side at which the sign of f distinguishes a touching surface from a crossing one, as a share of the
 /// grid's spacing. It is far larger than the tolerance of the points and far smaller than the spacing.
 const TOUCH_PROBE: f32 = 0.02;
-/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4 apart
-/// is missed.
+/// Largest number of evaluations of f on an edge that look for two crossings. With one, a tenth of the area of two spheres 1e-4
+/// apart is missed.
 const LOOKS: usize = 3;
 /// Number of points at which near sheets are looked for.
 const SAMPLES: usize = 256;
@@ -38,7 +38,7 @@ const NO_CROSSING: f32 = -1.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Survey {
     /// What the field was multiplied by, so that its gradient can be squared in single precision.
-    pub(crate) factor: f32,
+    pub(crate) scale: f32,
     /// The scale at which the field is evaluated in double precision, where single precision does not hold it.
     pub(crate) double: Option<f64>,
     /// Points of the surface, spread over it, in grid order.
@@ -56,7 +56,7 @@ pub(crate) struct Survey {
     /// Least distance, along the normal, of a point of the surface from another sheet beyond which there is a third one; infinite
     /// where none was seen.
     pub(crate) crowding: f32,
-    /// The nearest of sheets that are so near each other that particles have to be nearer to theirs than usual.
+    /// The nearest pair of sheets, where some are so near that a particle's usual tolerance could put it on the wrong one.
     pub(crate) nearness: Option<Nearness>,
     /// Largest distance of a point from the surface.
     residual: f32,
@@ -203,8 +203,8 @@ impl Candidates {
         }
     }
 
-    /// Looks at the nodes of the layer `lower`, the number of which is `z`, and at their edges along the axes; there is no layer
-    /// above the last one.
+    /// Looks at layer number `z`, which is `lower`, and at its edges along the axes. `upper` is the layer above; the last layer has
+    /// none.
     fn look_at(
         &mut self,
         grid: &Grid,
@@ -490,16 +490,16 @@ fn project(
     out.touches = !is_facing_another && touches(field, projector, out, TOUCH_PROBE * spacing);
 }
 
-/// Looks for near sheets in double precision at a selection of the points, and says whether they are at most of them.
+/// Looks for near sheets in double precision at a selection of the points. Returns whether more than half of these have one.
 fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -> bool {
-    /// Farther sheets need no particles that are nearer to theirs than usual.
+    /// Largest distance, in grid spacings, at which the tolerance of particles depends on another sheet.
     const MOST: f32 = 0.01;
-    /// Share of the points. Beside a curve in which sheets cross there are fewer.
-    const LEAST_SHARE: usize = 50;
+    /// Near sheets count if at least one point in so many is beside one. Beside a curve in which sheets cross there are fewer.
+    const ONE_IN: usize = 50;
     let stride = out.position.len().div_ceil(SAMPLES).max(1);
     let points: Vec<DVec3> = out.position.iter().step_by(stride).map(|p| p.as_dvec3()).collect();
     let (found, count) = nearest(field, points.iter().copied(), f64::from(MOST * spacing));
-    out.nearness = found.filter(|_| count * LEAST_SHARE >= points.len());
+    out.nearness = found.filter(|_| count * ONE_IN >= points.len());
     if let Some(Nearness { gap, third, slope, .. }) = out.nearness {
         // At the sheets themselves f is far less steep than beside all of them.
         out.gradient_scale = out.gradient_scale.min(slope as f32);
@@ -514,6 +514,7 @@ fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -
 fn land_anew(field: &mut dyn Field, projector: &mut Projector, out: &mut Survey) {
     /// Far from several sheets at once each step goes only a part of the way.
     const STEPS: u32 = 3 * MAX_STEPS;
+    /// Longest way of a point, in residuals of the survey.
     const REACH: f32 = 8.0;
     let residual = out.accuracy().residual(f32::INFINITY);
     let reach = REACH * out.residual;
@@ -541,7 +542,8 @@ fn land_anew(field: &mut dyn Field, projector: &mut Projector, out: &mut Survey)
 impl Survey {
     /// How near this surface particles have to be.
     pub(crate) fn accuracy(&self) -> Accuracy {
-        /// Share of the crowding: of three sheets it is the distance of the third, or up to twice that.
+        /// Share of the crowding, which is the distance of the nearest other sheet or up to twice that: a particle stays within a
+        /// fifth of the way there.
         const SHARE: f32 = 0.1;
         let gap = self.nearness.map_or(f32::INFINITY, |near| near.gap as f32);
         Accuracy { finest: self.resolution, coarsest: SHARE * self.crowding.min(gap) }

@@ -26,8 +26,10 @@ const MAX_LEVELS: u32 = 6;
 const LEAST_PARTICLES: u32 = 180;
 /// Largest product of coarse spacing and curvature: 0.89 has worked wherever it was tried, 1.45 once, 1.54 nowhere.
 const MAX_BEND: f64 = 0.9;
-/// Largest product of coarse spacing and curvature for a front that is refined once only. There is no finer front to choose, and the
-/// checks that follow judge whether it is good enough. With 2.3 it was on the chmutov, the rabbit and the figure with sack and hat, with 3.0 on the Clebsch cubic.
+/// Largest product of coarse spacing and curvature for a front that is refined once only. There is no finer front to choose, and
+/// the checks that follow judge whether it is good enough. With 2.3 it was on the chmutov, the rabbit and the figure with sack and
+/// hat, with
+/// 3.0 on the Clebsch cubic.
 const MAX_BEND_ONCE: f64 = 3.2;
 
 /// A coarse front must be joined to triangles in so many rounds of filling holes at most, this share of them beyond dispute, and no
@@ -35,15 +37,15 @@ const MAX_BEND_ONCE: f64 = 3.2;
 const MAX_ROUNDS: u32 = 2;
 const LEAST_AGREED: f64 = 0.9;
 const MAX_LEFT_OUT: f64 = 0.002;
-/// At most this share of edges has normals at its ends whose dot product is below [`SHARP`], 60° apart. The gyroid, which bends in two
-/// directions everywhere, has 4 % where [`MAX_BEND`] is met just so. It may be more where the front is refined once only and there is no
-/// finer one: with 4,000 particles 90 % of those on the gyroid then have six neighbours, instead of 69 %.
+/// At most this share of edges has normals at its ends whose dot product is below [`SHARP`], 60° apart. The gyroid, which bends in
+/// two directions everywhere, has 4 % where [`MAX_BEND`] is met just so. It may be more where the front is refined once only and
+/// there is no finer one: with 4,000 particles 90 % of those on the gyroid then have six neighbours, instead of 69 %.
 const MAX_SHARP: f64 = 0.06;
 const MAX_SHARP_ONCE: f64 = 0.15;
 const SHARP: f32 = 0.5;
-/// At most this share of a coarse front lies on the border, where there is a finer one: a strip of a few rows between two borders has no
-/// room for a lattice.
-/// Schwarz's D surface with 0.38 had a hole of 1.5, with 0.21 one of 1.28; a plane across the box has 0.23.
+/// At most this share of a coarse front lies on the border, where there is a finer one: a strip of a few rows between two borders
+/// has no room for a lattice. Schwarz's D surface with 0.38 had a hole of 1.5, with 0.21 one of 1.28; a plane across the box has
+/// 0.23.
 const MAX_BORDER: f64 = 0.3;
 
 /// Largest curvature at each of some points of the surface; infinite where there is none.
@@ -56,24 +58,24 @@ pub(crate) fn largest_curvatures(field: &mut dyn Field, points: &[Vec3]) -> Vec<
 
 /// How often a front can be refined that has `count` particles in the end, where the spacing times the largest curvature is
 /// `bend`; `None` if not once. Sizes that differ take a front with four times as many particles, in which there is room for them: on the
-/// ellipsoid that gains 0.5° of the mean angle and costs 0.4 % of the particles with six neighbours. Surgery on a front at full resolution does not pay: on the decocube with 20,000 particles it leaves
-/// pairs at 0.42 of the ideal distance.
-pub(crate) fn levels(bend: f64, count: f64, is_graded: bool) -> Option<u32> {
-    let particles = |levels: u32| count / f64::from(1_u32 << (2 * levels));
-    let is_large = |levels: u32| particles(levels) >= f64::from(LEAST_PARTICLES);
-    let is_coarse = |&levels: &u32| bend * f64::from(1_u32 << levels) <= MAX_BEND && is_large(levels);
+/// ellipsoid that gains 0.5° of the mean angle and costs 0.4 % of the particles with six neighbours. A front at full resolution is no
+/// choice: on the decocube with 20,000 particles surgery on it leaves pairs at 0.42 of the ideal distance.
+pub(crate) fn halvings(bend: f64, count: f64, is_graded: bool) -> Option<u32> {
+    let particles = |halvings: u32| count / f64::from(1_u32 << (2 * halvings));
+    let is_large = |halvings: u32| particles(halvings) >= f64::from(LEAST_PARTICLES);
+    let is_coarse = |&halvings: &u32| bend * f64::from(1_u32 << halvings) <= MAX_BEND && is_large(halvings);
     let once = || (2.0 * bend <= MAX_BEND_ONCE && is_large(1)).then_some(1);
-    let levels = (1..=MAX_LEVELS).rev().find(is_coarse).or_else(once)?;
-    Some(if is_graded { (levels - 1).max(1) } else { levels })
+    let halvings = (1..=MAX_LEVELS).rev().find(is_coarse).or_else(once)?;
+    Some(if is_graded { (halvings - 1).max(1) } else { halvings })
 }
 
-/// The particles of a front joined to a surface, if that can be had beyond doubt, and clipped by the box. Particles in no triangle are
-/// left out. The front is to be refined so many times.
+/// The particles of a front joined to a surface, if that can be had beyond doubt, and clipped by the box. Particles in no triangle
+/// are left out. The front is to be refined so many times.
 pub(super) fn join(
     ground: &mut Ground,
     particles: &Particles,
     bounds: &Bounds,
-    levels: u32,
+    halvings: u32,
 ) -> Result<Layer, Refusal> {
     let radius = particles.radius.first().copied().unwrap_or(0.0);
     let spacing = 2.0 * radius;
@@ -83,7 +85,7 @@ pub(super) fn join(
     judge_triangles(&joined, particles, bounds)?;
     let mesh =
         HalfEdges::from_triangles(particles.len(), &joined.triangles).map_err(|_| doubtful(particles, 0))?;
-    judge_size(&mesh, particles, bounds, levels)?;
+    judge_size(&mesh, particles, bounds, halvings)?;
     let mut layer = Layer {
         mesh,
         position: particles.position.clone(),
@@ -93,8 +95,8 @@ pub(super) fn join(
         frame: Frame::new(bounds, &particles.position, spacing),
     };
     border::clip(&mut layer, ground, spacing)?;
-    judge_bend(&layer, if levels > 1 { MAX_SHARP } else { MAX_SHARP_ONCE })?;
-    if levels > 1 {
+    judge_bend(&layer, if halvings > 1 { MAX_SHARP } else { MAX_SHARP_ONCE })?;
+    if halvings > 1 {
         judge_border(&layer)?;
     }
     Ok(layer)
@@ -128,9 +130,14 @@ fn doubtful(particles: &Particles, v: u32) -> Refusal {
 }
 
 /// Judges the number of particles of each component that reaches into the box.
-fn judge_size(mesh: &HalfEdges, particles: &Particles, bounds: &Bounds, levels: u32) -> Result<(), Refusal> {
+fn judge_size(
+    mesh: &HalfEdges,
+    particles: &Particles,
+    bounds: &Bounds,
+    halvings: u32,
+) -> Result<(), Refusal> {
     // At full resolution there are no more to be had.
-    let least = if levels > 0 { LEAST_PARTICLES } else { 0 };
+    let least = if halvings > 0 { LEAST_PARTICLES } else { 0 };
     let mut is_met = vec![false; particles.len()];
     for root in 0..particles.len() as u32 {
         if is_met[root as usize] || !mesh.has_vertex(root) {
@@ -277,9 +284,9 @@ mod tests {
             (0.033, 719.0, None),
             (0.033, 179.0, None),
         ] {
-            assert_eq!(levels(bend, count, false), expected, "bend {bend}, count {count}");
-            let finer = expected.map(|levels: u32| (levels - 1).max(1));
-            assert_eq!(levels(bend, count, true), finer, "bend {bend}, count {count}, sizes that differ");
+            assert_eq!(halvings(bend, count, false), expected, "bend {bend}, count {count}");
+            let finer = expected.map(|halvings: u32| (halvings - 1).max(1));
+            assert_eq!(halvings(bend, count, true), finer, "bend {bend}, count {count}, sizes that differ");
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The components of a surface, each of which is refined as often as its own curvature and size allow.
 //!
-//! A first front covers all of them, with the radius at which each comes out well: the one that bends most, or is smallest, decides.
-//! For each component that may be coarser another front grows from one of its particles. The components are then refined level by
-//! level, the coarsest first.
+//! A first front covers all of them, with the radius at which each comes out well: the one that bends most, or is smallest,
+//! decides. For each component that may be coarser another front grows from one of its particles. The components are then refined
+//! level by level, the coarsest first.
 
-use super::coarse::{largest_curvatures, levels};
+use super::coarse::{halvings, largest_curvatures};
 use super::refusal::Refusal;
 use super::{Count, Refinement, Target, border};
 use crate::differential::{Curvature, curvatures};
@@ -17,8 +17,8 @@ use core::mem;
 use core::ops::RangeInclusive;
 use glam::Vec3;
 
-/// Area that a coarser front finds for a component, over that of the first one. Beyond, it has left something out or has crossed over
-/// to another component.
+/// Area that a coarser front finds for a component, over that of the first one. Beyond, it has left something out or has crossed
+/// over to another component.
 const AREA_RATIO: RangeInclusive<f64> = 0.9..=1.1;
 /// Particles copied in one slice of work.
 const SLICE: usize = 1_024;
@@ -38,7 +38,7 @@ struct Component {
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     component: usize,
-    levels: u32,
+    halvings: u32,
     /// A point of the component, and the unit normal there.
     seed: (Vec3, Vec3),
 }
@@ -53,8 +53,8 @@ pub(crate) struct Surface<'a> {
     pub(crate) sizing: Option<&'a Sizing>,
     /// Where it bends most.
     pub(crate) bend: Vec3,
-    /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is an end
-    /// to the attempts.
+    /// Number of refinements that could not go on. Each takes one level from every component that is tried anew, so that there is
+    /// an end to the attempts.
     pub(crate) failures: u32,
 }
 
@@ -66,9 +66,9 @@ impl Surface<'_> {
 
 /// The fronts from which a refinement begins, one after the other.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Fronts {
+pub(crate) struct CoarseFronts {
     components: Vec<Component>,
-    /// The next one is the last.
+    /// A stack: the next one to try is at its end.
     candidates: Vec<Candidate>,
     /// The particles of the first front, once another one begins.
     first: Particles,
@@ -84,21 +84,21 @@ pub(crate) enum Next {
     Refine(Box<Components>),
 }
 
-impl Fronts {
+impl CoarseFronts {
     /// Where the next front begins, if it covers one component only.
     pub(crate) fn seed(&self) -> Option<(Vec3, Vec3)> {
         self.candidates.last().map(|candidate| candidate.seed)
     }
 
-    /// Ends it all. Returns the particles of the first front, if another one has begun.
+    /// Gives up the candidates. Returns the particles of the first front, if another one has begun.
     pub(crate) fn end(&mut self) -> Option<Particles> {
         self.candidates.clear();
         let first = mem::take(&mut self.first);
         (!first.is_empty()).then_some(first)
     }
 
-    /// Takes in the front that has ended, with its `particles`, which is to be refined as `target` says. After the last one they are
-    /// those of the first.
+    /// Takes in a front that has ended. `target` says how it is to be refined. When no front is left to try, `particles` become
+    /// those of the first front again.
     ///
     /// # Errors
     ///
@@ -115,9 +115,9 @@ impl Fronts {
             Some(candidate) => self.take_coarser(field, surface, particles, target, candidate),
         }
         if let Some(candidate) = self.candidates.last() {
-            return Ok(Next::Front(candidate.levels));
+            return Ok(Next::Front(candidate.halvings));
         }
-        if self.components.iter().all(|component| component.refinement.target.levels == 0) {
+        if self.components.iter().all(|component| component.refinement.target.halvings == 0) {
             return Err(surface.bent());
         }
         let components = mem::take(&mut self.components);
@@ -139,7 +139,7 @@ impl Fronts {
         // Beyond the box there may be others.
         parts.retain(|part| part.position.iter().any(|&p| bounds.contains(p)));
         *self = Self { are_several: parts.len() > 1, ..Self::default() };
-        if target.levels == 0 && !self.are_several {
+        if target.halvings == 0 && !self.are_several {
             return Err(surface.bent());
         }
         for part in &parts {
@@ -149,13 +149,13 @@ impl Fronts {
             if self.are_several {
                 let largest = largest_curvatures(field, &part.position).into_iter().fold(0.0, f64::max);
                 let bend = largest * 2.0 * f64::from(target.radius);
-                let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.levels));
+                let count = (part.len() as f64) * f64::from(1_u32 << (2 * target.halvings));
                 let candidate = Candidate {
                     component: self.components.len(),
-                    levels: levels(bend, count, sizing.is_some()).unwrap_or(0).saturating_sub(failures),
+                    halvings: halvings(bend, count, sizing.is_some()).unwrap_or(0).saturating_sub(failures),
                     seed: (part.position[0], part.normal[0]),
                 };
-                if candidate.levels > target.levels {
+                if candidate.halvings > target.halvings {
                     self.candidates.push(candidate);
                 }
             }
@@ -198,8 +198,8 @@ impl Fronts {
             component.refinement = refinement;
             component.particles = particles.clone();
             component.particles.keep_within(&surface.bounds);
-        } else if tried.levels > known.target.levels + 1 {
-            self.candidates.push(Candidate { levels: tried.levels - 1, ..tried });
+        } else if tried.halvings > known.target.halvings + 1 {
+            self.candidates.push(Candidate { halvings: tried.halvings - 1, ..tried });
         }
     }
 }
@@ -264,8 +264,8 @@ fn density(field: &mut dyn Field, sizing: &Sizing, points: &[Vec3]) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     components: Vec<Component>,
-    /// The level under way, by how many come after it.
-    level: u32,
+    /// Number of levels after the one under way.
+    to_come: u32,
     /// The finished level of all components, while it is put together.
     joint: Option<Joint>,
 }
@@ -289,8 +289,8 @@ impl Components {
                 component.refinement.target.count = Count::Total(count * component.weight / sum);
             }
         }
-        let level = components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
-        Self { components, level, joint: None }
+        let to_come = components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
+        Self { components, to_come, joint: None }
     }
 
     /// Evaluations of the field so far.
@@ -303,16 +303,20 @@ impl Components {
         self.joint.is_none() && self.components.iter().all(|component| component.refinement.is_done())
     }
 
-    /// Fewest and most times that a front is refined.
-    pub(crate) fn times(&self) -> [u32; 2] {
-        let times = self.components.iter().map(|component| component.refinement.target.levels);
-        [times.clone().min().unwrap_or(0), times.max().unwrap_or(0)]
+    /// Halvings of the component that is refined least.
+    pub(crate) fn fewest_halvings(&self) -> u32 {
+        self.components.iter().map(|component| component.refinement.target.halvings).min().unwrap_or(0)
+    }
+
+    /// Halvings of the component that is refined most.
+    pub(crate) fn most_halvings(&self) -> u32 {
+        self.components.iter().map(|component| component.refinement.target.halvings).max().unwrap_or(0)
     }
 
     /// The level under way, counted from 1, and how many there are.
-    pub(crate) fn levels(&self) -> (u32, u32) {
+    pub(crate) fn level(&self) -> (u32, u32) {
         let to_come = self.components.iter().map(|component| component.refinement.to_come).max().unwrap_or(0);
-        let [_, most] = self.times();
+        let most = self.most_halvings();
         (most - to_come + 1, most + 1)
     }
 
@@ -366,8 +370,8 @@ impl Components {
             let pending = |component: &&mut Component| component.refinement.pending();
             let next = self.components.iter_mut().filter(|component| !component.refinement.is_done()).rev();
             let Some(component) = next.max_by_key(pending) else { break };
-            if component.refinement.pending() < self.level {
-                self.level -= 1;
+            if component.refinement.pending() < self.to_come {
+                self.to_come -= 1;
                 self.joint = Some(Joint::default());
                 continue;
             }
@@ -431,30 +435,30 @@ mod tests {
         let mut field = FormulaField::parse("x^2 + y^2 + z^2 = 1", &[]).expect("a formula");
         let bounds = Bounds::cube(1.5);
         let surface = Surface { bounds, points: Vec::new(), sizing: None, bend: Vec3::ZERO, failures: 0 };
-        let target = |levels| Target { levels, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
+        let target = |halvings| Target { halvings, radius: 0.03, grading: None, count: Count::PerCell(1.0) };
         let known = sphere(4_000);
         let refinement = Refinement::new(&mut field, &known, &bounds, target(1)).expect("a good front");
         let area = refinement.area();
-        let mut fronts = Fronts {
+        let mut fronts = CoarseFronts {
             components: vec![Component { refinement, area, weight: area, particles: known }],
             are_several: true,
-            ..Fronts::default()
+            ..CoarseFronts::default()
         };
         let seed = (Vec3::Z, Vec3::Z);
-        fronts.candidates.push(Candidate { component: 0, levels: 4, seed });
+        fronts.candidates.push(Candidate { component: 0, halvings: 4, seed });
         let mut tried = Vec::new();
         while let Some(candidate) = fronts.candidates.pop() {
-            tried.push(candidate.levels);
+            tried.push(candidate.halvings);
             assert!(tried.len() < 9, "{tried:?}");
             // Too few particles, and then enough.
-            let particles = sphere(if candidate.levels > 2 { 20 } else { 1_000 });
-            fronts.take_coarser(&mut field, &surface, &particles, target(candidate.levels), candidate);
+            let particles = sphere(if candidate.halvings > 2 { 20 } else { 1_000 });
+            fronts.take_coarser(&mut field, &surface, &particles, target(candidate.halvings), candidate);
         }
         assert_eq!(tried, [4, 3, 2]);
-        assert_eq!(fronts.components[0].refinement.target.levels, 2);
+        assert_eq!(fronts.components[0].refinement.target.halvings, 2);
         assert_eq!(fronts.components[0].particles.len(), 1_000);
         // None is tried that is no coarser than what there is.
-        let candidate = Candidate { component: 0, levels: 3, seed };
+        let candidate = Candidate { component: 0, halvings: 3, seed };
         fronts.take_coarser(&mut field, &surface, &sphere(20), target(3), candidate);
         assert!(fronts.candidates.is_empty());
         assert_eq!(fronts.components[0].particles.len(), 1_000);

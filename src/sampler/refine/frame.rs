@@ -21,7 +21,7 @@ impl Planes {
         Self(1 << plane)
     }
 
-    pub(super) fn is_none(self) -> bool {
+    pub(super) fn is_inner(self) -> bool {
         self.0 == 0
     }
 
@@ -68,7 +68,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The frame of particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond it.
+    /// The frame of particles none of which lies on a face yet. It does nothing if none is within a `spacing` of a face, or beyond
+    /// it.
     pub(super) fn new(bounds: &Bounds, position: &[Vec3], spacing: f32) -> Self {
         let at_least = |x: f64| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 };
         let at_most = |x: f64| -at_least(-x);
@@ -153,7 +154,7 @@ impl Frame {
         gradient: Vec3,
         longest: f32,
     ) -> Option<Vec3> {
-        let step = if planes.is_none() {
+        let step = if planes.is_inner() {
             let inverse_slope = 1.0 / gradient.length();
             gradient * inverse_slope * (value * inverse_slope)
         } else {

@@ -218,11 +218,7 @@ impl Layer {
             let (p, n) = (self.position[v as usize], self.normal[v as usize]);
             let mut step = step(self, v);
             let planes = self.frame.planes(v);
-            step = if planes == Planes::INNER {
-                step - n * step.dot(n)
-            } else {
-                self.frame.along(planes, n, step)
-            };
+            step = if planes.is_inner() { step - n * step.dot(n) } else { self.frame.along(planes, n, step) };
             let length = step.length();
             let farthest = MAX_MOVE * spacing * self.size_of(v);
             if length > farthest {
@@ -246,8 +242,8 @@ impl Layer {
         self.settle(ground, spacing);
     }
 
-    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the faces of
-    /// the box on which they lie. Those that could not be go back to where they were.
+    /// Brings the particles of the block back onto the surface, by one step of Newton's method along the gradient, and onto the
+    /// faces of the box on which they lie. Those that could not be go back to where they were.
     fn settle(&mut self, ground: &mut Ground, spacing: f32) {
         let Block { which, before, points, value, gradient, refused, evaluations, .. } = &mut *ground.block;
         let n = points.len();
@@ -336,5 +332,64 @@ impl Layer {
         let (q, m) = (self.position[b as usize], self.normal[b as usize]);
         let up = (n + m).normalize_or(n);
         ((p + q) * 0.5 + up * (0.125 * (q - p).dot(m - n)), up)
+    }
+
+    /// Difference between a particle's valence and the valence of a particle without a defect at that place.
+    #[inline]
+    pub(super) fn excess(&self, v: u32) -> i32 {
+        /// The valence of an inner particle without a defect.
+        const SIX: i32 = 6;
+        let valence = self.mesh.valence(v) as i32;
+        if self.frame.is_near() && self.mesh.is_border(v) {
+            valence - self.wanted_at_border(v)
+        } else {
+            valence - SIX
+        }
+    }
+
+    /// Place and faces of the particle into which two are merged, `a` into `b`: in the middle of two of a kind, else where that
+    /// stays which is bound to more faces.
+    pub(super) fn merged(&self, a: u32, b: u32) -> (Vec3, Planes) {
+        let [p, q] = [a, b].map(|v| self.position[v as usize]);
+        let [m, n] = [a, b].map(|v| self.frame.planes(v));
+        if m == n {
+            ((p + q) * 0.5, n)
+        } else if m.count() > n.count() {
+            (p, m)
+        } else {
+            (q, n)
+        }
+    }
+
+    /// Puts a particle, which may be the next new one, to a place on some faces.
+    pub(super) fn put(&mut self, v: u32, position: Vec3, normal: Vec3, planes: Planes) {
+        if self.position.len() == v as usize {
+            self.position.push(position);
+            self.normal.push(normal);
+            self.slots.push(Slots::default());
+            if self.is_graded() {
+                self.size.push(1.0);
+            }
+        }
+        self.position[v as usize] = position;
+        self.normal[v as usize] = normal;
+        self.frame.set(v, planes);
+    }
+
+    /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the
+    /// border is merged along the border only.
+    pub(super) fn can_merge(&self, h: u32) -> bool {
+        if !self.mesh.can_collapse(h) {
+            return false;
+        }
+        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.frame.planes(v));
+        if m.is_inner() && n.is_inner() {
+            return true;
+        }
+        if self.mesh.twin(h) != NONE {
+            // An inner particle goes to the border; the other way, the border would be moved.
+            return m.is_inner();
+        }
+        !(m.common(n).is_inner() || m.is_corner() && n.is_corner())
     }
 }

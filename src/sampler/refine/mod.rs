@@ -1,16 +1,16 @@
 //! The refinement of a coarse front: order is made where particles are few, and kept where they are many.
 //!
-//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends them. But dividing every face of
-//! a mesh into four adds no defect: old particles keep their neighbours, and those on the middles of edges have six. So the
-//! front marches with a radius 2ᵏ times as large, is joined to a mesh and brought into order there, where a few hundred particles cost
-//! next to nothing; and then every edge is halved, k times, with a few sweeps at each level.
+//! A front freezes the seams in where its grains meet, and no relaxation of all its particles mends them. But dividing every face
+//! of a mesh into four adds no defect: old particles keep their neighbours, and those on the middles of edges have six. So the
+//! front marches with a radius 2ᵏ times as large, is joined to a mesh and brought into order there, where a few hundred particles
+//! cost next to nothing; and then every edge is halved, k times, with a few sweeps at each level.
 //!
 //! * *Sweeps* move every particle by the springs to its neighbours, in the manner of Gauss and Seidel, and edges are flipped to
 //!   those of Delaunay.
 //! * *Surgery* tries one particle more or one fewer beside a defect. On a curved surface an even lattice has scars, lines of
 //!   particles with five and seven neighbours in turn, that grow as the spacing shrinks: M. J. Bowick, D. R. Nelson and A.
-//!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and
-//!   removes them where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G. Dueck and T.
+//!   Travesset, "Interacting topological defects on frozen topographies", Physical Review B 62, 2000. Surgery makes and removes
+//!   them where that lowers the energy. Early rounds also accept a loss, so that a scar can leave a bad place: G. Dueck and T.
 //!   Scheuer, "Threshold accepting", Journal of Computational Physics 90, 1990.
 //! * *Lloyd's method*, at the last level and near defects only, evens out the cells that the springs leave too small at fives and
 //!   too large at sevens: Q. Du, V. Faber and M. Gunzburger, "Centroidal Voronoi Tessellations", SIAM Review 41(4), 1999.
@@ -31,8 +31,8 @@ mod surgery;
 mod tally;
 
 pub(crate) use border::grown;
-pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, largest_curvatures, levels};
-pub(crate) use components::{Components, Fronts, Next, Surface};
+pub(crate) use coarse::{FRONT_RADIUS, MATCH_TOLERANCE, halvings, largest_curvatures};
+pub(crate) use components::{CoarseFronts, Components, Next, Surface};
 pub use refusal::{Place, Refusal};
 
 use crate::field::Field;
@@ -47,8 +47,8 @@ use rings::Rings;
 use surgery::{Aim, Surgeon};
 use tally::Tally;
 
-/// Area of the faces after a subdivision over that before. On a dome it grows, and on a saddle it shrinks, by 2.5 % on a gyroid as coarse
-/// as may be. Below, something was lost; above, two sheets have been joined.
+/// Area of the faces after a subdivision over that before. On a dome it grows, and on a saddle it shrinks, by 2.5 % on a gyroid as
+/// coarse as may be. Below, something was lost; above, two sheets have been joined.
 const AREA_GAIN: RangeInclusive<f64> = 0.95..=1.15;
 
 /// Share of faces missing or too many from which on the first level tries every particle. Defects alone cannot make up for
@@ -71,9 +71,9 @@ const CORNERS: usize = 6_144;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
     /// Levels to come after the coarse one, k.
-    pub(crate) levels: u32,
-    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at which as many of one size would cover
-    /// the surface.
+    pub(crate) halvings: u32,
+    /// Repulsion radius r of the particles of the last level; of sizes that differ, the one at which as many of one size would
+    /// cover the surface.
     pub(crate) radius: f32,
     /// Largest slope of the radius, where sizes differ.
     pub(crate) grading: Option<f32>,
@@ -97,8 +97,10 @@ struct Refinement {
     layer: Layer,
     block: Block,
     surgeon: Surgeon,
-    /// Particles near defects, in ascending order; half-edges of crowded particles, while these are thinned out.
+    /// Particles near defects, in ascending order.
     near: Vec<u32>,
+    /// Half-edges between crowded particles.
+    crowded: Vec<u32>,
     /// Levels still to come.
     to_come: u32,
     /// Wanted number of particles of the last level, once the surface has been measured.
@@ -130,16 +132,16 @@ enum Work {
     Divide(Subdivision),
     /// The particles of the finer level are put onto the surface, come to the number of those in its columns.
     Lift { coarse: Box<Layer>, ends: Vec<[u32; 2]> },
-    /// The corners of the finished mesh are named by their particles, come to the corner `next` of those before, of which `kept` belong
-    /// to a face. The particles are handed on with the last one.
+    /// The corners of the finished mesh are named by their particles, come to the corner `next` of those before, of which `kept`
+    /// belong to a face. The particles are handed on with the last one.
     Name { rings: Rings, next: usize, kept: usize },
     /// Nothing.
     Done,
 }
 
 impl Refinement {
-    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled, beyond which the
-    /// front has grown.
+    /// Joins the particles of a coarse front to a surface and begins to refine it. `bounds` is the box that is sampled, beyond
+    /// which the front has grown.
     ///
     /// # Errors
     ///
@@ -152,7 +154,7 @@ impl Refinement {
     ) -> Result<Self, Refusal> {
         let mut block = Block::default();
         let mut ground = Ground { field, block: &mut block };
-        let layer = coarse::join(&mut ground, particles, bounds, target.levels)?;
+        let layer = coarse::join(&mut ground, particles, bounds, target.halvings)?;
         Ok(Self::of_layer(layer, block, target))
     }
 
@@ -165,12 +167,13 @@ impl Refinement {
             layer,
             block,
             surgeon: Surgeon::default(),
-            to_come: target.levels,
+            to_come: target.halvings,
             wanted: 0.0,
             spacing: 0.0,
             faces: 0.0,
-            recipe: Recipe::of(target.levels, target.levels, target.grading.is_some(), has_border),
+            recipe: Recipe::of(target.halvings, target.halvings, target.grading.is_some(), has_border),
             near: Vec::new(),
+            crowded: Vec::new(),
             tally: Tally::default(),
             area_before: None,
             work: Work::Done,
@@ -215,8 +218,9 @@ impl Refinement {
         coarse_share(self.to_come) * (1.0 + 3.0 * at)
     }
 
-    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays there
-    /// until the next one is. Where sizes differ, `sizing` has them. Returns the units done and whether `particles` has changed.
+    /// Does `budget` units of work, or as many more as end a block. A level that is finished is put into `particles` and stays
+    /// there until the next one is. Where sizes differ, `sizing` has them. Returns the units done and whether `particles` has
+    /// changed.
     ///
     /// # Errors
     ///
@@ -303,13 +307,13 @@ impl Refinement {
         let Some(&kind) = self.recipe.passes.get(pass) else {
             // Before the columns of the finished level take their place.
             self.surgeon = Surgeon::default();
-            self.near = Vec::new();
+            (self.near, self.crowded) = (Vec::new(), Vec::new());
             return Work::Show(Rings::new(&self.layer));
         };
         let end = match kind {
             Pass::Flip => mesh.half_edge_slots(),
             Pass::Thin => {
-                self.near.clear();
+                self.crowded.clear();
                 mesh.half_edge_slots()
             }
             Pass::Measure | Pass::Inspect => {
@@ -364,7 +368,7 @@ impl Refinement {
             Pass::Sweep => layer.relax(&mut ground, springs, next..last),
             Pass::Flip => layer.flip(next..last),
             Pass::Mend { loss } => {
-                let slack = if self.to_come == self.target.levels { SLACK } else { f32::INFINITY };
+                let slack = if self.to_come == self.target.halvings { SLACK } else { f32::INFINITY };
                 let aim = Aim { springs, delta: self.recipe.delta, faces: self.faces, slack, loss };
                 for v in next..last {
                     units += TRIAL_UNITS * u32::from(self.surgeon.mend(layer, &mut ground, aim, v));
@@ -383,7 +387,7 @@ impl Refinement {
                 let near = self.near[next as usize..last as usize].iter().copied();
                 layer.centre(&mut ground, springs, near);
             }
-            Pass::Thin => self.near.extend((next..last).filter(|&h| layer.is_crowded(h, self.spacing))),
+            Pass::Thin => self.crowded.extend((next..last).filter(|&h| layer.is_crowded(h, self.spacing))),
             Pass::Land => {
                 layer.land(&mut ground, self.spacing, next..last);
             }
@@ -410,7 +414,7 @@ impl Refinement {
                 Ok(())
             }
             Pass::Thin => {
-                self.layer.thin(&mut self.near, self.spacing);
+                self.layer.thin(&mut self.crowded, self.spacing);
                 Ok(())
             }
             Pass::Inspect => {
@@ -500,13 +504,13 @@ impl Refinement {
         }
         self.to_come -= 1;
         self.recipe =
-            Recipe::of(self.target.levels, self.to_come, self.target.grading.is_some(), self.has_border);
+            Recipe::of(self.target.halvings, self.to_come, self.target.grading.is_some(), self.has_border);
         Ok((self.begin_pass(0), BLOCK as u32))
     }
 }
 
 /// Share of the work that is done when a front is placed that has so many levels to come, each of which takes four times as
 /// long as the one before.
-pub(crate) fn coarse_share(levels: u32) -> f64 {
-    1.0 / f64::from(1_u32 << (2 * (levels + 1)))
+pub(crate) fn coarse_share(halvings: u32) -> f64 {
+    1.0 / f64::from(1_u32 << (2 * (halvings + 1)))
 }

@@ -5,7 +5,7 @@ use super::sizes::WHOLE;
 /// One pass over the particles, the half-edges or the faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Pass {
-    /// Takes the sizes from the radius field, so many quarters of the way from one size everywhere.
+    /// Takes the sizes from the radius field, to the power of so many quarters.
     Size(u8),
     /// Limits the slope of the sizes, from the first particle to the last one or back.
     Limit { back: bool },
@@ -60,18 +60,18 @@ struct Plan {
     loss: f32,
 }
 
-/// The first round of surgery accepts trials that lose up to the `loss` of the plan, each later round less, and from this share of the
-/// rounds on none does. A scar in a bad place can so pass through a worse one to a better: threshold accepting, G. Dueck and T. Scheuer,
-/// Journal of Computational Physics 90, 1990.
+/// The first round of surgery accepts trials that lose up to the `loss` of the plan, each later round less, and from this share of
+/// the rounds on none does. A scar in a bad place can so pass through a worse one to a better: threshold accepting, G. Dueck and T.
+/// Scheuer, Journal of Computational Physics 90, 1990.
 const LOSING_ROUNDS: f32 = 0.7;
 
 /// The first level. Its particles are few, and what is mended here holds on every finer level.
 const FIRST: Plan =
     Plan { sweeps: 10, rounds: 20, calm: 3, centre: 0, theta: 0.8, omega: 1.5, delta: 0.02, loss: 0.0 };
-/// The levels between, on which scars grow. Ten rounds that accept losses, in place of five that do not, gain 0.2° to 0.3° of the mean
-/// smallest angle with 56,000 particles on ellipsoid, sphere and torus, for a sixth more evaluations. Longer rest lengths than those of
-/// the first level keep distances and holes even: the closest pair on the ellipsoid is at 0.80 of the ideal instead of 0.78, for 0.1° of
-/// the mean angle.
+/// The levels between, on which scars grow. Ten rounds that accept losses, in place of five that do not, gain 0.2° to 0.3° of the
+/// mean smallest angle with 56,000 particles on ellipsoid, sphere and torus, for a sixth more evaluations. Longer rest lengths than
+/// those of the first level keep distances and holes even: the closest pair on the ellipsoid is at 0.80 of the ideal instead of
+/// 0.78, for 0.1° of the mean angle.
 const MIDDLE: Plan =
     Plan { sweeps: 4, rounds: 10, calm: 2, centre: 0, theta: 0.9, omega: 1.5, delta: 0.015, loss: 0.06 };
 /// The last level but one, where surgery costs most.
@@ -80,37 +80,40 @@ const LAST_BUT_ONE: Plan =
 /// The last level: surgery would add more defects than it takes.
 const LAST: Plan =
     Plan { sweeps: 4, rounds: 0, calm: 0, centre: 3, theta: 0.98, omega: 1.5, delta: 0.0, loss: 0.0 };
-/// Where a front is refined so many times at most, the surface bends much between neighbours. Defects are then dearer, and the first level
-/// accepts losses, since there is no level between: on the decocube with 20,000 particles, refined once, 96.6 % instead of 96.5 % have six
-/// neighbours and the mean smallest angle is 55.9° instead of 55.8°, but the closest pair is at 0.75 instead of 0.78. Defects lie nearer to each other on the last level, where Lloyd's method would
-/// stretch the triangles between them: two steps do, and a stiffer lattice.
+/// A front that is refined so many times at most has a surface that bends much between neighbours, and plans of its own.
 const FEW_LEVELS: u32 = 2;
+/// Defects are dearer, and losses are accepted here, since there is no level between. On the decocube with 20,000 particles,
+/// refined once,
+/// 96.6 % instead of 96.5 % have six neighbours and the mean smallest angle is 55.9° instead of 55.8°, but the closest pair is at
+/// 0.75 instead of 0.78.
 const FIRST_OF_FEW: Plan = Plan { delta: 0.03, loss: 0.03, ..FIRST };
 const LAST_BUT_ONE_OF_FEW: Plan = Plan { loss: 0.02, ..LAST_BUT_ONE };
+/// Defects lie nearer to each other, and Lloyd's method would stretch the triangles between them: fewer steps of it, and a stiffer
+/// lattice.
 const LAST_OF_FEW: Plan = Plan { sweeps: 6, centre: 2, theta: 0.93, ..LAST };
 /// The last level of a front that is refined once: stiffer springs do more for the angles than they cost the closest pairs. On the
-/// decocube with 20,000 particles the mean smallest angle is 55.8° instead of 55.3° and no triangle is above 90° instead of ten, with the
-/// closest pair at 0.777 instead of 0.786.
+/// decocube with 20,000 particles the mean smallest angle is 55.8° instead of 55.3° and no triangle is above 90° instead of ten,
+/// with the closest pair at 0.777 instead of 0.786.
 const LAST_OF_ONE: Plan = Plan { theta: 0.7, ..LAST_OF_FEW };
-/// The last two levels of a surface with a border. Those that repeat in space are saddles throughout, with three times the defects of a
-/// closed surface. In the strain between these, stiffer springs and cheaper defects do more for the angles than Lloyd's method, which is
-/// left to the border. On the gyroid with 20,000 particles the mean smallest angle is 55.6° instead of 54.4°, and the largest hole 1.32
-/// instead of 1.24; on Schwarz's surface 56.5° instead of 55.3°, and 1.28 instead of 1.21.
+/// The last two levels of a surface with a border. Those that repeat in space are saddles throughout, with three times the defects
+/// of a closed surface. In the strain between these, stiffer springs and cheaper defects do more for the angles than Lloyd's
+/// method, which is left to the border. On the gyroid with 20,000 particles the mean smallest angle is 55.6° instead of 54.4°, and
+/// the largest hole 1.32 instead of 1.24; on Schwarz's surface 56.5° instead of 55.3°, and 1.28 instead of 1.21.
 const LAST_BUT_ONE_WITH_BORDER: Plan = Plan { rounds: 8, theta: 0.8, delta: 0.002, ..LAST_BUT_ONE };
 const LAST_WITH_BORDER: Plan = Plan { sweeps: 6, centre: 4, theta: 0.65, ..LAST };
 
 /// Steps in which the first level goes from one size to those of the radius field. At once, neighbours would tangle.
 const BLEND: u8 = WHOLE;
-/// Sweeps and rounds of surgery in each of them; in the last one come those of the plan. With six rounds the distances spread by 0.061 on
-/// the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
+/// Sweeps and rounds of surgery in each of them; in the last one come those of the plan. With six rounds the distances spread by
+/// 0.061 on the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
 const BLEND_SWEEPS: usize = 3;
 const BLEND_ROUNDS: usize = 2;
-/// What differs from the plans where sizes differ: fewer rounds at the end of the first level, dearer defects there, and springs at the others that keep the lattice stiff
-/// in shear, which on the ellipsoid gains 0.2° of the mean angle.
+/// What differs from the plans where sizes differ: fewer rounds at the end of the first level, dearer defects there, and springs at
+/// the others that keep the lattice stiff in shear, which on the ellipsoid gains 0.2° of the mean angle.
 const GRADED_ROUNDS: usize = 16;
 const GRADED_THETA: f32 = 0.8;
-/// Passes that limit the slope of the sizes: there and back, twice. What is far in that order is near on the surface at some pass, since
-/// the order is breadth first.
+/// Passes that limit the slope of the sizes: there and back, twice. What is far in that order is near on the surface at some pass,
+/// since the order is breadth first.
 const LIMITS: usize = 4;
 
 impl Plan {
@@ -123,13 +126,13 @@ impl Plan {
 
 impl Recipe {
     /// The recipe of a level with so many to come of all `levels`, of one size or of sizes that differ, with a border or without.
-    pub(super) fn of(levels: u32, to_come: u32, is_graded: bool, has_border: bool) -> Self {
-        let (is_first, are_few) = (to_come == levels, levels <= FEW_LEVELS);
+    pub(super) fn of(halvings: u32, to_come: u32, is_graded: bool, has_border: bool) -> Self {
+        let (is_first, are_few) = (to_come == halvings, halvings <= FEW_LEVELS);
         let mut plan = match (is_first, to_come) {
             (true, _) if are_few => FIRST_OF_FEW,
             (true, _) => FIRST,
             (false, 0) if has_border => LAST_WITH_BORDER,
-            (false, 0) if levels == 1 => LAST_OF_ONE,
+            (false, 0) if halvings == 1 => LAST_OF_ONE,
             (false, 0) if are_few => LAST_OF_FEW,
             (false, 0) => LAST,
             (false, 1) if has_border => LAST_BUT_ONE_WITH_BORDER,

@@ -33,8 +33,8 @@ impl Rings {
         Self { order: Vec::with_capacity(n), place: vec![NONE; n], next: 0, root: 0, is_walked: false, ready }
     }
 
-    /// Goes on for a slice. Returns whether the particles of the layer are all there, with this radius where their size is 1. Only then
-    /// are they handed on, so that a run that is cancelled has a whole level.
+    /// Goes on for a slice. Returns whether the particles of the layer are all there, with this radius where their size is 1. Only
+    /// then are they handed on, so that a run that is cancelled has a whole level.
     pub(super) fn step(&mut self, layer: &Layer, radius: f32) -> bool {
         if !self.is_walked {
             self.is_walked = !(0..SLICE).all(|_| self.walk(layer));

@@ -13,14 +13,13 @@ const RINGS: u32 = 2;
 const SWEEPS: u32 = 4;
 /// Their over-relaxation: less than in sweeps over all particles, since the patch must come to rest within a few.
 const OMEGA: f32 = 1.3;
-/// Where no loss is accepted, a trial is kept if it gains more than this, in units of the spacing squared: less is noise of the sweeps.
+/// Where no loss is accepted, a trial is kept if it gains more than this, in units of the spacing squared: less is noise of the
+/// sweeps.
 const LEAST_GAIN: f32 = 5e-4;
 /// What a particle costs, in units of the spacing squared, for each share of faces above the wanted number.
 const COUNT_PRICE: f32 = 20.0;
-/// The valence of a particle without a defect.
-const SIX: usize = 6;
-/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. With 0.75
-/// and 1.3 the distances on the ellipsoid spread by 0.058, with these by 0.053.
+/// Where sizes differ, a particle without a defect is tried as well if its edges are so much too short or too long on average. With
+/// 0.75 and 1.3 the distances on the ellipsoid spread by 0.058, with these by 0.053.
 const CROWDED: f32 = 0.96;
 const SPARSE: f32 = 1.04;
 
@@ -28,7 +27,7 @@ const SPARSE: f32 = 1.04;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     pub(super) springs: Springs,
-    /// Price δ of a defect, in units of the spacing squared: δ Σ (valence − 6)².
+    /// Price δ of a defect, in units of the spacing squared: δ Σ (valence − wanted)².
     pub(super) delta: f32,
     /// Wanted number of faces.
     pub(super) faces: f32,
@@ -101,8 +100,8 @@ impl Surgeon {
         true
     }
 
-    /// Does the operation, relaxes what is around it, and takes all back unless that has paid; whether it has. `size` is that of the
-    /// particles there.
+    /// Does the operation, relaxes what is around it, and takes all back unless that has paid; whether it has. `size` is that of
+    /// the particles there.
     pub(super) fn attempt(
         &mut self,
         layer: &mut Layer,
@@ -223,8 +222,8 @@ impl Surgeon {
         sum
     }
 
-    /// Does the operation. Returns the particle at which it was done, the change of Σ (valence − wanted)² and the number of particles
-    /// added; one on the border counts half, as it has half the faces.
+    /// Does the operation. Returns the particle at which it was done, the change of Σ (valence − wanted)² and the number of
+    /// particles added; one on the border counts half, as it has half the faces.
     fn operate(&mut self, layer: &mut Layer, operation: Operation) -> (u32, i32, f32) {
         match operation {
             Operation::Collapse(h) => {
@@ -294,8 +293,8 @@ impl Surgeon {
         }
     }
 
-    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence − 6)². An edge must keep an end in
-    /// the patch, else its energy would be lost.
+    /// Flips the edges of the patch that are not Delaunay's; returns the change of Σ (valence − wanted)². An edge must keep an end
+    /// in the patch, else its energy would be lost.
     fn flip(&mut self, layer: &mut Layer) -> i32 {
         let mut change = 0;
         for &h in &self.edges {
@@ -328,11 +327,11 @@ fn badness(layer: &Layer, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// What may help at `v`: one particle fewer where it has less than six neighbours, one more where it has more. With six, the number of
-/// faces decides, where it is far from the wanted one; or its edges, where sizes differ.
+/// What may help at `v`: one particle fewer where it has less than six neighbours, one more where it has more. With six, the number
+/// of faces decides, where it is far from the wanted one; or its edges, where sizes differ.
 fn wish(layer: &Layer, aim: Aim, v: u32) -> Option<Wish> {
     let shortage = 1.0 - layer.mesh.faces() as f32 / aim.faces;
-    match layer.mesh.valence(v).cmp(&SIX) {
+    match layer.excess(v).cmp(&0) {
         Ordering::Less => Some(Wish::OneFewer),
         Ordering::Greater => Some(Wish::OneMore),
         Ordering::Equal if shortage.abs() >= aim.slack => {

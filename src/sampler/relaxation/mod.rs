@@ -41,10 +41,6 @@ use crate::sampler::relaxation::stepper::{Stepper, batches};
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
-/// No correction is trusted: near a bend the energy depends on the normal, so the normal is evaluated again at the
-/// final position; and near another sheet a short correction may lead far away.
-const TRUST_NONE: f32 = f32::MIN_POSITIVE;
-
 /// Units of work that the renewal of a list counts for: it takes ten times as long as the forces on a particle.
 const RENEWAL_UNITS: u32 = 10;
 
@@ -150,9 +146,9 @@ impl Relaxation {
         self.stepper.clear();
     }
 
-    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. A particle that moves
-    /// by more than `largest_lift` has left its sheet; if that is finite, particles of different sheets that face the same way do not
-    /// repel each other.
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. A particle that
+    /// moves by more than `largest_lift` has left its sheet; if that is finite, particles of different sheets that face the same
+    /// way do not repel each other.
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
@@ -177,9 +173,10 @@ impl Relaxation {
         let is_first = self.stepper.energy().is_empty();
         self.stepper.begin((bounds, largest_lift), particles, law.first_step(), law.resizes());
         self.lists.reset(particles);
-        let are_told = sheets.is_empty();
         self.lists.sheets = sheets;
-        self.phase = if pairs.len() == particles && is_first && are_told && self.purpose != Purpose::End {
+        // The front's lists may hold pairs on two near sheets.
+        let are_lists_right = pairs.len() == particles && is_first && self.lists.sheets.is_empty();
+        self.phase = if are_lists_right && self.purpose != Purpose::End {
             self.after_lists()
         } else {
             pairs.extend_to(particles);
@@ -339,12 +336,14 @@ impl Relaxation {
         let mut landing = LandingBatch::new();
         for range in batches(range) {
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
-            landing.trust = if is_checked { TRUST_NONE } else { TRUSTED_CORRECTION };
+            // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another sheet a
+            // short correction may lead far away.
+            landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
             match phase {
                 Phase::Move => stepper.advance(law, particles, range.clone(), &mut landing),
                 Phase::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),
                 _ => {
-                    landing.trust = 0.0;
+                    (landing.trust, landing.renews_radii) = (0.0, true);
                     landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
                 }
             }

@@ -35,9 +35,10 @@ pub(crate) const TRUSTED_CORRECTION: f32 = 0.02;
 pub(crate) struct LandingBatch {
     /// Number of particles.
     pub(crate) count: usize,
-    /// A Newton correction shorter than this, in radii, is not checked by another evaluation. With 0 all radii are
-    /// brought up to date.
+    /// A Newton correction shorter than this, in radii, is not checked by another evaluation.
     pub(crate) trust: f32,
+    /// Whether all radii are brought up to date.
+    pub(crate) renews_radii: bool,
     pub(crate) position: [Vec3; BATCH],
     pub(crate) normal: [Vec3; BATCH],
     /// Radius, where radii change.
@@ -53,6 +54,7 @@ impl LandingBatch {
         Self {
             count: 0,
             trust: 0.0,
+            renews_radii: false,
             position: [Vec3::ZERO; BATCH],
             normal: [Vec3::ZERO; BATCH],
             radius: [0.0; BATCH],
@@ -91,7 +93,7 @@ pub(crate) trait Repulsion {
     fn pairs(&self, distance_sq: Vec4, mean: Vec4) -> (Vec4, Vec4);
 
     /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the
-    /// particles that have travelled far since that was done last or, where `landing.trust` is 0, of all.
+    /// particles that have travelled far since that was done last, or of all.
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch);
 }
 
@@ -242,7 +244,8 @@ impl Repulsion for Overlap<'_> {
     fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch) {
         let (n, trust) = (landing.count, landing.trust);
         // Particles whose radius is due come first: only they need a Hessian.
-        let is_due = |k: usize| trust <= 0.0 || landing.radius_travel[k] > RADIUS_LASTS * landing.radius[k];
+        let is_due =
+            |k: usize| landing.renews_radii || landing.radius_travel[k] > RADIUS_LASTS * landing.radius[k];
         let mut order = [0; BATCH];
         let mut due = 0;
         for k in (0..n).filter(|&k| is_due(k)) {

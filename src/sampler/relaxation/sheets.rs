@@ -4,7 +4,8 @@ use crate::particles::Particles;
 use crate::sampler::discovery::sheets::lift;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 
-/// Returns a number for each particle, equal for those of one front, and of fronts that meet: that have two neighbours whose lift is at most
+/// Returns a number for each particle, equal for those of one front, and of fronts that meet: that have two neighbours whose lift
+/// is at most
 /// `largest_lift`.
 pub(super) fn numbers(largest_lift: f32, particles: &Particles, neighbours: &PackedNeighbours) -> Vec<u32> {
     let mut number = particles.fronts();

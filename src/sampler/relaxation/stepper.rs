@@ -64,8 +64,8 @@ impl Stepper {
         self.energy.clear();
     }
 
-    /// Prepares for more steps of particles in `bounds`, which have left their sheet above `largest_lift`; `first_size` is the size of
-    /// the first step of a run.
+    /// Prepares for more steps of particles in `bounds`, which have left their sheet above `largest_lift`; `first_size` is the size
+    /// of the first step of a run.
     pub(super) fn begin(
         &mut self,
         (bounds, largest_lift): (&Bounds, f32),
@@ -100,7 +100,7 @@ impl Stepper {
         self.largest_lift < f32::INFINITY
     }
 
-    /// Returns whether the energy has been measured where the particles were when the relaxation began.
+    /// Returns whether the energy before the next step is known.
     pub(super) fn has_begun(&self) -> bool {
         self.energy.len() > self.done as usize
     }
@@ -235,8 +235,8 @@ impl Stepper {
         }
     }
 
-    /// Lands those particles from `first` on, that have not come to the surface or to another sheet of it, nearer to where they were, on the
-    /// way to the `goal`. Those that still leave their sheet then are not ok.
+    /// Lands the particles of the batch that missed the surface, or came to another sheet of it, anew: nearer to where they were,
+    /// on the way to the `goal`. `first` is the index of the first of the batch. Those that fail each time are not ok.
     fn land_nearer<L: Repulsion>(
         &self,
         law: &L,
@@ -253,7 +253,7 @@ impl Stepper {
         for _ in 0..HALVINGS {
             share *= 0.5;
             let mut again = LandingBatch::new();
-            again.trust = landing.trust;
+            (again.trust, again.renews_radii) = (landing.trust, landing.renews_radii);
             let mut which = [0; BATCH];
             for k in (0..landing.count).filter(|&k| has_left(landing, k)) {
                 let (m, i) = (again.count, first + k);

@@ -313,14 +313,14 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
 
 /// A factor of the field, whose zeros are among those of the field, compiled for boxes.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct Factor {
     /// The factor and its gradient, with the whole field as result 4.
     pub(super) first: BoxProgram,
     /// The second derivatives of the factor; `None` if they take more than [`MAX_SECOND_OPERATIONS`].
     pub(super) second: Option<BoxProgram>,
 }
 
-impl Part {
+impl Factor {
     /// Recomputes the bounds of what depends on the parameters alone.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.first.set_parameters(parameters);
@@ -334,13 +334,13 @@ impl Part {
 const MAX_SECOND_OPERATIONS: usize = 8_192;
 
 /// Maximum number of factors. A product of more is taken as one function.
-const MAX_PARTS: usize = 16;
+const MAX_FACTORS: usize = 16;
 
 /// The functions whose zeros together are those of `root`.
 ///
 /// A product is taken apart into its factors, a power into its base, and a function that vanishes only at 0 into its
 /// argument. A factor is simpler than the product, and it has a gradient where two factors vanish together.
-pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part> {
+pub(super) fn factors(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Factor> {
     let mut factors = Vec::new();
     let mut open = vec![root];
     while let Some(id) = open.pop() {
@@ -365,7 +365,7 @@ pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part>
             _ => factors.push(id),
         }
     }
-    if factors.is_empty() || factors.len() > MAX_PARTS {
+    if factors.is_empty() || factors.len() > MAX_FACTORS {
         factors = vec![root];
     }
     factors
@@ -377,7 +377,7 @@ pub(super) fn parts(graph: &mut Graph, root: Id, gradient: [Id; 3]) -> Vec<Part>
                 .then(|| derivative::hessian(graph, [x, y, z]))
                 .map(|second| BoxProgram::compile(graph, &second))
                 .filter(|second| second.operations() <= MAX_SECOND_OPERATIONS);
-            Part { first, second }
+            Factor { first, second }
         })
         .collect()
 }

@@ -434,8 +434,8 @@ impl LevelFront for AdaptiveFront {
     }
 }
 
-/// Whether a particle at `offset` with the normal `other` lies on the sheet of the point `from`, which faces the same way: it is not
-/// doubtful, or the field between them says so.
+/// Whether a particle at `offset` with the normal `other` lies on the sheet of the point `from`, which faces the same way: it is
+/// not doubtful, or the field between them says so.
 fn is_on_sheet(
     sheets: SheetRule,
     field: &mut dyn Field,

@@ -51,8 +51,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest radius of
-    /// the law.
+    /// Limits the radius that the sizing law gives to what the particles around allow: never less than `least`, the smallest radius
+    /// of the law.
     fn graded(&self, radius: f32, least: f32) -> f32 {
         let largest = if self.largest > least { self.largest } else { least };
         // NaN stays.
@@ -231,7 +231,8 @@ impl DirectPlacement {
         }
         a.last = [a.distance, radius];
         let circle = Circle { radius: a.distance, ..proposal.circle };
-        // In shares of the distance: a clamp between numbers that are not constants can panic with them in words.
+        // The limits are constants, in shares of the distance: with others `clamp` can panic, and its message would have to be
+        // linked.
         let pull = (-touch / ((1.0 - a.slope) * a.distance)).clamp(-MAX_PULL, MAX_PULL) * a.distance;
         let radial = (position - circle.centre) / a.distance;
         let derivative = gradient.dot(circle.tangent(a.turn));

@@ -1,8 +1,8 @@
 //! Clips a coarse mesh that reaches beyond the box.
 //!
-//! Every edge that crosses a face of the box is split where the surface, the face and, for an edge of the border, the face on which it
-//! runs meet. Faces of the mesh with a vertex beyond the box are then dropped. Since no edge crosses any more, what is left is a manifold
-//! with every border vertex on the box. Its short edges, which the cuts have made, are collapsed.
+//! Every edge that crosses a face of the box is split where the surface, the face and, for an edge of the border, the face on which
+//! it runs meet. Faces of the mesh with a vertex beyond the box are then dropped. Since no edge crosses any more, what is left is a
+//! manifold with every border vertex on the box. Its short edges, which the cuts have made, are collapsed.
 
 use super::super::frame::Planes;
 use super::super::layer::{Ground, Layer};
@@ -10,7 +10,6 @@ use super::super::refusal::Refusal;
 use super::land_on;
 use crate::math::Bounds;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
-use crate::particles::Slots;
 use glam::Vec3;
 
 /// Spacings by which the coarse front grows beyond the box: what is near its ragged edge is cut away.
@@ -62,7 +61,7 @@ pub(in super::super) fn clip(layer: &mut Layer, ground: &mut Ground, spacing: f3
     }
     let is_off = |&h: &u32| {
         let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.frame.planes(v));
-        layer.mesh.twin(h) == NONE && a.common(b).is_none()
+        layer.mesh.twin(h) == NONE && a.common(b).is_inner()
     };
     match layer.mesh.edges().find(is_off) {
         Some(h) => Err(Refusal::Cut { at: layer.position[layer.mesh.origin(h) as usize].into() }),
@@ -75,7 +74,7 @@ fn border(layer: &Layer, v: u32) -> Refusal {
 }
 
 fn is_beyond(layer: &Layer, v: u32, plane: usize) -> bool {
-    let is_on = !layer.frame.planes(v).common(Planes::of(plane)).is_none();
+    let is_on = !layer.frame.planes(v).common(Planes::of(plane)).is_inner();
     !is_on && layer.frame.depth(layer.position[v as usize], plane) < -layer.frame.slack
 }
 
@@ -85,7 +84,7 @@ fn cut(layer: &mut Layer, ground: &mut Ground, spacing: f32, plane: usize) -> Re
     // A split adds half-edges at the end, which may cross too; but every split makes one edge fewer that does.
     while (h as usize) < layer.mesh.half_edge_slots() {
         let (a, b) = (layer.mesh.origin(h), layer.mesh.target(h));
-        let is_on = |v: u32| !layer.frame.planes(v).common(Planes::of(plane)).is_none();
+        let is_on = |v: u32| !layer.frame.planes(v).common(Planes::of(plane)).is_inner();
         let is_crossing = is_beyond(layer, a, plane) != is_beyond(layer, b, plane) && !is_on(a) && !is_on(b);
         if is_crossing {
             let common = layer.planes_between(a, b);
@@ -135,14 +134,14 @@ fn drop_beyond(layer: &mut Layer, plane: usize) -> Result<(), Refusal> {
 
 /// A border vertex on no face of the box.
 fn open_end(layer: &Layer) -> Option<u32> {
-    (0..layer.position.len() as u32).find(|&v| layer.mesh.is_border(v) && layer.frame.planes(v).is_none())
+    (0..layer.position.len() as u32).find(|&v| layer.mesh.is_border(v) && layer.frame.planes(v).is_inner())
 }
 
-/// Moves border vertices on no face to the nearest one: a field that ends at the box has no surface beyond, and the front ends before
-/// it.
+/// Moves border vertices on no face to the nearest one: a field that ends at the box has no surface beyond, and the front ends
+/// before it.
 fn close_open_ends(layer: &mut Layer, ground: &mut Ground, spacing: f32, first: u32) -> Result<(), Refusal> {
     for v in first..layer.position.len() as u32 {
-        if !layer.mesh.is_border(v) || !layer.frame.planes(v).is_none() {
+        if !layer.mesh.is_border(v) || !layer.frame.planes(v).is_inner() {
             continue;
         }
         let p = layer.position[v as usize];
@@ -162,7 +161,7 @@ fn close_open_ends(layer: &mut Layer, ground: &mut Ground, spacing: f32, first: 
         }
         let (a, b) = (layer.mesh.origin(h), layer.mesh.target(h));
         let (m, n) = (layer.frame.planes(a), layer.frame.planes(b));
-        if m.common(n).is_none() {
+        if m.common(n).is_inner() {
             let start = (layer.position[a as usize] + layer.position[b as usize]) * 0.5;
             split(layer, ground, h, (start, m.joined(n)), 2.0 * spacing)?;
         }
@@ -233,38 +232,4 @@ fn least_area(layer: &Layer, v: u32) -> f32 {
         layer.area_vector(corners).dot(layer.normal[v as usize])
     };
     layer.mesh.around(v).map(area).fold(f32::INFINITY, f32::min)
-}
-
-impl Layer {
-    /// Puts a particle, which may be the next new one, to a place on some faces.
-    pub(in super::super) fn put(&mut self, v: u32, position: Vec3, normal: Vec3, planes: Planes) {
-        if self.position.len() == v as usize {
-            self.position.push(position);
-            self.normal.push(normal);
-            self.slots.push(Slots::default());
-            if self.is_graded() {
-                self.size.push(1.0);
-            }
-        }
-        self.position[v as usize] = position;
-        self.normal[v as usize] = normal;
-        self.frame.set(v, planes);
-    }
-
-    /// Whether the two ends of a half-edge can be merged: the mesh stays one of the same kind, corners stay, and a particle on the border
-    /// is merged along the border only.
-    pub(in super::super) fn can_merge(&self, h: u32) -> bool {
-        if !self.mesh.can_collapse(h) {
-            return false;
-        }
-        let [m, n] = [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.frame.planes(v));
-        if m.is_none() && n.is_none() {
-            return true;
-        }
-        if self.mesh.twin(h) != NONE {
-            // An inner particle goes to the border; the other way, the border would be moved.
-            return m.is_none();
-        }
-        !(m.common(n).is_none() || m.is_corner() && n.is_corner())
-    }
 }

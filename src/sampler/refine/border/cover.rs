@@ -8,15 +8,17 @@ use glam::Vec3;
 
 /// Vertices near a point whose triangles are looked at.
 const NEAR: usize = 4;
-/// Largest distance of a point of the surface from the mesh, in spacings: at the largest curvature that a coarse front may have, the surface
-/// rises over a triangle by a quarter of that, and where it meets the box at an acute angle its border runs off by more.
+/// Largest distance of a point of the surface from the mesh, in spacings: at the largest curvature that a coarse front may have,
+/// the surface rises over a triangle by a quarter of that, and where it meets the box at an acute angle its border runs off by
+/// more.
 const FARTHEST: f32 = 0.5;
 
-/// Holds some points of the surface in the box to be near a triangle of one of the layers, if one of these is near the box.
+/// Checks that each of some points of the surface in the box is near a triangle of one of the layers. Where no layer is near the
+/// box, nothing is checked.
 ///
 /// # Errors
 ///
-/// Where one is not.
+/// Which point is not.
 pub(in super::super) fn judge_cover<'a>(
     layers: impl Iterator<Item = &'a Layer>,
     points: &[Vec3],

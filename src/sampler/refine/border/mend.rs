@@ -9,8 +9,8 @@ const SHORT: f32 = 0.85;
 const LONG: f32 = 1.18;
 
 impl Surgeon {
-    /// Tries to mend a border vertex, if it has too few or too many triangles, or an edge of the border at it is short or long. Returns
-    /// whether it was tried.
+    /// Tries to mend a border vertex, if it has too few or too many triangles, or an edge of the border at it is short or long.
+    /// Returns whether it was tried.
     pub(in super::super) fn mend_border(
         &mut self,
         layer: &mut Layer,

@@ -72,20 +72,8 @@ fn slide(ground: &mut Ground, free: Vec3, start: Vec3, reach: f32) -> Option<(Ve
 }
 
 impl Layer {
-    /// Difference between a particle's valence and the valence of a particle without a defect at that place.
-    #[inline]
-    pub(super) fn excess(&self, v: u32) -> i32 {
-        /// The valence of an inner particle without a defect.
-        const SIX: i32 = 6;
-        let valence = self.mesh.valence(v) as i32;
-        if self.frame.is_near() && self.mesh.is_border(v) {
-            valence - self.wanted_at_border(v)
-        } else {
-            valence - SIX
-        }
-    }
-
-    fn wanted_at_border(&self, v: u32) -> i32 {
+    /// The valence of a border particle without a defect.
+    pub(super) fn wanted_at_border(&self, v: u32) -> i32 {
         let planes = self.frame.planes(v);
         if !planes.is_corner() {
             return BORDER_VALENCE;
@@ -112,7 +100,7 @@ impl Layer {
     #[inline]
     pub(super) fn is_along_border(&self, corners: [u32; 3]) -> bool {
         let [a, b, c] = corners.map(|v| self.frame.planes(v));
-        !a.common(b).common(c).is_none()
+        !a.common(b).common(c).is_inner()
     }
 
     /// Whether a triangle at `v` has all its corners on one face.
@@ -138,11 +126,11 @@ impl Layer {
         ((a + b) * 0.5 - self.position[v as usize]) * 0.5
     }
 
-    /// The fates of a particle's slots. On the border, four neighbours take half of the hexagon and its sides; the other two slots lie
-    /// beyond the box.
+    /// The fates of a particle's slots. On the border, four neighbours take half of the hexagon and its sides; the other two slots
+    /// lie beyond the box.
     pub(super) fn fates(&self, v: u32) -> Slots {
         let mut fates = self.slots[v as usize];
-        if self.frame.planes(v) != Planes::INNER {
+        if !self.frame.planes(v).is_inner() {
             [4, 5].into_iter().for_each(|slot| fates.set(slot, SlotFate::Outside));
         }
         fates
@@ -151,35 +139,21 @@ impl Layer {
     /// What a step by springs is multiplied by.
     #[inline]
     pub(super) fn pace(&self, v: u32) -> f32 {
-        if self.frame.planes(v) == Planes::INNER { 1.0 } else { BORDER_PACE }
-    }
-
-    /// Place and faces of the particle into which two are merged, `a` into `b`: in the middle of two of a kind, else where that stays
-    /// which is bound to more faces.
-    pub(super) fn merged(&self, a: u32, b: u32) -> (Vec3, Planes) {
-        let [p, q] = [a, b].map(|v| self.position[v as usize]);
-        let [m, n] = [a, b].map(|v| self.frame.planes(v));
-        if m == n {
-            ((p + q) * 0.5, n)
-        } else if m.count() > n.count() {
-            (p, m)
-        } else {
-            (q, n)
-        }
+        if self.frame.planes(v).is_inner() { 1.0 } else { BORDER_PACE }
     }
 
     /// The faces of the particle on the middle of an edge: those on which the edge runs along the border.
     pub(super) fn planes_between(&self, a: u32, b: u32) -> Planes {
         let common = self.frame.planes(a).common(self.frame.planes(b));
-        if common.is_none() {
+        if common.is_inner() {
             return common;
         }
         let is_border = |a: u32, b: u32| self.mesh.find(a, b).is_some_and(|h| self.mesh.twin(h) == NONE);
         if is_border(a, b) || is_border(b, a) { common } else { Planes::INNER }
     }
 
-    /// Adds the faces of the next particle, which lies on the middle of the edge of `coarse` from `a` to `b`, or on `a` where these are
-    /// the same; and puts it onto them.
+    /// Adds the faces of the next particle, which lies on the middle of the edge of `coarse` from `a` to `b`, or on `a` where these
+    /// are the same; and puts it onto them.
     pub(super) fn bind_middle(&mut self, coarse: &Self, [a, b]: [u32; 2]) {
         if coarse.frame.is_near() {
             let planes = if a == b { coarse.frame.planes(a) } else { coarse.planes_between(a, b) };
@@ -190,18 +164,17 @@ impl Layer {
         }
     }
 
-    /// Brings a particle back that one step of Newton's method could not: one on the border by more steps, an inner one that came to
-    /// lie beyond a face to a place before it. Returns whether that could be done.
+    /// Brings a particle back that one step of Newton's method could not: one on the border by more steps, an inner one that came
+    /// to lie beyond a face to a place before it. Returns whether that could be done.
     pub(super) fn rescue(&mut self, ground: &mut Ground, spacing: f32, v: u32) -> bool {
         if !self.frame.is_near() {
             return false;
         }
         let (p, frame, planes) = (self.position[v as usize], &self.frame, self.frame.planes(v));
-        let landing = if planes.is_none() {
+        let landing = if planes.is_inner() {
             let margin = Vec3::splat(DEPTH * spacing).min((frame.hi - frame.lo) * 0.5);
             let inside = p.clamp(frame.lo + margin, frame.hi - margin);
-            let free = Vec3::from(inside.to_array().map(|_| 1.0));
-            let free = Vec3::select(inside.cmpeq(p), free, Vec3::ZERO);
+            let free = Vec3::select(inside.cmpeq(p), Vec3::ONE, Vec3::ZERO);
             // Where nothing has to be moved inward, the step has failed for another reason.
             if free == Vec3::ONE { None } else { slide(ground, free, inside, spacing) }
         } else {

@@ -64,12 +64,12 @@ fn check(layer: &Layer, bounds: &Bounds) {
         let (p, planes) = (layer.position[v as usize], layer.frame.planes(v));
         assert!(bounds.contains(p), "particle {v} at {p} is outside");
         assert_eq!(layer.frame.pinned(p, planes), p, "particle {v} at {p} is off its faces");
-        assert_eq!(layer.mesh.is_border(v), planes != Planes::INNER, "particle {v} at {p}: {planes:?}");
+        assert_eq!(layer.mesh.is_border(v), !planes.is_inner(), "particle {v} at {p}: {planes:?}");
         assert!(!layer.has_face_along_border(v), "particle {v} at {p} has a triangle along the border");
     }
     for h in layer.mesh.edges().filter(|&h| layer.mesh.twin(h) == NONE) {
         let [a, b] = [layer.mesh.origin(h), layer.mesh.target(h)].map(|v| layer.frame.planes(v));
-        assert!(!a.common(b).is_none(), "a border edge runs between different faces");
+        assert!(!a.common(b).is_inner(), "a border edge runs between different faces");
     }
 }
 

@@ -1,9 +1,10 @@
-//! Acute corners: where two faces of the box cut the surface at a small angle, the particles along both curves come near each other.
+//! Acute corners: where two faces of the box cut the surface at a small angle, the particles along both curves come near each
+//! other.
 
 use super::super::layer::Layer;
 
-/// Two particles of which one lies on the border are crowded if they are nearer than this share of the spacing. Without one of the two an
-/// edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be.
+/// Two particles of which one lies on the border are crowded if they are nearer than this share of the spacing. Without one of the
+/// two an edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be.
 const CROWDED: f32 = 0.6;
 
 impl Layer {
@@ -18,8 +19,9 @@ impl Layer {
             && self.length(h) < CROWDED * spacing * self.size_between(a, b)
     }
 
-    /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the one
-    /// that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn. None moves.
+    /// Takes a particle out at each of the edges that is [crowded](Self::is_crowded), the shortest first: an inner one, else the
+    /// one that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn.
+    /// None moves.
     pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) {
         half_edges.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)).then(g.cmp(&h)));
         for &h in &*half_edges {

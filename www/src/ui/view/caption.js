@@ -24,7 +24,7 @@ export function captionOf(progress, { partial, empty, busy, seconds, steps }) {
         ? `Refining, level ${formatCount(progress.refine_level)} of ${formatCount(progress.refine_levels)} · ${particles}`
         : resting();
     case 'search':
-      return busy ? `Looking for further components · ${particles}` : resting();
+      return busy ? `Checking the components · ${particles}` : resting();
     case 'relaxation':
       return busy
         ? `Relaxation ${formatCount(progress.relax_step)} of ${formatCount(progress.relax_steps)} · ${particles}`

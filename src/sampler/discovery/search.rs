@@ -1,4 +1,5 @@
-//! The seeds beyond those of the survey are the witnesses of the [octree](super::octree), one on every connected component.
+//! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of the
+//! survey are covered, and the [audit](super::audit) at the end.
 
 use crate::field::Field;
 use crate::math::Bounds;
@@ -25,12 +26,14 @@ const MAX_STEPS: u32 = 12;
 /// Largest number of steps that move a witness from the margin around the box to its component inside.
 const MOST_INWARD: u32 = 32;
 
-/// The witnesses, which are tried as seeds when the points of the survey are covered.
+/// The search, its witnesses and what became of them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seeds {
+pub(crate) struct ComponentSearch {
     octree: Octree,
+    /// The witnesses on the surface as single precision computes it.
     points: Vec<Seed>,
     is_projected: bool,
+    /// The next of them to be tried as a seed.
     next: usize,
     audit: Audit,
     /// Number of witnesses whose projection did not converge, and the first of them.
@@ -38,6 +41,7 @@ pub(crate) struct Seeds {
     first_lost: DVec3,
     /// The nearest sheet beside a witness, if it is nearer than particles tell apart.
     unresolved: Option<Nearness>,
+    /// Scratch: particles near a witness.
     near: Vec<u32>,
 }
 
@@ -50,7 +54,7 @@ pub(crate) enum Cover {
     Bare,
 }
 
-impl Seeds {
+impl ComponentSearch {
     /// Begins with a new field.
     pub(crate) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
         self.octree.begin(field.has_bounds(), bounds);
@@ -115,13 +119,13 @@ impl Seeds {
             .octree
             .witnesses
             .iter()
-            .filter_map(|&Witness { position, part }| {
+            .filter_map(|&Witness { position, factor }| {
                 let start = if inside(position) {
                     Some(position)
                 } else {
                     moved_inside(field, position, bounds, margin)
                 };
-                start.map(|p| (p, part))
+                start.map(|p| (p, factor))
             })
             .collect();
         let mut normal = [Vec3::ZERO; BATCH];
@@ -140,8 +144,8 @@ impl Seeds {
             );
             for (k, &position) in points.iter().enumerate() {
                 if ok[k] && bounds.contains(position) {
-                    let (exact, part) = starts[k];
-                    self.points.push(Seed { position, normal: normal[k], exact, part });
+                    let (exact, factor) = starts[k];
+                    self.points.push(Seed { position, normal: normal[k], exact, factor });
                 } else {
                     self.first_lost = if self.lost == 0 { starts[k].0 } else { self.first_lost };
                     self.lost += 1;
@@ -155,8 +159,10 @@ impl Seeds {
         let slack = f64::from(2.0 * tolerance.residual);
         let witnesses = core::mem::take(&mut self.octree.witnesses);
         let mut kept: Vec<(Witness, DVec3)> = Vec::new();
-        for group in witnesses.chunk_by(|a, b| a.part == b.part).flat_map(|part| part.chunks(TOGETHER)) {
-            let part = group[0].part;
+        for group in
+            witnesses.chunk_by(|a, b| a.factor == b.factor).flat_map(|factor| factor.chunks(TOGETHER))
+        {
+            let factor = group[0].factor;
             let ends: Vec<Oriented> = group
                 .iter()
                 .map(|witness| {
@@ -169,14 +175,14 @@ impl Seeds {
                 .map(|end| {
                     let distance = |p: DVec3| (p - end.0).length_squared();
                     kept.iter()
-                        .filter(|(other, normal)| other.part == part && normal.dot(end.1) > 0.0)
+                        .filter(|(other, normal)| other.factor == factor && normal.dot(end.1) > 0.0)
                         .min_by(|(a, _), (b, _)| distance(a.position).total_cmp(&distance(b.position)))
                         .map(|(other, _)| other.position)
                 })
                 .collect();
             let pairs: Vec<(Oriented, DVec3)> =
                 ends.iter().zip(&nearest).map(|(&end, nearest)| (end, nearest.unwrap_or(end.0))).collect();
-            let connected = are_connected(field, part, &pairs, slack, Some(corners));
+            let connected = are_connected(field, factor, &pairs, slack, Some(corners));
             for k in 0..group.len() {
                 if nearest[k].is_none() || !connected[k] {
                     kept.push((group[k], ends[k].1));
@@ -219,7 +225,7 @@ impl Seeds {
         near: Vec<u32>,
         (tolerance, rule): (Tolerance, SheetRule),
     ) -> Cover {
-        let Seed { position, normal, part, .. } = seed;
+        let Seed { position, normal, factor, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let from = (position.as_dvec3(), normal.as_dvec3());
         let place_of = |j: u32| particles.position[j as usize].as_dvec3();
@@ -229,11 +235,11 @@ impl Seeds {
             pair.1 = place_of(j);
         }
         let within = (self.octree.searched(), self.octree.margin());
-        let is_proven = are_connected(field, part, &pairs[..tried], slack, None).contains(&true)
+        let is_proven = are_connected(field, factor, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&j| is_connected_by_segments(field, part, from, place_of(j), slack, within));
+                .any(|&j| is_connected_by_segments(field, factor, from, place_of(j), slack, within));
         let is_covered = is_proven
             || near.iter().take(MOST_TRIED).any(|&j| {
                 let j = j as usize;
@@ -249,7 +255,7 @@ impl Seeds {
         /// Distance to which the piece is followed, in radii of a particle. Larger pieces have room for a child.
         const FOLLOWED: f64 = 4.0;
         let seed = *self.points.get(self.next.checked_sub(1)?)?;
-        let piece = follow(field, seed.part, seed.exact, FOLLOWED * f64::from(radius));
+        let piece = follow(field, seed.factor, seed.exact, FOLLOWED * f64::from(radius));
         (!piece.goes_on).then_some((seed, piece.reach))
     }
 
@@ -278,11 +284,12 @@ impl Seeds {
 
     /// Whether there is a witness on every component, by proof.
     pub(crate) fn witnessed(&self) -> Search {
-        if self.undecided() == Some(0) { Search::Proven } else { Search::Searched }
+        if self.unwitnessed() == Some(0) { Search::Proven } else { Search::Searched }
     }
 
-    /// Why it is not proven that there is a witness on every component, and of each witness that it is on the component of a particle
-    /// or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have seen one.
+    /// Why it is not proven that there is a witness on every component, and of each witness that it is on the component of a
+    /// particle or named; nothing where it is. Sheets nearer than `least_gap` are not told apart, of which the survey may have seen
+    /// one.
     pub(crate) fn doubts(&self, surveyed: Option<Nearness>, least_gap: f64) -> Vec<Doubt> {
         let nearness = [surveyed, self.unresolved].into_iter().flatten();
         let nearest = nearness.min_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|near| near.gap < least_gap);
@@ -321,19 +328,19 @@ impl Seeds {
         let without = self.audit.without.clone();
         let is_known = is_proven && !without.iter().any(|piece| piece.goes_on);
         let above = without.iter().map(|piece| piece.reach).fold(0.0, f64::max);
-        let missing = self.undecided().map(|_| without.len());
+        let missing = self.unwitnessed().map(|_| without.len());
         Sampled { above: is_known.then_some(above), missing, without }
     }
 
     /// Cells left undecided and witnesses that were lost; none without a search.
-    fn undecided(&self) -> Option<u64> {
+    fn unwitnessed(&self) -> Option<u64> {
         (self.octree.is_available() && self.octree.is_done())
             .then_some(self.octree.undecided.len() as u64 + self.lost)
     }
 
-    /// The same with the witnesses of which the audit does not know whether their component holds particles.
-    pub(crate) fn open_cells(&self) -> Option<u64> {
-        self.undecided().map(|open| open + self.audit.open)
+    /// These, and the witnesses of which the audit does not know whether their component holds particles.
+    pub(crate) fn open_questions(&self) -> Option<u64> {
+        self.unwitnessed().map(|open| open + self.audit.open)
     }
 }
 
