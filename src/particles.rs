@@ -70,6 +70,8 @@ impl SlotFate {
 pub struct Slots(pub u32);
 
 impl Slots {
+    /// Slots of a particle, at most.
+    pub const COUNT: usize = 10;
     /// Bit that is set if the surface has a singular point, where its gradient vanishes, within 2r. It is bit 30; the
     /// slots take the bits below it.
     pub const SINGULAR: u32 = 1 << 30;
@@ -80,13 +82,13 @@ impl Slots {
         self.0 & Self::SINGULAR != 0
     }
 
-    /// Returns the fate of slot `k < 10`.
+    /// Returns the fate of slot `k` < [`Slots::COUNT`].
     #[must_use]
     pub fn get(self, k: usize) -> SlotFate {
         SlotFate::ALL[(self.0 >> (3 * k) & 7) as usize]
     }
 
-    /// Sets the fate of slot `k < 10`.
+    /// Sets the fate of slot `k` < [`Slots::COUNT`].
     pub fn set(&mut self, k: usize, fate: SlotFate) {
         self.0 = self.0 & !(7 << (3 * k)) | (fate as u32) << (3 * k);
     }

@@ -37,6 +37,9 @@ pub struct Interval {
     pub defined: bool,
 }
 
+/// Indices of the second derivatives, a row for each axis, among the six of [`Field::enclose_second`].
+pub(crate) const SECOND: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
+
 /// Bounds of f and ∇f over a box, with properties that interval arithmetic has proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {

@@ -45,11 +45,7 @@ pub(crate) fn comfortable_scale(field: &mut dyn Field, points: impl ExactSizeIte
 /// Points of a coarse grid in a box, off its faces and its planes of symmetry.
 pub(crate) fn spread(bounds: &Bounds) -> impl ExactSizeIterator<Item = Vec3> {
     const SIDE: usize = 5;
-    let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
-    (0..SIDE * SIDE * SIDE).map(move |i| {
-        let node = DVec3::new((i % SIDE) as f64, (i / SIDE % SIDE) as f64, (i / SIDE / SIDE) as f64);
-        (lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / SIDE as f64).as_vec3()
-    })
+    bounds.spread(SIDE).map(|p| p.as_vec3())
 }
 
 /// Exponent of a positive number. A subnormal one counts as the smallest normal number.

@@ -48,6 +48,15 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// Points of a grid with `side` points on every axis, off the faces of the box and its planes of symmetry.
+    pub(crate) fn spread(&self, side: usize) -> impl ExactSizeIterator<Item = DVec3> {
+        let (lo, size) = (self.lo(), self.hi() - self.lo());
+        (0..side * side * side).map(move |i| {
+            let node = DVec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
+            lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / side as f64
+        })
+    }
+
     /// The box centred on the origin with half-widths `half`.
     #[must_use]
     pub const fn symmetric(half: [f64; 3]) -> Self {

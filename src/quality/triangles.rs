@@ -1,4 +1,7 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
+//!
+//! They measure what the points show, and leave out what is in doubt. [`crate::mesh::build`] joins points to one manifold and fills such
+//! places in. The two share no code.
 
 use super::figures::Figures;
 use super::moments::{Moments, share};

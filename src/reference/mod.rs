@@ -340,12 +340,6 @@ impl Reference {
         event
     }
 
-    /// Goes to the beginning of a chapter, as [`Reference::seek`] does.
-    pub fn seek_chapter(&mut self, chapter: u32) -> u32 {
-        let event = self.chapters.get(chapter as usize).map_or(u32::MAX, |chapter| chapter.first_event);
-        self.seek(event)
-    }
-
     /// The particles at the moment that was sought.
     #[must_use]
     pub fn particles(&self) -> &[Particle] {

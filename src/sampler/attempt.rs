@@ -38,19 +38,26 @@ pub(super) struct Attempt {
     pub(super) radius: f64,
     /// The radius field of an adaptive run.
     pub(super) sizing: Option<Sizing>,
-    /// The same while a front of one size is to be refined to these radii.
-    pub(super) graded: Option<Sizing>,
     /// Estimated area of the surface.
     area: f64,
     /// Particles per hexagonal cell 2√3 r²: a guess, then what the attempts have shown.
     packing: f64,
-    /// Times that the radius of the front is halved by the refinement, after which it is `radius`; `None` where the front stands.
-    pub(super) halvings: Option<u32>,
+    /// How the front is to be refined; none where it stands.
+    pub(super) refining: Option<Refining>,
     /// Whether this attempt only measures the packing.
     is_pilot: bool,
     /// Attempts completed before this one.
     completed: u32,
-    /// Where the surface bends most, if it was to be refined.
+}
+
+/// How the front of an attempt is to be refined.
+#[derive(Clone)]
+pub(super) struct Refining {
+    /// Times that the radius of the front is halved, after which it is that of the attempt.
+    pub(super) halvings: u32,
+    /// The radius field of the refined particles, where sizes differ: the front has one size.
+    pub(super) sizing: Option<Sizing>,
+    /// Where the surface bends most.
     pub(super) bend: Vec3,
     /// Number of refinements that could not go on.
     pub(super) failures: u32,
@@ -63,15 +70,11 @@ impl Default for Attempt {
         Self {
             radius: 1.0,
             sizing: None,
-            graded: None,
             area: 0.0,
             packing: PACKING,
-            halvings: None,
+            refining: None,
             is_pilot: false,
             completed: 0,
-            bend: Vec3::ZERO,
-            failures: 0,
-            failure: None,
         }
     }
 }
@@ -119,14 +122,15 @@ impl Attempt {
         let count = self.predicted_count(settings);
         let radius = (self.count_times_radius_sq() / count).sqrt();
         let most = (0..points.len()).max_by(|&i, &j| curvature[i].total_cmp(&curvature[j]));
-        self.bend = most.map_or(Vec3::ZERO, |i| points[i]);
+        let bend = most.map_or(Vec3::ZERO, |i| points[i]);
         curvature.sort_by(f64::total_cmp);
         let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
         let is_graded = self.sizing.is_some();
-        let levels_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count, is_graded);
+        let halvings_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count, is_graded);
         // What bends too much may be a component of its own, beside which others can be refined.
-        let is_mostly_smooth = || largest.is_finite() && levels_at(curvature[curvature.len() / 2]).is_some();
-        let halvings = levels_at(largest).or_else(|| is_mostly_smooth().then_some(0));
+        let is_mostly_smooth =
+            || largest.is_finite() && halvings_at(curvature[curvature.len() / 2]).is_some();
+        let halvings = halvings_at(largest).or_else(|| is_mostly_smooth().then_some(0));
         if count > f64::from(settings.max_particles) {
             return Some(Refusal::Full);
         }
@@ -135,48 +139,52 @@ impl Attempt {
         if refine::halvings(0.0, expected, is_graded).is_none() {
             return Some(Refusal::Few { expected: expected as u64 });
         }
-        if halvings.is_none() {
-            return Some(Refusal::Bent { at: self.bend.into() });
-        }
-        (self.radius, self.halvings, self.is_pilot) = (radius, halvings, false);
-        self.graded = self.sizing.take();
-        if let Some(sizing) = &mut self.graded {
+        let Some(halvings) = halvings else {
+            return Some(Refusal::Bent { at: bend.into() });
+        };
+        (self.radius, self.is_pilot) = (radius, false);
+        let mut sizing = self.sizing.take();
+        if let Some(sizing) = &mut sizing {
             sizing.scale_to(count / self.packing);
         }
+        self.refining = Some(Refining { halvings, sizing, bend, failures: 0, failure: None });
         None
     }
 
     /// What a refinement of this attempt's front aims at.
     pub(super) fn target(&self, settings: &Settings) -> Option<refine::Target> {
-        let count = match (settings.size_mode, &self.graded) {
+        let Refining { halvings, sizing, .. } = self.refining.as_ref()?;
+        let count = match (settings.size_mode, sizing) {
             (SizeMode::Count, _) => refine::Count::Total(f64::from(settings.count)),
             (SizeMode::Radius, None) => refine::Count::PerCell(self.packing),
             (SizeMode::Radius, Some(sizing)) => refine::Count::Total(self.packing * sizing.predicted_count()),
         };
-        let grading = self.graded.as_ref().map(Sizing::slope);
-        self.halvings.map(|halvings| refine::Target { halvings, radius: self.radius as f32, grading, count })
+        let grading = sizing.as_ref().map(Sizing::slope);
+        Some(refine::Target { halvings: *halvings, radius: self.radius as f32, grading, count })
     }
 
     /// The first attempt at the front that stands because this one's was refused.
     pub(super) fn without_refinement(&mut self, settings: &Settings, diagonal: f64) -> Self {
-        Self::first(settings, self.area, diagonal, self.graded.take().map(Sizing::unscaled))
+        self.end_refinement();
+        Self::first(settings, self.area, diagonal, self.sizing.take().map(Sizing::unscaled))
     }
 
     /// Ends the refinement: the particles have the radii of the radius field, if there is one.
     pub(super) fn end_refinement(&mut self) {
-        self.sizing = self.sizing.take().or(self.graded.take());
-        self.halvings = None;
+        if let Some(refining) = self.refining.take() {
+            self.sizing = refining.sizing;
+        }
     }
 
     /// Radius of the front.
     pub(super) fn front_radius(&self) -> f64 {
-        let coarse = |halvings: u32| refine::FRONT_RADIUS * f64::from(1_u32 << halvings);
-        self.radius * self.halvings.map_or(1.0, coarse)
+        let coarse = |refining: &Refining| refine::FRONT_RADIUS * f64::from(1_u32 << refining.halvings);
+        self.radius * self.refining.as_ref().map_or(1.0, coarse)
     }
 
     /// The box in which the front grows, when particles are wanted in `bounds`.
     pub(super) fn front_bounds(&self, bounds: &Bounds) -> Bounds {
-        if self.halvings.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
+        if self.refining.is_some() { refine::grown(bounds, self.front_radius()) } else { *bounds }
     }
 
     /// Takes the radius from the radius field, if there is one.

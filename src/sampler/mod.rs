@@ -393,7 +393,7 @@ impl Sampler {
     /// Finds the particles to be shown of a front that marches beyond the box.
     fn look_inside(&mut self) {
         let is_marching = match self.phase.name() {
-            Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.halvings.is_some(),
+            Phase::Seeding | Phase::Generation | Phase::Search => self.attempt.refining.is_some(),
             _ => false,
         };
         let settled = self.settled();

@@ -133,7 +133,8 @@ impl Sampler {
             // In all other phases the number of particles grows.
             _ => {
                 // A coarse front is the smaller part of its run.
-                let share = self.attempt.halvings.map_or(generation, refine::coarse_share);
+                let refining = self.attempt.refining.as_ref();
+                let share = refining.map_or(generation, |refining| refine::coarse_share(refining.halvings));
                 share * (particles as f64 / self.attempt.expected_count().max(1.0)).min(0.99)
             }
         }

@@ -2,14 +2,14 @@
 
 use super::Sampler;
 use crate::field::Field;
-use crate::sampler::attempt::Attempt;
+use crate::sampler::attempt::{Attempt, Refining};
 use crate::sampler::discovery::audit::holds_any;
 use crate::sampler::discovery::search::Cover;
 use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
-use crate::sampler::refine::{self, Components, Next, Refusal, Surface, Target};
+use crate::sampler::refine::{self, Components, Next, Refusal, Surface};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
 use glam::Vec3;
@@ -98,7 +98,7 @@ impl Sampler {
         self.particles.reserve(expected);
         self.neighbours.reserve(expected);
         let mut settings = self.settings;
-        if self.attempt.halvings.is_some() {
+        if self.attempt.refining.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
             settings.sampling = Sampling::Uniform;
         }
@@ -321,8 +321,8 @@ impl Sampler {
                 _ => StopReason::NoSurface,
             });
         }
-        if let Some(target) = self.attempt.target(&self.settings) {
-            return self.begin_refinement(field, target);
+        if let Some(next) = self.begin_refinement(field) {
+            return next;
         }
         if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
@@ -336,9 +336,11 @@ impl Sampler {
         }
     }
 
-    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser.
-    fn begin_refinement(&mut self, field: &mut dyn Field, target: Target) -> PhaseState {
-        let sizing = self.attempt.graded.as_ref();
+    /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing where
+    /// the front stands.
+    fn begin_refinement(&mut self, field: &mut dyn Field) -> Option<PhaseState> {
+        let target = self.attempt.target(&self.settings)?;
+        let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;
         let next = if let Some(point) = self.components.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
         } else if self.front.is_capped() {
@@ -348,15 +350,15 @@ impl Sampler {
             let surface = Surface {
                 points: self.survey.position.iter().copied().chain(witnesses).collect(),
                 bounds: self.bounds,
-                sizing,
-                bend: self.attempt.bend,
-                failures: self.attempt.failures,
+                sizing: sizing.as_ref(),
+                bend: *bend,
+                failures: *failures,
             };
             self.coarse.take_in(field, &surface, &mut self.particles, target)
         };
-        match next {
-            Ok(Next::Front(halvings)) => {
-                self.attempt.halvings = Some(halvings);
+        Some(match next {
+            Ok(Next::Front(fewer)) => {
+                *halvings = fewer;
                 self.begin_attempt()
             }
             Ok(Next::Refine(components)) => {
@@ -369,7 +371,7 @@ impl Sampler {
                 PhaseState::Refinement(components)
             }
             Err(refusal) => self.refuse(refusal),
-        }
+        })
     }
 
     /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it
@@ -377,14 +379,14 @@ impl Sampler {
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
         let least = if self.coarse.are_several { 0 } else { 1 };
         self.coarse.end();
-        self.attempt.halvings = match self.attempt.halvings {
-            Some(halvings) if halvings > least && refusal.is_coarse() => Some(halvings - 1),
-            _ => None,
-        };
-        if self.attempt.halvings.is_none() {
-            // Why a refinement failed says more than the last refusal, which may only be that no other front can be tried.
-            self.counts.refusal = self.attempt.failure.or(Some(refusal));
-            self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
+        match &mut self.attempt.refining {
+            Some(refining) if refining.halvings > least && refusal.is_coarse() => refining.halvings -= 1,
+            refining => {
+                // Why a refinement failed says more than the last refusal, which may only be that no other front can be tried.
+                let failure = refining.as_ref().and_then(|refining| refining.failure);
+                self.counts.refusal = failure.or(Some(refusal));
+                self.attempt = self.attempt.without_refinement(&self.settings, self.bounds.diagonal());
+            }
         }
         self.begin_attempt()
     }
@@ -396,16 +398,19 @@ impl Sampler {
         mut refinement: Box<Components>,
     ) -> PhaseState {
         let before = refinement.evaluations();
-        let step = refinement.step(field, self.attempt.graded.as_ref(), &mut self.particles, *left);
+        let sizing = self.attempt.refining.as_ref().and_then(|refining| refining.sizing.as_ref());
+        let step = refinement.step(field, sizing, &mut self.particles, *left);
         let evaluations = refinement.evaluations() - before;
         self.projector.evaluations += evaluations;
         self.counts.generation_evaluations += evaluations;
         match step {
             Err(refusal) => {
-                self.attempt.failures += 1;
-                self.attempt.failure = Some(refusal);
-                // The component that was refined least sets how coarse the next front may be.
-                self.attempt.halvings = Some(refinement.fewest_halvings());
+                if let Some(refining) = &mut self.attempt.refining {
+                    refining.failures += 1;
+                    refining.failure = Some(refusal);
+                    // The component that was refined least sets how coarse the next front may be.
+                    refining.halvings = refinement.fewest_halvings();
+                }
                 self.refuse(refusal)
             }
             Ok((units, has_changed)) => {
@@ -424,7 +429,7 @@ impl Sampler {
 
     /// Drops the particles of a coarse front that has grown beyond the box.
     fn drop_beyond(&mut self) {
-        if self.attempt.halvings.is_some() {
+        if self.attempt.refining.is_some() {
             let count = self.particles.len();
             self.particles.keep_within(&self.bounds);
             self.moved |= self.particles.len() < count;

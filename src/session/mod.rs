@@ -23,8 +23,8 @@ use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::quality::{self, Figures, Histogram, Places, Sizes};
 use crate::sampler::{
-    Doubt, FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings, SettingsError,
-    SizeMode, Start, StopReason, bytes_per_particle,
+    FateCounts, Phase, Progress, Sampled, Sampler, Sampling, Search, Settings, SettingsError, Start,
+    StopReason, bytes_per_particle,
 };
 use crate::slices::{self, Work};
 use fitting::Fitting;
@@ -40,9 +40,6 @@ const MAX_KEPT: usize = 400_000;
 /// Bytes per particle that a session takes beside the run: the particles kept after the front, and the report as measured.
 const KEPT_BYTES: usize = 28;
 const REPORT_BYTES: usize = 225;
-
-/// Slots of a particle, at most.
-const SLOTS: usize = 10;
 
 /// What a caller asks of the field; everything is optional.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -391,6 +388,23 @@ impl Session {
                 return Ok(self.answer());
             }
         };
+        let declared = self.declared_for(surface, text, request);
+        let field = self.formula_field(text, &declared, request)?;
+        let surface = surface
+            .or(self.surface.filter(|_| request.surface.is_none()))
+            .filter(|surface| surface.formula == field.text());
+        self.take_formula(field, surface, (own, is_given));
+        self.declared = declared;
+        Ok(self.answer())
+    }
+
+    /// The parameters that are declared for a formula: those of its surface or of the present formula, and those of the request.
+    fn declared_for(
+        &self,
+        surface: Option<&'static Surface>,
+        text: &str,
+        request: &FieldRequest,
+    ) -> Vec<Parameter> {
         // A declared parameter that the formula does not use stays declared: it may come back with the next key.
         let mut declared = surface.map_or_else(
             || if request.formula.is_none() { self.declared.clone() } else { Vec::new() },
@@ -408,9 +422,19 @@ impl Session {
                 None => declared.push(parameter.clone()),
             }
         }
-        let mut field = match present {
+        declared
+    }
+
+    /// The field of a formula with the values that a request asks for.
+    fn formula_field(
+        &self,
+        text: &str,
+        declared: &[Parameter],
+        request: &FieldRequest,
+    ) -> Result<FormulaField, FieldError> {
+        let mut field = match self.source.formula() {
             Some(field) if text == field.text() && declared == self.declared => field.clone(),
-            _ => FormulaField::parse(text, &declared)?.without_powers(),
+            _ => FormulaField::parse(text, declared)?.without_powers(),
         };
         // A named surface begins with its own values; without one the present field is changed.
         if request.surface.is_some() {
@@ -431,12 +455,19 @@ impl Session {
                 result => result?,
             }
         }
-        let is_same =
-            present.is_some_and(|p| p.text() == field.text() && p.parameters() == field.parameters());
+        Ok(field)
+    }
+
+    /// Samples the field of a formula from now on, in the box `own`, which was given or is to be fitted. Ends a run on another field.
+    fn take_formula(
+        &mut self,
+        mut field: FormulaField,
+        surface: Option<&'static Surface>,
+        (own, is_given): (Bounds, bool),
+    ) {
+        let present = self.source.formula();
         let is_same_text = present.is_some_and(|p| p.text() == field.text());
-        let surface = surface
-            .or(self.surface.filter(|_| request.surface.is_none()))
-            .filter(|surface| surface.formula == field.text());
+        let is_same = is_same_text && present.is_some_and(|p| p.parameters() == field.parameters());
         // A box that is to be fitted stays what it was until it is.
         let is_open = !is_given && surface.is_none();
         let keeps_box = is_same_text && self.fitting.is_fitted() && is_open;
@@ -455,9 +486,7 @@ impl Session {
         field.set_origin(self.particles().origin);
         self.source = Source::Formula(field);
         self.measuring = None;
-        self.declared = declared;
         (self.own, self.bounds) = (own, bounds);
-        Ok(self.answer())
     }
 
     /// Changes the field to one from points, as `pointcloud::fit` makes it. [`Session::set_field`] with a surface or a formula
@@ -650,13 +679,6 @@ impl Session {
         let evaluations =
             counts.seeding_evaluations + counts.generation_evaluations + counts.relaxation_evaluations;
         let stop_reason = self.last.as_ref().and_then(|progress| progress.stop_reason);
-        let mut warnings = self.warnings.clone();
-        let settings = self.sampler.settings();
-        if settings.size_mode == SizeMode::Count
-            && matches!(stop_reason, Some(StopReason::Complete | StopReason::OneParticle))
-        {
-            warnings.extend(warnings::about_count(count, settings.count));
-        }
         let mut sampled = self.sampler.sampled();
         for witness in &mut sampled.without {
             witness.position = (origin + DVec3::from_array(witness.position)).to_array();
@@ -665,19 +687,8 @@ impl Session {
         for hole in &mut places.holes {
             hole.position = (origin + Vec3::from_array(hole.position).as_dvec3()).as_vec3().to_array();
         }
-        let doubts = self.sampler.doubts();
-        let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
-        let facing = if is_unresolved { 0 } else { facing };
-        warnings.extend(warnings::about(count, facing, &counts, sampled.missing.is_some()));
-        let radius = self.sampler.radius();
-        warnings.extend(warnings::about_components(&sampled.without, radius, is_unresolved));
-        if let Some(opening) = self.measured.opening.filter(|_| !is_unresolved) {
-            warnings.push(warnings::about_opening(&opening, origin, radius));
-        }
-        // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already.
-        let told = doubts.iter().filter(|doubt| !(is_unresolved && matches!(doubt, Doubt::Witnesses { .. })));
-        warnings.extend(told.filter_map(|doubt| warnings::about_doubt(doubt, origin, radius)));
-        let is_outside = |slots: &&Slots| (0..SLOTS).any(|slot| slots.get(slot) == SlotFate::Outside);
+        let warnings = self.warnings_of_run(&counts, &sampled, facing);
+        let is_outside = |slots: &&Slots| (0..Slots::COUNT).any(|slot| slots.get(slot) == SlotFate::Outside);
         let border = particles.slots.iter().filter(is_outside).count();
         Report {
             count,

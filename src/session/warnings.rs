@@ -1,9 +1,9 @@
 //! What a user should know about a run, in words.
 
-use super::Kept;
+use super::{Kept, Session};
 use crate::math::{grouped, shortest_text};
 use crate::quality::Opening;
-use crate::sampler::{COUNT_TOLERANCE, Counts, Doubt, FateCounts, Unsampled};
+use crate::sampler::{COUNT_TOLERANCE, Counts, Doubt, FateCounts, Sampled, SizeMode, StopReason, Unsampled};
 use crate::slices::{pause, ranges};
 use crate::spatial::tree::Tree;
 use glam::DVec3;
@@ -16,6 +16,34 @@ const CLOSE_COUNT: usize = 8;
 pub(super) const OVERFLOW: &str = "f is too large for double precision in a part of the box, where components may be missed: enter it \
      in a form with smaller numbers, each factor by its logarithm for example, or make the box smaller.";
 
+impl Session {
+    /// What a user should know about the run. `sampled` counts its places from zero; `facing` particles face another sheet.
+    pub(super) fn warnings_of_run(&self, counts: &Counts, sampled: &Sampled, facing: usize) -> Vec<String> {
+        let particles = self.sampler.particles();
+        let (count, origin, radius) = (particles.len(), particles.origin, self.sampler.radius());
+        let mut warnings = self.warnings.clone();
+        let settings = self.sampler.settings();
+        let stop_reason = self.last.as_ref().and_then(|progress| progress.stop_reason);
+        if settings.size_mode == SizeMode::Count
+            && matches!(stop_reason, Some(StopReason::Complete | StopReason::OneParticle))
+        {
+            warnings.extend(about_count(count, settings.count));
+        }
+        let doubts = self.sampler.doubts();
+        let is_unresolved = doubts.iter().any(|doubt| matches!(doubt, Doubt::Unresolved { .. }));
+        let facing = if is_unresolved { 0 } else { facing };
+        warnings.extend(about(count, facing, counts, sampled.missing.is_some()));
+        warnings.extend(about_components(&sampled.without, radius, is_unresolved));
+        if let Some(opening) = self.measured.opening.filter(|_| !is_unresolved) {
+            warnings.push(about_opening(&opening, origin, radius));
+        }
+        // Where sheets are too near to be told apart, that is why witnesses are left open, and it is told already.
+        let told = doubts.iter().filter(|doubt| !(is_unresolved && matches!(doubt, Doubt::Witnesses { .. })));
+        warnings.extend(told.filter_map(|doubt| about_doubt(doubt, origin, radius)));
+        warnings
+    }
+}
+
 /// What is said where another equation is sampled in the place of the formula.
 pub(super) fn about_powers(equation: String) -> String {
     format!(
@@ -25,7 +53,7 @@ pub(super) fn about_powers(equation: String) -> String {
 }
 
 /// What is said where a wanted number of particles is missed by more than the 3 % that are promised.
-pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
+fn about_count(total: usize, wanted: u32) -> Option<String> {
     let is_met = (total as f64 / f64::from(wanted) - 1.0).abs() <= COUNT_TOLERANCE;
     (!is_met).then(|| {
         format!(
@@ -37,7 +65,7 @@ pub(super) fn about_count(total: usize, wanted: u32) -> Option<String> {
 
 /// Warnings about what became of `total` particles, of which `close` face another sheet that a smaller radius would tell apart.
 /// Where the run `is_audited`, components without particles are named elsewhere.
-pub(super) fn about(total: usize, close: usize, counts: &Counts, is_audited: bool) -> Vec<String> {
+fn about(total: usize, close: usize, counts: &Counts, is_audited: bool) -> Vec<String> {
     let mut warnings: Vec<String> = counts.refusal.iter().map(ToString::to_string).collect();
     let children = |count: u64| if count == 1 { "1 child".to_owned() } else { format!("{count} children") };
     // Those of a coarse front are no trouble once its mesh has been checked and refined.
@@ -96,7 +124,7 @@ fn about_length(x: f64) -> String {
 }
 
 /// Says why it is not proven that every component has been found. Places are counted from `origin`.
-pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<String> {
+fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<String> {
     let place = |position: [f64; 3], length| place((origin + DVec3::from_array(position)).to_array(), length);
     let told = match *doubt {
         // It is so with every model from points, which the row of the report says.
@@ -133,7 +161,7 @@ pub(super) fn about_doubt(doubt: &Doubt, origin: DVec3, radius: f64) -> Option<S
 }
 
 /// Says where the triangles between particles do not close the surface. The place is counted from `origin`.
-pub(super) fn about_opening(opening: &Opening, origin: DVec3, radius: f64) -> String {
+fn about_opening(opening: &Opening, origin: DVec3, radius: f64) -> String {
     let &Opening { edges, points, position } = opening;
     let counted = |count: usize, name: &str| format!("{count} {name}{}", if count == 1 { "" } else { "s" });
     let found = match (edges, points) {
@@ -150,7 +178,7 @@ pub(super) fn about_opening(opening: &Opening, origin: DVec3, radius: f64) -> St
 }
 
 /// Names the places of the components `without` a particle. Where sheets are `unresolved`, a smaller radius is no remedy.
-pub(super) fn about_components(without: &[Unsampled], radius: f64, unresolved: bool) -> Option<String> {
+fn about_components(without: &[Unsampled], radius: f64, unresolved: bool) -> Option<String> {
     /// Places that are named in words; the report has all.
     const NAMED: usize = 4;
     let places: Vec<String> = without

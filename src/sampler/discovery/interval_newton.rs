@@ -11,7 +11,7 @@
 //! method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell holds no
 //! such point; near one, the range shrinks with the square of the cell's width.
 
-use crate::field::Enclosure;
+use crate::field::{Enclosure, SECOND};
 use glam::DVec3;
 
 type Range = [f64; 2];
@@ -71,13 +71,11 @@ pub(crate) fn narrowed(
     middle: &Enclosure,
     second: &[Range; 6],
 ) -> Option<[DVec3; 2]> {
-    /// Place of a second derivative among the six.
-    const ENTRY: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
     let is_bounded = known.smooth && known.defined && known.continuous;
     if !(is_bounded && second.iter().all(|&[lo, hi]| lo.is_finite() && hi.is_finite())) {
         return Some([lo, hi]);
     }
-    let h = |i: usize, j: usize| second[ENTRY[i][j]];
+    let h = |i: usize, j: usize| second[SECOND[i][j]];
     let half = 0.5 * (hi - lo);
     let m = 0.5 * (lo + hi);
     // It is 0 along a pinned axis, whose side has no length.

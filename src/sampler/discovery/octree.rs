@@ -45,7 +45,7 @@
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Enclosure, Field};
+use crate::field::{Enclosure, Field, SECOND};
 use crate::math::Bounds;
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
@@ -207,12 +207,40 @@ struct BoxBounds {
 struct CellBatch {
     /// Cells that the bounds of the expressions do not decide.
     open: Vec<Cell>,
-    /// Cells to be made taller, and by how much each way.
-    tall: Vec<(Cell, f64)>,
-    /// Bounds for the rise of the surface over the footprint of each; none where it may not be a graph.
-    rises: Vec<Option<f64>>,
-    /// Lines that meet the surface: index of the tall cell, lower and upper end, present estimate of the root.
-    lines: Vec<(usize, f64, f64, f64)>,
+    tall: Vec<Tall>,
+    lines: Vec<Line>,
+}
+
+/// A cell that is made taller.
+#[derive(Clone, Copy, Debug)]
+struct Tall {
+    cell: Cell,
+    /// By how much each way.
+    room: f64,
+    /// The most that the surface rises over the footprint; none where it may not be a graph.
+    rise: Option<f64>,
+}
+
+impl Tall {
+    /// Corners of the taller cell.
+    fn corners(&self) -> [DVec3; 2] {
+        let (_, up) = self.cell.axes();
+        let (mut lo, mut hi) = (self.cell.lo, self.cell.hi);
+        (lo[up], hi[up]) = (lo[up] - self.room, hi[up] + self.room);
+        [lo, hi]
+    }
+}
+
+/// A line through a tall cell that meets the surface.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    /// Index of the cell.
+    tall: usize,
+    /// Lower and upper end.
+    lo: f64,
+    hi: f64,
+    /// Present estimate of where it meets the surface.
+    root: f64,
 }
 
 impl BoxBounds {
@@ -401,7 +429,8 @@ impl Octree {
             (cell.lo, cell.hi) = (lo, hi);
             match rise(&cell, &known) {
                 Some(t) if t <= MOST_RISE * height => {
-                    self.batch.tall.push((cell, RISE_ROOM * t + LEAST_RISE * height));
+                    let room = RISE_ROOM * t + LEAST_RISE * height;
+                    self.batch.tall.push(Tall { cell, room, rise: None });
                 }
                 _ if self.is_isolated(field, &cell, &known) => {}
                 _ => self.halve(cell, DEPTH),
@@ -454,30 +483,19 @@ impl Octree {
 
     /// Decides the cells that are to be made taller, or halves them.
     fn decide(&mut self, field: &mut dyn Field) {
-        let taller = |&(cell, room): &(Cell, f64)| {
-            let (_, up) = cell.axes();
-            let (mut lo, mut hi) = (cell.lo, cell.hi);
-            (lo[up], hi[up]) = (lo[up] - room, hi[up] + room);
-            [lo, hi]
-        };
         self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.tall.iter().map(taller));
+        self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::corners));
         self.bounds.refine(field, self.search.factor);
-        // The most that the surface rises, where it is a graph over the whole footprint.
-        self.batch.rises.clear();
-        self.batch.rises.extend(self.batch.tall.iter().zip(&self.bounds.known).map(
-            |((cell, room), known)| {
-                let regular = known.defined && known.continuous;
-                if regular { rise(cell, known).filter(|t| t <= room) } else { None }
-            },
-        ));
+        for (tall, known) in self.batch.tall.iter_mut().zip(&self.bounds.known) {
+            let is_regular = known.defined && known.continuous;
+            tall.rise = if is_regular { rise(&tall.cell, known).filter(|t| *t <= tall.room) } else { None };
+        }
         // Both ends of a line through each.
         self.bounds.boxes.clear();
         for tall in &self.batch.tall {
-            let (cell, _) = tall;
-            let (_, up) = cell.axes();
-            self.bounds.boxes.extend(taller(tall).map(|end| {
-                let mut p = cell.probe();
+            let (_, up) = tall.cell.axes();
+            self.bounds.boxes.extend(tall.corners().map(|end| {
+                let mut p = tall.cell.probe();
                 p[up] = end[up];
                 [p, p]
             }));
@@ -485,23 +503,23 @@ impl Octree {
         self.bounds.enclose(field, self.search.factor);
         self.batch.lines.clear();
         for k in 0..self.batch.tall.len() {
-            let (cell, _) = self.batch.tall[k];
+            let Tall { cell, rise, .. } = self.batch.tall[k];
             let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
             let known = away_from_zero(bottom).and(away_from_zero(top)).is_some();
-            if self.batch.rises[k].is_none() || !known {
+            if rise.is_none() || !known {
                 self.halve(cell, DEPTH);
             } else if (bottom[0] > 0.0) != (top[0] > 0.0) {
                 let (_, up) = cell.axes();
                 let (lo, hi) = (self.bounds.boxes[2 * k][0][up], self.bounds.boxes[2 * k + 1][0][up]);
-                self.batch.lines.push((k, lo, hi, 0.5 * (lo + hi)));
+                self.batch.lines.push(Line { tall: k, lo, hi, root: 0.5 * (lo + hi) });
             }
         }
         self.find_roots(field);
         for line in 0..self.batch.lines.len() {
-            let (k, _, _, height) = self.batch.lines[line];
-            let (cell, _) = self.batch.tall[k];
+            let Line { tall, root: height, .. } = self.batch.lines[line];
+            let Tall { cell, rise, .. } = self.batch.tall[tall];
             let (sides, up) = cell.axes();
-            let beside = BESIDE * self.batch.rises[k].unwrap_or(0.0);
+            let beside = BESIDE * rise.unwrap_or(0.0);
             if height + beside < self.lo[up] || height > self.hi[up] && height - beside >= self.lo[up] {
                 continue;
             }
@@ -526,27 +544,27 @@ impl Octree {
                 break;
             }
             self.bounds.boxes.clear();
-            for &(k, _, _, height) in &self.batch.lines {
-                let (cell, _) = self.batch.tall[k];
+            for &Line { tall, root, .. } in &self.batch.lines {
+                let cell = self.batch.tall[tall].cell;
                 let mut p = cell.probe();
-                p[cell.axes().1] = height;
+                p[cell.axes().1] = root;
                 self.bounds.boxes.push([p, p]);
             }
             self.bounds.enclose(field, self.search.factor);
             settled = true;
             for (line, known) in self.batch.lines.iter_mut().zip(&self.bounds.known) {
-                let (k, lo, hi, height) = *line;
+                let Line { tall, lo, hi, root } = *line;
                 let [least, most] = known.value;
                 if away_from_zero(known.value).is_none() {
                     continue;
                 }
-                let slope = known.gradient[self.batch.tall[k].0.axes().1];
+                let slope = known.gradient[self.batch.tall[tall].cell.axes().1];
                 let rising = slope[0] > 0.0;
-                let (lo, hi) = if (least > 0.0) == rising { (lo, height) } else { (height, hi) };
-                let newton = height - (least + most) / (slope[0] + slope[1]);
+                let (lo, hi) = if (least > 0.0) == rising { (lo, root) } else { (root, hi) };
+                let newton = root - (least + most) / (slope[0] + slope[1]);
                 let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-                settled &= (next - height).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
-                *line = (k, lo, hi, next);
+                settled &= (next - root).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
+                *line = Line { tall, lo, hi, root: next };
             }
         }
     }
@@ -632,9 +650,7 @@ fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
 
 /// Intersects bounds over a box with the mean value forms around its middle; `half` is half its size.
 fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &[[f64; 2]; 6], half: DVec3) {
-    /// Entries of a row of second derivatives.
-    const ROWS: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
-    for (axis, row) in ROWS.into_iter().enumerate().filter(|_| known.smooth) {
+    for (axis, row) in SECOND.into_iter().enumerate().filter(|_| known.smooth) {
         let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(second[row[k]]) * half[k]).sum();
         narrow(&mut known.gradient[axis], middle.gradient[axis], swing);
     }
@@ -660,12 +676,8 @@ fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
 /// Whether the field has finite bounds at all, tested on a few small boxes.
 fn bounds_say_something(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> bool {
     const SIDE: usize = 3;
-    let size = hi - lo;
-    let boxes: [[DVec3; 2]; SIDE * SIDE * SIDE] = core::array::from_fn(|i| {
-        let node = DVec3::new((i % SIDE) as f64, (i / SIDE % SIDE) as f64, (i / SIDE / SIDE) as f64);
-        let corner = lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / SIDE as f64;
-        [corner, corner + MARGIN * size]
-    });
+    let bounds = Bounds { min: lo.to_array(), max: hi.to_array() };
+    let boxes: Vec<[DVec3; 2]> = bounds.spread(SIDE).map(|p| [p, p + MARGIN * (hi - lo)]).collect();
     let mut known = [Enclosure::UNKNOWN; SIDE * SIDE * SIDE];
     field.enclose(0, &boxes, &mut known);
     known.iter().any(|known| known.value != Enclosure::UNKNOWN.value)

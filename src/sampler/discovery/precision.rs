@@ -1,6 +1,7 @@
 //! Whether single precision holds the values of a field. Where it does not, the field is to be evaluated in double precision,
 //! compressed to a scale that is found here.
 
+use super::survey::CELLS;
 use crate::field::Field;
 use crate::math::Bounds;
 use glam::{DVec3, Vec3};
@@ -15,22 +16,10 @@ const FINE_SIDE: usize = 16;
 const MOST_ROOTS: usize = 64;
 /// Halvings of an edge between two nodes.
 const HALVINGS: u32 = 60;
-/// Cells of the survey's grid along the longest side of the box: the scale is the value of f a cell away from the surface.
-const CELLS: f64 = 32.0;
-
-/// The nodes of a grid in a box, off its faces and its planes of symmetry.
-fn nodes(bounds: &Bounds, side: usize) -> impl Iterator<Item = DVec3> {
-    let (lo, size) = (bounds.lo(), bounds.hi() - bounds.lo());
-    (0..side * side * side).map(move |i| {
-        let node = DVec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
-        lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / side as f64
-    })
-}
-
 /// The scale at which the field is to be compressed in double precision; none if single precision will do. It does if it has
 /// a value, beyond underflow, at nearly all places where double precision has one.
 pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64> {
-    let points: Vec<Vec3> = nodes(bounds, SIDE).map(|p| p.as_vec3()).collect();
+    let points: Vec<Vec3> = bounds.spread(SIDE).map(|p| p.as_vec3()).collect();
     let (mut value, mut gradient) = (vec![0.0; points.len()], vec![Vec3::ZERO; points.len()]);
     field.gradients(&points, &mut value, &mut gradient);
     let mut lost = 0;
@@ -47,12 +36,12 @@ pub(crate) fn double_scale(field: &mut dyn Field, bounds: &Bounds) -> Option<f64
 
 /// Whether f is beyond double precision somewhere.
 pub(crate) fn overflows_double(field: &mut dyn Field, bounds: &Bounds) -> bool {
-    nodes(bounds, SIDE).any(|p| field.jet(p).value.is_infinite())
+    bounds.spread(SIDE).any(|p| field.jet(p).value.is_infinite())
 }
 
 /// The usual |∇f| at the surface times the width of a cell of the survey; the usual |f| where no surface is seen.
 fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
-    let grid: Vec<DVec3> = nodes(bounds, FINE_SIDE).collect();
+    let grid: Vec<DVec3> = bounds.spread(FINE_SIDE).collect();
     let value: Vec<f64> = grid.iter().map(|&p| field.jet(p).value).collect();
     let mut edges = Vec::new();
     for i in 0..grid.len() {

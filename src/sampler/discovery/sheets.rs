@@ -182,7 +182,7 @@ pub(crate) fn is_near_own(
 /// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of
 /// this middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
 /// two sheets the middle is half the lift away from both.
-pub(crate) fn is_one_sheet(
+fn is_one_sheet(
     field: &mut dyn Field,
     projector: &mut Projector,
     (position, normal): (Vec3, Vec3),
@@ -348,6 +348,11 @@ pub(crate) fn value_at(field: &mut dyn Field, factor: usize, p: DVec3) -> (f64, 
 
 /// The box of one segment, the axis nearest its normal, and how far the box reaches beyond the ends along that axis.
 fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
+    /// Room above and below the ends: times the rise of the tangent plane between them; as a share of the longest side, for what the
+    /// surface bends; and for the slack, of which [`are_connected`] takes four.
+    const RISES: f64 = 1.5;
+    const BEND: f64 = 0.25;
+    const SLACKS: f64 = 8.0;
     let size = normal.abs();
     let up = if size.x >= size.y && size.x >= size.z {
         0
@@ -359,7 +364,7 @@ fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usiz
     let (mut lo, mut hi) = (a.min(b), a.max(b));
     let reach = (b - a).abs();
     let slope: f64 = (0..3).filter(|&axis| axis != up).map(|axis| size[axis] / size[up] * reach[axis]).sum();
-    let room = 1.5 * slope + 0.25 * reach.max_element() + 8.0 * slack;
+    let room = RISES * slope + BEND * reach.max_element() + SLACKS * slack;
     lo[up] -= room;
     hi[up] += room;
     ([lo, hi], up, room)

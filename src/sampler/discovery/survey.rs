@@ -10,7 +10,7 @@ use crate::sampler::projection::{Accuracy, BATCH, Descent, Projector, Tolerance,
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
-const CELLS: f64 = 32.0;
+pub(crate) const CELLS: f64 = 32.0;
 /// The same for fields without bounds, of which only the grid shows the surface. It does not miss a sphere whose radius is
 /// 1.4 % of the box's longest side.
 const DENSE_CELLS: f64 = 64.0;
@@ -417,7 +417,10 @@ pub(crate) fn survey(
         core::mem::swap(&mut lower, &mut upper);
     }
     let mut out = Survey { area: found.area, ..Survey::default() };
-    project(field, bounds, projector, &mut found.place, &found.areas, grid.spacing as f32, &mut out);
+    let spacing = grid.spacing as f32;
+    out.gradient_scale = gradient_scale(field, projector, &found.place, &found.areas);
+    project(field, bounds, projector, &mut found.place, &found.areas, spacing, &mut out);
+    measure_precision(field, bounds, projector, spacing, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
         out.absence = found.absence();
@@ -436,23 +439,8 @@ fn project(
     spacing: f32,
     out: &mut Survey,
 ) {
-    // The gradient at the surface: where f changes its sign, unless it nowhere does. Where f is small beside its gradient
-    // without a change of sign, both may be of any size.
-    let crosses = |area: f32| area != NO_CROSSING;
-    let by_crossings = areas.iter().any(|&area| crosses(area));
-    let mut slopes = Vec::new();
-    for (chunk, areas) in start.chunks(BATCH).zip(areas.chunks(BATCH)) {
-        let (_, gradient) = projector.evaluate_batch(field, chunk);
-        let counted = gradient.iter().zip(areas).filter(|(_, area)| crosses(**area) || !by_crossings);
-        slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
-    }
-    sort_numbers(&mut slopes);
-    out.gradient_scale = slopes.get(slopes.len() / 2).copied().unwrap_or(0.0);
-    let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
-    // Two units in the last place of the largest coordinate; positions themselves are rounded to half of one.
-    let ulps = 2.0 * f32::EPSILON * reach;
     let coarse = Tolerance {
-        residual: (1e-4 * spacing).max(ulps),
+        residual: (1e-4 * spacing).max(ulps(bounds)),
         ..tolerance(0.0, Accuracy::UNLIMITED, out.gradient_scale)
     };
     let mut normal = [Vec3::ZERO; BATCH];
@@ -471,12 +459,43 @@ fn project(
             if ok[i] && bounds.contains(chunk[i]) {
                 out.position.push(chunk[i]);
                 out.normal.push(normal[i]);
-                out.weight.push(if crosses(areas[i]) { areas[i] } else { 0.0 });
+                out.weight.push(if areas[i] == NO_CROSSING { 0.0 } else { areas[i] });
             }
         }
     }
     out.residual = coarse.residual;
-    out.resolution = ulps.max(rounding(field, projector, &out.position));
+}
+
+/// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient without
+/// a change of sign, both may be of any size.
+fn gradient_scale(field: &mut dyn Field, projector: &mut Projector, start: &[Vec3], areas: &[f32]) -> f32 {
+    let crosses = |area: f32| area != NO_CROSSING;
+    let by_crossings = areas.iter().any(|&area| crosses(area));
+    let mut slopes = Vec::new();
+    for (chunk, areas) in start.chunks(BATCH).zip(areas.chunks(BATCH)) {
+        let (_, gradient) = projector.evaluate_batch(field, chunk);
+        let counted = gradient.iter().zip(areas).filter(|(_, area)| crosses(**area) || !by_crossings);
+        slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
+    }
+    sort_numbers(&mut slopes);
+    slopes.get(slopes.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Two units in the last place of the largest coordinate in a box; positions themselves are rounded to half of one.
+fn ulps(bounds: &Bounds) -> f32 {
+    let reach = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |m, c| m.max(c.abs())) as f32;
+    2.0 * f32::EPSILON * reach
+}
+
+/// Finds out how near the surface particles have to be: by rounding, by sheets near each other, and whether f only touches zero.
+fn measure_precision(
+    field: &mut dyn Field,
+    bounds: &Bounds,
+    projector: &mut Projector,
+    spacing: f32,
+    out: &mut Survey,
+) {
+    out.resolution = ulps(bounds).max(rounding(field, projector, &out.position));
     // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
     out.crowding = f32::INFINITY;
     let mut is_facing_another = false;

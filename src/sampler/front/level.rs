@@ -22,9 +22,6 @@ use glam::Vec3;
 /// no more than 45°, give or take a slack: this is sin² 45°.
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
-/// Slots of a particle, at most.
-pub(crate) const MAX_SLOTS: usize = 10;
-
 /// What a front works with and on, besides itself.
 pub(crate) struct FrontContext<'a> {
     pub(crate) field: &'a mut dyn Field,
@@ -273,7 +270,7 @@ pub(crate) trait LevelFront {
         let last = context.particles.len() - 1;
         self.forget_seed(last);
         let level = self.level_mut();
-        for k in 0..MAX_SLOTS {
+        for k in 0..Slots::COUNT {
             level.fates.uncount(context.particles.slots[last].get(k));
         }
         level.settled = last;

@@ -1,5 +1,6 @@
 //! The coarse front: how coarse it may be, and whether it is good enough.
 
+use super::LEAST_PARTICLES;
 use super::border;
 use super::frame::Frame;
 use super::layer::{Ground, Layer};
@@ -22,8 +23,6 @@ pub(crate) const FRONT_RADIUS: f64 = 0.95;
 
 /// Most levels: a million particles come from 240.
 const MAX_LEVELS: u32 = 6;
-/// Fewest particles of a component of the coarse front, by which its shape can be told.
-const LEAST_PARTICLES: u32 = 180;
 /// Largest product of coarse spacing and curvature: 0.89 has worked wherever it was tried, 1.45 once, 1.54 nowhere.
 const MAX_BEND: f64 = 0.9;
 /// Largest product of coarse spacing and curvature for a front that is refined once only. There is no finer front to choose, and

@@ -20,8 +20,9 @@ use glam::Vec3;
 /// Area that a coarser front finds for a component, over that of the first one. Beyond, it has left something out or has crossed
 /// over to another component.
 const AREA_RATIO: RangeInclusive<f64> = 0.9..=1.1;
-/// Particles copied in one slice of work.
+/// Particles copied in one slice of work, and those that count for one unit of work.
 const SLICE: usize = 1_024;
+const COPIES_PER_UNIT: usize = 16;
 
 /// A component with a front that is good enough.
 #[derive(Clone, Debug)]
@@ -363,7 +364,7 @@ impl Components {
                     self.joint = None;
                     has_changed = true;
                 }
-                done += SLICE as u32 / 16;
+                done += (SLICE / COPIES_PER_UNIT) as u32;
                 continue;
             }
             // Those that are coarser catch up first.

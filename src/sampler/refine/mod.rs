@@ -67,6 +67,9 @@ const FACES_PER_UNIT: u32 = 4;
 /// Corners of the finished mesh that are named in one slice of work.
 const CORNERS: usize = 6_144;
 
+/// Fewest particles of a component of the coarse front, by which its shape can be told.
+const LEAST_PARTICLES: u32 = 180;
+
 /// The number of levels, the radius and the count that a refinement is to reach.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {

@@ -1,5 +1,6 @@
 //! Why a surface is not refined.
 
+use super::LEAST_PARTICLES;
 use core::fmt;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -10,7 +11,8 @@ use serde::Serialize;
 pub enum Refusal {
     /// Too few particles are expected.
     #[error(
-        "The front stands, and is not refined: that takes at least 720 particles, and {expected} were expected."
+        "The front stands, and is not refined: that takes at least {} particles, and {expected} were expected.",
+        4 * LEAST_PARTICLES
     )]
     Few {
         /// Number of particles that the survey of the surface leads to expect.
@@ -71,7 +73,7 @@ pub enum Refusal {
     },
     /// A component has too few particles.
     #[error(
-        "The front stands, and is not refined: the part of the surface near {at} has fewer than 180 particles."
+        "The front stands, and is not refined: the part of the surface near {at} has fewer than {LEAST_PARTICLES} particles."
     )]
     Small {
         /// A place on it.

@@ -1,11 +1,9 @@
 //! The envelope of the radius: the largest function of a given slope below some radii at points of the surface.
 
 use crate::math::{Bounds, SQRT_3};
+use crate::sampler::discovery::survey::CELLS;
 use glam::Vec3;
 
-/// Grid cells along the longest side of the box. The survey has as many, so a cell that the surface meets holds some of
-/// its points.
-const CELLS: f32 = 32.0;
 /// Largest number of passes forwards and backwards over the nodes. One would be enough on a full grid; in a thin band
 /// of nodes the shortest path may turn back around a bend.
 const ROUNDS: usize = 2;
@@ -32,10 +30,11 @@ const MARGIN: usize = 2;
 const LAST_CELL: f32 = 1e-4;
 
 impl Envelope {
-    /// Makes the grid for a box; the nodes near the `points` are active.
+    /// Makes the grid for a box, with as many cells as that of the survey, so that a cell that the surface meets holds some of its
+    /// points. The nodes near the `points` are active.
     pub(super) fn new(bounds: &Bounds, points: impl Iterator<Item = Vec3>) -> Self {
         let size = (bounds.hi() - bounds.lo()).as_vec3();
-        let cell = size.max_element() / CELLS;
+        let cell = size.max_element() / CELLS as f32;
         let nodes = (size / cell).ceil().to_array().map(|c| (c as usize).max(1) + 2 * MARGIN + 1);
         let mut envelope = Self {
             lo: bounds.lo().as_vec3() - cell * MARGIN as f32,

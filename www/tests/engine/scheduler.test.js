@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import { CostModel, costKey, LIVE_MS, planLive, Scheduler, sizeOf } from '../../src/engine/sampling/scheduler.js';
+import { CostModel, costKey, LIVE_MS, planLive, sizeOf } from '../../src/engine/sampling/cost.js';
+import { Scheduler } from '../../src/engine/sampling/scheduler.js';
 
 function scripted() {
   const clock = { ms: 0 };

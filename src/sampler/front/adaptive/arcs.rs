@@ -238,6 +238,43 @@ pub(crate) struct Ring {
     pub(crate) children: Vec<f32>,
 }
 
+impl NeighbourLanes {
+    /// Finds, of each particle, the angle to its direction and how far before and behind it no child fits.
+    fn find_closed(&mut self, frame: &ParentFrame) {
+        let p = frame.radius;
+        for lane in 0..LANES {
+            let (x, y, z) = (self.x.0[lane], self.y.0[lane], self.z.0[lane]);
+            let fx = x * frame.u.x + y * frame.u.y + z * frame.u.z;
+            let fy = x * frame.w.x + y * frame.w.y + z * frame.w.z;
+            let rise = x * frame.n.x + y * frame.n.y + z * frame.n.z;
+            let flat_sq = fx * fx + fy * fy;
+            let distance = (x * x + y * y + z * z).sqrt();
+            let inverse = 1.0 / flat_sq.sqrt();
+            let (cx, cy) = (fx * inverse, fy * inverse);
+            let t = rise / distance;
+            let t = if t < MAX_DIP { t } else { MAX_DIP };
+            let t = if t > -MAX_DIP { t } else { -MAX_DIP };
+            self.angle.0[lane] = atan2(fy, fx);
+            let other = self.radius.0[lane];
+            let mut side = [[0.0; 2]; 2];
+            for (out, sixty) in side.iter_mut().zip([-SIN_60, SIN_60]) {
+                // The child that touches it is about 60° away.
+                let (dx, dy) = (0.5 * cx - sixty * cy, sixty * cx + 0.5 * cy);
+                let r = frame.child_radius(dx, dy);
+                let d = p + r;
+                let wide = wedge(d, distance, r + other, frame.dip(dx, dy, d), t);
+                let pressed = wide - (1.0 - FIT) * asin(r / d);
+                // A particle that no child beside it touches is no neighbour.
+                *out = if pressed > 0.0 { [wide, pressed] } else { [NOWHERE; 2] };
+            }
+            self.before.0[lane] = side[0][0];
+            self.behind.0[lane] = side[1][0];
+            self.closed_before.0[lane] = side[0][1];
+            self.closed_behind.0[lane] = side[1][1];
+        }
+    }
+}
+
 impl Ring {
     pub(crate) fn clear(&mut self) {
         self.len = 0;
@@ -299,47 +336,13 @@ impl Ring {
     /// Finds the free arcs, in the order of their angles.
     pub(crate) fn find_arcs(&mut self, frame: &ParentFrame) {
         self.closed.clear();
-        self.arcs.clear();
-        let p = frame.radius;
         for (k, chunk) in self.chunks[..self.len.div_ceil(LANES)].iter_mut().enumerate() {
-            for lane in 0..LANES {
-                let (x, y, z) = (chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
-                let fx = x * frame.u.x + y * frame.u.y + z * frame.u.z;
-                let fy = x * frame.w.x + y * frame.w.y + z * frame.w.z;
-                let rise = x * frame.n.x + y * frame.n.y + z * frame.n.z;
-                let flat_sq = fx * fx + fy * fy;
-                let distance = (x * x + y * y + z * z).sqrt();
-                let inverse = 1.0 / flat_sq.sqrt();
-                let (cx, cy) = (fx * inverse, fy * inverse);
-                let t = rise / distance;
-                let t = if t < MAX_DIP { t } else { MAX_DIP };
-                let t = if t > -MAX_DIP { t } else { -MAX_DIP };
-                chunk.angle.0[lane] = atan2(fy, fx);
-                let other = chunk.radius.0[lane];
-                let mut side = [[0.0; 2]; 2];
-                for (out, sixty) in side.iter_mut().zip([-SIN_60, SIN_60]) {
-                    // The child that touches it is about 60° away.
-                    let (dx, dy) = (0.5 * cx - sixty * cy, sixty * cx + 0.5 * cy);
-                    let r = frame.child_radius(dx, dy);
-                    let d = p + r;
-                    let wide = wedge(d, distance, r + other, frame.dip(dx, dy, d), t);
-                    let pressed = wide - (1.0 - FIT) * asin(r / d);
-                    // A particle that no child beside it touches is no neighbour.
-                    *out = if pressed > 0.0 { [wide, pressed] } else { [NOWHERE; 2] };
-                }
-                chunk.before.0[lane] = side[0][0];
-                chunk.behind.0[lane] = side[1][0];
-                chunk.closed_before.0[lane] = side[0][1];
-                chunk.closed_behind.0[lane] = side[1][1];
-            }
+            chunk.find_closed(frame);
             for lane in 0..LANES.min(self.len - k * LANES) {
+                let (before, behind) = (chunk.closed_before.0[lane], chunk.closed_behind.0[lane]);
                 let angle = chunk.angle.0[lane];
-                let (mut start, mut end) =
-                    (angle - chunk.closed_before.0[lane], angle + chunk.closed_behind.0[lane]);
-                if start >= end
-                    || chunk.closed_before.0[lane] == NOWHERE
-                    || chunk.closed_behind.0[lane] == NOWHERE
-                {
+                let (mut start, mut end) = (angle - before, angle + behind);
+                if start >= end || before == NOWHERE || behind == NOWHERE {
                     chunk.before.0[lane] = NOWHERE;
                     chunk.behind.0[lane] = NOWHERE;
                     continue;
@@ -347,15 +350,16 @@ impl Ring {
                 if start < 0.0 {
                     (start, end) = (start + TAU, end + TAU);
                 }
-                let mut at = self.closed.len();
-                self.closed.push((start, end));
-                while at > 0 && self.closed[at - 1].0 > start {
-                    self.closed[at] = self.closed[at - 1];
-                    at -= 1;
-                }
-                self.closed[at] = (start, end);
+                let at = self.closed.partition_point(|closed| closed.0 <= start);
+                self.closed.insert(at, (start, end));
             }
         }
+        self.open_between_closed();
+    }
+
+    /// Finds the arcs between the closed ones.
+    fn open_between_closed(&mut self) {
+        self.arcs.clear();
         if self.closed.is_empty() {
             self.arcs.push(Arc { from: 0.0, to: TAU, start: 0.0, whole: true });
             return;
@@ -430,11 +434,13 @@ impl Ring {
 
     /// Returns the angles of the children of an arc: as many as fit, evenly spread, so that all gaps are equally wide.
     pub(crate) fn spread(&mut self, frame: &ParentFrame, arc: Arc) -> &[f32] {
+        /// First guess of the angle between two children, in radians: about 60°.
+        const SIXTY: f32 = 1.05;
         self.children.clear();
         let mut at = arc.from;
         loop {
             self.children.push(at);
-            let mut step = frame.between(at, at + 1.05);
+            let mut step = frame.between(at, at + SIXTY);
             step = frame.between(at, at + step);
             let room = (arc.to - at) / step;
             if room.is_nan() || room < CROWDING || self.children.len() > MAX_CHILDREN {

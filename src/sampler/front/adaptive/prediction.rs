@@ -2,11 +2,11 @@
 //! are projected.
 
 use super::{AdaptiveChild, AdaptiveFront};
-use crate::particles::{Particles, SlotFate};
+use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::adaptive::arcs::{ParentFrame, PredictedChild};
 use crate::sampler::front::adaptive::placement::Proposal;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
-use crate::sampler::front::level::{MAX_SLOTS, initial_slots};
+use crate::sampler::front::level::initial_slots;
 use crate::sampler::projection::Circle;
 use core::f32::consts::TAU;
 
@@ -73,13 +73,13 @@ impl AdaptiveFront {
             let kind = self.around.occupants[k].kind;
             children -= usize::from(!kind.is_matched());
             // If there are more occupants than slots, the ones that were there before get none.
-            if kind.is_matched() && (again || given.count_ones() as usize + children >= MAX_SLOTS) {
+            if kind.is_matched() && (again || given.count_ones() as usize + children >= Slots::COUNT) {
                 continue;
             }
             let is = |k: usize, fate| given >> k & 1 == 0 && slots.get(k) == fate;
-            let Some(slot) = (0..MAX_SLOTS)
+            let Some(slot) = (0..Slots::COUNT)
                 .find(|&k| is(k, SlotFate::Open))
-                .or_else(|| (0..MAX_SLOTS).rev().find(|&k| is(k, SlotFate::Matched)))
+                .or_else(|| (0..Slots::COUNT).rev().find(|&k| is(k, SlotFate::Matched)))
             else {
                 break;
             };

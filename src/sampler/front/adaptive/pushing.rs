@@ -8,11 +8,11 @@
 
 use super::AdaptiveFront;
 use crate::math::functions::{atan2, cos, sin};
-use crate::particles::{Particles, SlotFate};
+use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::front::adaptive::arcs::{Arc, FIT, MAX_CHILDREN, ParentFrame, Room};
 use crate::sampler::front::adaptive::parents::LocalShape;
 use crate::sampler::front::adaptive::vicinity::{Occupant, OccupantKind};
-use crate::sampler::front::level::{FrontContext, MAX_SLOTS, initial_slots};
+use crate::sampler::front::level::{FrontContext, initial_slots};
 use crate::sampler::projection::{Circle, Landing};
 use core::f32::consts::TAU;
 use glam::{Vec2, Vec3};
@@ -62,7 +62,7 @@ impl AdaptiveFront {
         let mut at = arc.start;
         for _ in 0..MAX_CHILDREN {
             // Every child needs a slot for its fate.
-            if self.around.born as usize + 1 >= MAX_SLOTS {
+            if self.around.born as usize + 1 >= Slots::COUNT {
                 break;
             }
             let child = self.pushed(context, parent, frame, last);

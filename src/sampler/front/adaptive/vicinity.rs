@@ -91,6 +91,7 @@ impl Vicinity {
                 found.iter().for_each(|near| neighbours.note_weighted(near.index as usize));
             }
         } else {
+            // The list was made before; walking through it fills the ring and the touching.
             list.for_each(drop);
         }
         alone

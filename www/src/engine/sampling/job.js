@@ -47,7 +47,7 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  * @property {() => Uint32Array} component
  */
 /**
- * @typedef {object} Surroundings
+ * @typedef {object} Env
  * @property {() => number} nowMs
  * @property {() => Promise<void>} pause  lets the worker handle its messages
  * @property {(message: FromWorker, transfer?: Transferable[]) => void} post
@@ -120,7 +120,7 @@ export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mes
  * Runs a job to its end, or until it is interrupted.
  * @param {CoreLike} core
  * @param {Job} job
- * @param {Surroundings} env
+ * @param {Env} env
  * @param {Memory} memory
  * @returns {Promise<void>}
  */
@@ -144,7 +144,7 @@ export async function runJob(core, job, env, memory) {
 
 /** A job in progress: its times, its latest progress, and what the page has received. */
 class JobRun {
-  /** @param {CoreLike} core @param {Job} job @param {Surroundings} env */
+  /** @param {CoreLike} core @param {Job} job @param {Env} env */
   constructor(core, job, env) {
     this.core = core;
     this.job = job;

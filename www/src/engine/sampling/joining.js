@@ -12,7 +12,7 @@ const FIRST_ROWS = 4;
 
 /**
  * @typedef {import('./job.js').CoreLike} CoreLike
- * @typedef {Pick<import('./job.js').Surroundings, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Surroundings
+ * @typedef {Pick<import('./job.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
  */
 
 /**
@@ -20,7 +20,7 @@ const FIRST_ROWS = 4;
  * @template T
  * @param {(budget: number) => T | undefined} step  does so many slices; undefined before the last one
  * @param {number} slices  the first budget
- * @param {Surroundings} env
+ * @param {Env} env
  * @returns {Promise<T | null>}
  */
 async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
@@ -43,7 +43,7 @@ async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
 /**
  * Returns the mesh, or null if another job replaces the particles before it is complete.
  * @param {Pick<CoreLike, 'join' | 'triangles'>} core
- * @param {Surroundings} env
+ * @param {Env} env
  * @returns {Promise<import('./protocol.js').Mesh | null>}
  */
 export async function join(core, env) {
@@ -56,7 +56,7 @@ export async function join(core, env) {
  * before it is.
  * @param {import('../../wasm/core/core.js').Core} core
  * @param {string} format
- * @param {Surroundings} env
+ * @param {Env} env
  * @returns {Promise<{bytes: Uint8Array<ArrayBuffer> | null} | null>}
  */
 export const write = (core, format, env) =>

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { CostModel, costKey, planLive, sizeOf } from './scheduler.js';
+import { CostModel, costKey, planLive, sizeOf } from './cost.js';
 
 /**
  * @typedef {import('../types.js').Seconds} Seconds

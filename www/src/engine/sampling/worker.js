@@ -86,7 +86,7 @@ function provoke() {
   }
 }
 
-/** @param {Core} ours @returns {import('./job.js').Surroundings} */
+/** @param {Core} ours @returns {import('./job.js').Env} */
 const surroundings = (ours) => ({
   nowMs: () => performance.now(),
   pause,
