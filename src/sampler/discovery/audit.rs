@@ -5,6 +5,7 @@
 //! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
 
 use crate::field::{Enclosure, Field};
+use crate::math::sort_few;
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
 use crate::sampler::discovery::octree::Seed;
@@ -215,7 +216,7 @@ impl Audit {
             .map(|named| (named.exact.distance(from.0), named.exact))
             .filter(|&(distance, _)| distance <= reach)
             .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_few(&mut near, |a, b| a.0 < b.0);
         near.truncate(MOST_TRIED_BY_SEGMENTS);
         near.into_iter().any(|(_, place)| is_connected(field, factor, from, place, slack, within))
     }
