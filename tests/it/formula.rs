@@ -497,12 +497,41 @@ fn extreme_numbers_are_errors_where_constant_and_harmless_elsewhere() {
 }
 
 #[test]
-fn a_decimal_comma_is_never_taken_for_two_arguments() {
-    for text in ["0,5", "x^2 = 0,5", "max(1,5 x)", "min(1,5)", "atan2(1,2)"] {
+fn a_comma_that_may_be_a_decimal_one_is_refused() {
+    for text in [
+        "0,5",
+        "x^2 = 0,5",
+        "(0,5) x",
+        "sin(0,5)",
+        "sin(1,5e3 x)",
+        "sin 0,5",
+        "max(x, 1,5)",
+        "max(1,5, x)",
+        "max(1,5,2)",
+        "smin(x, y, 0,5)",
+    ] {
         assert_eq!(error(text).kind, Kind::DecimalComma, "{text}");
     }
-    assert_eq!(value("min(1, 5)"), 1.0);
-    assert_eq!(value("min(x,5)"), 1.25);
+}
+
+#[test]
+fn a_comma_that_has_one_reading_only_separates_arguments() {
+    for (text, expected) in [
+        ("min(1, 5)", 1.0),
+        ("min(x,5)", 1.25),
+        // With a decimal comma there would be one argument.
+        ("min(1,5)", 1.0),
+        ("max(1,5 x)", 6.25),
+        ("max(x^2,1)", 1.5625),
+        ("atan2(0,1)", 0.0),
+        // A number with a point has no other decimals.
+        ("max(x, 0.5,2)", 2.0),
+        ("smin(x, x - 1.50,0.5)", -0.25),
+        ("max(x,2,0.5)", 2.0),
+        ("max(1e0,0)", 1.0),
+    ] {
+        assert_eq!(value(text), expected, "{text}");
+    }
 }
 
 #[test]

@@ -109,6 +109,12 @@ macro_rules! functions {
                 match self { $(Self::$variant => ($least, $most)),* }
             }
 
+            /// Whether it can have so many arguments.
+            pub(crate) fn takes(self, count: usize) -> bool {
+                let (least, most) = self.arity();
+                (least..=most).contains(&count)
+            }
+
             pub(crate) const fn signature(self) -> &'static str {
                 match self { $(Self::$variant => $signature),* }
             }

@@ -8,7 +8,7 @@
 use super::ast::{Expr, Factor, Function, Kind};
 use super::error::{FormulaError, FormulaErrorKind as ErrorKind};
 use super::lex::slice;
-use super::parse::{Parse, Parser, integer};
+use super::parse::{Arguments, Parse, Parser, integer};
 use super::token::{Spanned, Token};
 use core::ops::Range;
 
@@ -34,16 +34,23 @@ impl Parser<'_> {
     pub(super) fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let exponent = self.exponent_of_value(function, &span)?;
         let (arguments, whole) = if let Token::Open(_) = self.peek().token {
-            let (arguments, inside) = self.arguments()?;
+            let (Arguments { arguments, doubtful }, inside) = self.arguments()?;
+            // Decimal commas are told by the number of arguments: `min(1,5)` has two, `min(x, 1,5)` has two or three.
+            let fewest = arguments.len() - doubtful.len();
+            let may_be_fewer = (fewest..arguments.len()).any(|count| function.takes(count));
+            if let Some(error) = doubtful.into_iter().next()
+                && (may_be_fewer || !function.takes(arguments.len()))
+            {
+                return Err(error);
+            }
             (arguments, span.start..inside.end)
         } else {
             let operand = self.operand(function, &span)?;
             let end = operand.span.end;
             (vec![operand], span.start..end)
         };
-        let (least, most) = function.arity();
-        if !(least..=most).contains(&arguments.len()) {
-            let wanted = match (least, most) {
+        if !function.takes(arguments.len()) {
+            let wanted = match function.arity() {
                 (1, 1) => "one argument".to_owned(),
                 (least, most) if least == most => format!("{least} arguments"),
                 (least, most) => format!("{least} to {most} arguments"),

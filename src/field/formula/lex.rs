@@ -324,15 +324,6 @@ impl Lexer<'_> {
             let message = format!("`{written}` is too large to be a number");
             return Err(FormulaError::new(ErrorKind::NotFinite, self.span(start, i), message));
         }
-        if self.get(i) == Some(',') && self.get(i + 1).is_some_and(|c| c.is_ascii_digit()) {
-            let end = self.after_digits(i + 1);
-            let decimals = self.written(i + 1, end);
-            let message = format!(
-                "`{written},{decimals}`: decimals take a point; to separate two arguments put a space after the comma"
-            );
-            return Err(FormulaError::new(ErrorKind::DecimalComma, self.span(start, end), message)
-                .suggest(format!("{written}.{decimals}")));
-        }
         Ok(value)
     }
 

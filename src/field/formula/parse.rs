@@ -74,6 +74,13 @@ pub(super) struct Parser<'a> {
 
 pub(super) type Parse = Result<Expr, FormulaError>;
 
+/// The arguments of a function.
+pub(super) struct Arguments {
+    pub(super) arguments: Vec<Expr>,
+    /// An error for each comma between them that may be a decimal one.
+    pub(super) doubtful: Vec<FormulaError>,
+}
+
 impl Parser<'_> {
     /// Skips the head of a definition `f(x, y, z) = …`, whose body is the formula.
     fn head(&mut self) -> Result<(), FormulaError> {
@@ -151,6 +158,9 @@ impl Parser<'_> {
 
     /// Error for the next token, which is not allowed here.
     pub(super) fn unexpected(&self) -> FormulaError {
+        if let Some(error) = self.decimal_comma(self.next) {
+            return error;
+        }
         let Spanned { token, span } = self.peek();
         if *token == Token::End {
             return FormulaError::new(
@@ -177,6 +187,31 @@ impl Parser<'_> {
             _ => format!("`{written}` cannot stand here"),
         };
         FormulaError::new(ErrorKind::UnexpectedSymbol, span.clone(), message)
+    }
+
+    /// Error for the comma that is token `at`, if it may be a decimal one: between two numbers without a point, and without a space.
+    pub(super) fn decimal_comma(&self, at: usize) -> Option<FormulaError> {
+        let [
+            Spanned { token: Token::Number(_), span: whole },
+            comma,
+            Spanned { token: Token::Number(_), span: rest },
+        ] = self.tokens.get(at.checked_sub(1)?..at + 2)?
+        else {
+            return None;
+        };
+        let is_tight =
+            comma.token == Token::Comma && whole.end == comma.span.start && comma.span.end == rest.start;
+        let (whole_text, rest_text) = (slice(self.text, whole), slice(self.text, rest));
+        // What has a point already takes no decimal comma.
+        let has_no_point = whole_text.chars().all(char::is_numeric) && !rest_text.contains('.');
+        if !(is_tight && has_no_point) {
+            return None;
+        }
+        let message = format!(
+            "`{whole_text},{rest_text}`: decimals take a point; to separate two arguments put a space after the comma"
+        );
+        let error = FormulaError::new(ErrorKind::DecimalComma, whole.start..rest.end, message);
+        Some(error.suggest(format!("{whole_text}.{rest_text}")))
     }
 
     fn sum(&mut self) -> Parse {
@@ -373,17 +408,18 @@ impl Parser<'_> {
         Ok((content, span.start..end))
     }
 
-    /// Parses the arguments of a function with the brackets around them; returns their span too.
-    pub(super) fn arguments(&mut self) -> Result<(Vec<Expr>, Range<usize>), FormulaError> {
+    /// Parses the arguments of a function with the brackets around them; returns their span, too.
+    pub(super) fn arguments(&mut self) -> Result<(Arguments, Range<usize>), FormulaError> {
         self.bracketed(|parser| {
-            let mut arguments = Vec::new();
+            let (mut arguments, mut doubtful) = (Vec::new(), Vec::new());
             if !matches!(parser.peek().token, Token::Close(_)) {
                 arguments.push(parser.within(false, Self::sum)?);
                 while parser.take(&Token::Comma) {
+                    doubtful.extend(parser.decimal_comma(parser.next - 1));
                     arguments.push(parser.within(false, Self::sum)?);
                 }
             }
-            Ok(arguments)
+            Ok(Arguments { arguments, doubtful })
         })
     }
 
