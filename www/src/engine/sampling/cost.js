@@ -1,0 +1,158 @@
+/**
+ * What a run costs on this machine, learnt from earlier runs, and how many particles a run may have during a drag.
+ *
+ * @module
+ */
+
+/**
+ * @typedef {import('../types.js').Seconds} Seconds
+ * @typedef {import('../types.js').Settings} Settings
+ */
+
+/** Largest latency at which the picture still seems to follow the slider. */
+export const LIVE_MS = 60;
+/** Relaxation steps of a coarse run: enough to even out the seams, at about a third of the cost. */
+const COARSE_RELAX_STEPS = 3;
+/** Latency of two frames of the screen, which is not counted as drawing time. */
+const FRAME_MS = 34;
+/** Smallest number of particles that still show the shape of a surface. */
+const FEWEST = 500;
+
+/**
+ * Returns a key that groups runs of similar cost. Points and formulas differ by an order of magnitude, and so do
+ * adaptive and uniform runs, and the two methods. Each radius law relates the number of particles to a length of its own.
+ * @param {import('../types.js').FieldRequest} field @param {Settings} settings
+ */
+export const costKey = (field, settings) =>
+  [
+    field.points === undefined ? 'formula' : 'points',
+    settings.sampling,
+    settings.sampling === 'adaptive' ? settings.radius_law : '',
+    settings.method === 'refined' ? 'refined' : '',
+  ].join(' ');
+
+/**
+ * Returns the length to whose square the number of particles is inversely proportional: the radius, or the length that
+ * scales all radii of an adaptive run. It is NaN if the settings give a count.
+ * @param {Settings} settings @param {number} diagonal  of the clip box
+ */
+export function sizeOf(settings, diagonal) {
+  if (settings.size_mode === 'count') return NaN;
+  if (settings.sampling !== 'adaptive') return Number(settings.radius_share) * diagonal;
+  // h = √(6εR − 3ε²) ≈ √(6εR): the chord error ε is a share of the diagonal.
+  return settings.radius_law === 'chord_error'
+    ? Math.sqrt(Number(settings.chord_error) * diagonal)
+    : Number(settings.curvature_scale);
+}
+
+/**
+ * Estimates the cost of a run on this machine from earlier runs: milliseconds for seeding, microseconds per particle
+ * for the front, for a relaxation step and for drawing, and the number of particles for a size on the present surface.
+ */
+export class CostModel {
+  constructor() {
+    // Initial values of a slow laptop, until the first run is measured.
+    this.fixedMs = 5;
+    this.frontUs = 1.5;
+    this.relaxUs = 0.25;
+    /** Drawing time per particle. It is zero if the graphics card keeps up with the screen. */
+    this.drawUs = 0;
+    /** count · size², which is nearly constant for one surface; 0 while unknown. */
+    this.area = 0;
+    this.known = false;
+  }
+
+  /**
+   * @param {{seconds: Seconds, particles: number, relax_steps: number, size: number}} run  `size` from {@link sizeOf},
+   *   NaN if unknown
+   */
+  record({ seconds, particles, relax_steps, size }) {
+    if (particles < 1) return;
+    if (size > 0) this.area = particles * size * size;
+    const share = this.known ? 0.5 : 1;
+    const blend = (/** @type {number} */ old, /** @type {number} */ now) => old + share * (now - old);
+    this.fixedMs = blend(this.fixedMs, seconds.seeding * 1e3);
+    this.frontUs = blend(this.frontUs, ((seconds.generation + seconds.refinement) * 1e6) / particles);
+    if (relax_steps > 0) this.relaxUs = blend(this.relaxUs, (seconds.relaxation * 1e6) / (particles * relax_steps));
+    this.known = true;
+  }
+
+  /**
+   * Records by how much a live run took longer than its sampling.
+   * @param {number} particles
+   * @param {number} waitedMs
+   */
+  recordPicture(particles, waitedMs) {
+    if (particles < FEWEST) return;
+    this.drawUs += 0.3 * ((Math.max(0, waitedMs - FRAME_MS) * 1e3) / particles - this.drawUs);
+  }
+
+  /** @param {number} particles @param {number} relaxSteps */
+  milliseconds(particles, relaxSteps) {
+    return this.fixedMs + (particles * this.perParticle(relaxSteps)) / 1e3;
+  }
+
+  /** Returns the microseconds per particle. @param {number} relaxSteps */
+  perParticle(relaxSteps) {
+    return this.frontUs + relaxSteps * this.relaxUs + this.drawUs;
+  }
+
+  /** Returns the expected number of particles. @param {Settings} settings @param {number} diagonal */
+  expected(settings, diagonal) {
+    const cap = Number(settings.max_particles);
+    const n = settings.size_mode === 'count' ? Number(settings.count) : this.area / sizeOf(settings, diagonal) ** 2;
+    return Math.min(n, cap);
+  }
+}
+
+/**
+ * Returns the settings of a run during a drag: the full ones if they take at most {@link LIVE_MS}, else settings for as
+ * many particles as fit. The caller limits them to their ranges. A refined run keeps its settings, as it can end at its
+ * coarse level, which is what the full run refines.
+ * @param {Settings} settings  complete, with the defaults filled in
+ * @param {number} diagonal  of the clip box, of which the radius is a share
+ * @param {CostModel} cost
+ * @param {number} [budgetMs]
+ * @returns {{settings: Settings, coarse: boolean}}
+ */
+export function planLive(settings, diagonal, cost, budgetMs = LIVE_MS) {
+  const relaxSteps = Number(settings.relax_steps);
+  const expected = cost.expected(settings, diagonal);
+  if (!cost.known || !(expected > 0) || !(diagonal > 0) || cost.milliseconds(expected, relaxSteps) <= budgetMs)
+    return { settings, coarse: false };
+  if (settings.method === 'refined') return { settings, coarse: true };
+  const coarseRelax = Math.min(relaxSteps, COARSE_RELAX_STEPS);
+  const perParticleMs = cost.perParticle(coarseRelax) / 1e3;
+  // If seeding takes most of the budget, fewer particles do not help. They keep half of the budget.
+  const affordable = Math.max(FEWEST, Math.max(budgetMs - cost.fixedMs, budgetMs / 2) / perParticleMs);
+  const particles = Math.min(expected, affordable);
+  return {
+    settings: {
+      ...settings,
+      relax_steps: coarseRelax,
+      ...coarser(settings, diagonal, cost, particles, expected / particles),
+    },
+    coarse: true,
+  };
+}
+
+/**
+ * Returns the size settings for a number of particles, which is `fewer` times smaller than the present one.
+ * @param {Settings} settings @param {number} diagonal @param {CostModel} cost @param {number} particles @param {number} fewer
+ * @returns {Settings}
+ */
+function coarser(settings, diagonal, cost, particles, fewer) {
+  if (settings.sampling !== 'adaptive') {
+    // A radius avoids the pilot run that a count needs.
+    if (cost.area > 0) return { size_mode: 'radius', radius_share: Math.sqrt(cost.area / particles) / diagonal };
+    return { count: Math.round(particles) };
+  }
+  if (settings.size_mode === 'count') return { count: Math.round(particles) };
+  const factor = Math.sqrt(fewer);
+  return {
+    chord_error: Number(settings.chord_error) * fewer,
+    curvature_scale: Number(settings.curvature_scale) * factor,
+    radius_min_share: Number(settings.radius_min_share) * factor,
+    radius_max_share: Number(settings.radius_max_share) * factor,
+  };
+}
