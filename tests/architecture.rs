@@ -103,8 +103,10 @@ const ROOMS: [Room; 4] = [
             ("accuracy", &["figures", "moments"]),
             ("triangles", &["figures", "moments", "one_rings"]),
             // The points, prepared; the figures below are made from them.
-            ("scene", &["figures", "accuracy", "sheets", "one_rings", "triangles"]),
-            ("components", &["scene", "triangles"]),
+            ("scene", &["accuracy", "sheets", "one_rings"]),
+            ("gaps", &["scene"]),
+            ("prepared", &["figures", "scene", "gaps", "triangles"]),
+            ("components", &["scene", "gaps", "triangles"]),
             ("order", &["figures", "moments", "one_rings", "scene"]),
             ("spacing", &["figures", "moments", "places", "scene"]),
             ("sizes", &["options", "moments", "places", "scene"]),

@@ -1,19 +1,9 @@
 //! Connected components of the surface, as far as the points show them.
 
+use super::gaps::LONG;
 use super::scene::Scene;
 use super::triangles::find;
-use crate::math::sort_few;
-use crate::slices::{pause, ranges};
-
-/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no
-/// triangle, and if their distance is at most this many times the spacing at either. The limit is for the gaps that a
-/// clip box cuts: triangles across them join points of different components.
-const NEAR: f32 = 2.0;
-
-/// The distance of the natural neighbour with this rank is the spacing at a point, but at most [`FARTHEST`] times that of the one
-/// before it. A single neighbour may be far too near.
-const RANK: usize = 3;
-const FARTHEST: f32 = 3.0;
+use crate::slices::pause;
 
 /// Points or triangles that are looked at in one slice of work.
 const SLICE: usize = 512;
@@ -23,25 +13,16 @@ pub(super) const NO_LABEL: u32 = u32::MAX;
 
 /// Returns the component of every point, in tree order, and the number of components. Component 0 has the most points;
 /// ties are in the order of the points as given.
-pub(super) async fn label(scene: &Scene, mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
+///
+/// Two points are on one component if a triangle joins them, or if they are natural neighbours and one is in no triangle, and if
+/// their distance is not [`LONG`] at either.
+pub(super) async fn label(scene: &Scene, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
     let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
-    let mut lengths = Vec::new();
-    let mut spacing = Vec::with_capacity(n);
-    for range in ranges(n, SLICE) {
-        spacing.extend(range.map(|i| {
-            lengths.clear();
-            lengths.extend(scene.rings.of(i).map(|j| distance(i, j)));
-            sort_few(&mut lengths, |a, b| a < b);
-            let before: f32 = lengths.get(RANK - 2).or(lengths.first()).copied().unwrap_or(0.0);
-            lengths.get(RANK - 1).map_or(before, |&third| third.min(FARTHEST * before))
-        }));
-        pause().await;
-    }
     let mut root: Vec<u32> = (0..n as u32).collect();
     let mut is_used = vec![false; n];
     let mut join = |i: usize, j: usize| {
-        if distance(i, j) <= NEAR * spacing[i].min(spacing[j]) {
+        if distance(i, j) <= LONG * spacing[i].min(spacing[j]) {
             let (a, b) = (find(&mut root, i as u32), find(&mut root, j as u32));
             root[a.max(b) as usize] = a.min(b);
         }

@@ -139,7 +139,7 @@ impl HoleSearch {
                 let ideal = cover.ideal(triangle);
                 let ideal_sq = ideal * ideal;
                 // On a triangle across a gap in the surface a sample may find no surface.
-                if self.matters(gap_sq, ideal_sq) && !is_reached(field, p, leash) {
+                if self.matters(gap_sq, ideal_sq) && !is_reached(field, p, leash.min(gap_sq.sqrt())) {
                     continue;
                 }
                 self.widen(p, gap_sq, ideal_sq);
@@ -173,7 +173,9 @@ impl HoleSearch {
             let ideal_sq = ideal * ideal;
             if self.matters(bound_sq, ideal_sq) {
                 let gap_sq = cover.tree.nearest_sq(p, u32::MAX, bound_sq);
-                if self.matters(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, leash) {
+                // The leash of an almost flat triangle is far longer than the gap.
+                let near = leash.min(gap_sq.sqrt());
+                if self.matters(gap_sq, ideal_sq) && cover.counts(p) && is_reached(field, p, near) {
                     self.widen(p, gap_sq, ideal_sq);
                 }
             }

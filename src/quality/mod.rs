@@ -20,6 +20,7 @@ mod cell;
 mod components;
 mod energy;
 mod figures;
+mod gaps;
 mod holes;
 mod moments;
 mod nearby;
@@ -27,6 +28,7 @@ mod one_rings;
 mod options;
 mod order;
 mod places;
+mod prepared;
 mod probe;
 mod projection;
 mod scene;
@@ -52,7 +54,8 @@ use holes::{Cover, HoleSearch, Uncovered, uncovered};
 use moments::{Moments, share};
 use order::Order;
 use places::Pairs;
-use scene::{Prepared, Scene};
+use prepared::Prepared;
+use scene::Scene;
 use sizes::{EdgeRatios, Wanted};
 use triangles::{Joined, TriangleAngles, joined};
 
@@ -135,7 +138,7 @@ pub(crate) async fn in_slices(
 ) -> Report {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let prepared = Prepared::new(position, normal, field, options.area).await;
+    let prepared = Prepared::new(position, normal, field, bounds, options.area).await;
     let Measured { mut figures, component, energy, mut pairs, holes, opening } =
         figures_of(&prepared, field, bounds, options).await;
     let Prepared { scene, drop, .. } = &prepared;
@@ -182,7 +185,7 @@ pub(crate) async fn in_slices(
 pub fn triangles(position: &[Vec3], normal: &[Vec3], field: &mut dyn Field) -> Vec<[u32; 3]> {
     let factor = comfortable_scale(field, position.iter().copied());
     let field = &mut Scaled::new(field, factor);
-    let Prepared { scene, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None));
+    let Prepared { scene, mesh, .. } = slices::complete(Prepared::new(position, normal, field, None, None));
     let origin = &scene.tree.origin;
     mesh.iter().map(|triangle| triangle.map(|i| origin[i as usize])).collect()
 }
@@ -293,7 +296,7 @@ async fn measure_triangles(
     euler: Option<i64>,
     figures: &mut Figures,
 ) -> (Vec<u32>, Option<Opening>) {
-    let Prepared { scene, triangles, mesh, .. } = prepared;
+    let Prepared { scene, spacing, triangles, mesh, .. } = prepared;
     let n = scene.tree.len();
     let away = |triangle: &&[u32; 3]| triangle.iter().all(|&i| inner[i as usize]);
     let mut angles = TriangleAngles::default();
@@ -310,7 +313,7 @@ async fn measure_triangles(
     figures.euler = joined.euler;
     let opening = opening(&joined, inner, &scene.tree.position);
     pause().await;
-    let (component, count) = components::label(scene, mesh).await;
+    let (component, count) = components::label(scene, spacing, mesh).await;
     figures.components = count;
     let unanimous = triangles.unanimous.iter().filter(away).count();
     figures.agree = share(unanimous, angles.count + triangles.single.iter().filter(away).count());

@@ -1,0 +1,143 @@
+//! The points without duplicates, and their triangles.
+
+use super::figures::hexagonal_spacing;
+use super::gaps::{Gaps, spacing_of};
+use super::scene::Scene;
+use super::triangles::{Triangles, area};
+use crate::field::Field;
+use crate::math::Bounds;
+use crate::slices::pause;
+use glam::Vec3;
+
+/// Points closer than this many d_hex to an earlier one are duplicates of it.
+const DUPLICATE: f64 = 1e-6;
+
+/// The points without duplicates and non-finite positions, and their triangles.
+pub(super) struct Prepared {
+    pub(super) scene: Scene,
+    /// The spacing at each point.
+    pub(super) spacing: Vec<f32>,
+    /// The triangles that lead across no gap of the surface.
+    pub(super) triangles: Triangles,
+    /// The triangles that count, without conflicts (see [`Triangles::settled`]).
+    pub(super) mesh: Vec<[u32; 3]>,
+    pub(super) duplicates: usize,
+    pub(super) not_finite: usize,
+    /// Whether each point is left out, by the index given.
+    pub(super) drop: Vec<bool>,
+}
+
+impl Prepared {
+    /// Prepares the points; `bounds` is the box that was sampled and `known_area` that of the surface, where they are known.
+    pub(super) async fn new(
+        position: &[Vec3],
+        normal: &[Vec3],
+        field: &mut dyn Field,
+        bounds: Option<&Bounds>,
+        known_area: Option<f64>,
+    ) -> Self {
+        let mut drop: Vec<bool> = position.iter().map(|p| !p.is_finite()).collect();
+        let not_finite = drop.iter().filter(|&&dropped| dropped).count();
+        let mut has_duplicate = vec![false; position.len()];
+        // Equal points go first: all of them would be nearest neighbours of one another.
+        drop_equal(position, &mut drop, &mut has_duplicate);
+        pause().await;
+        loop {
+            let scene = Scene::new(position, normal, field, &has_duplicate, &drop).await;
+            let spacing = spacing_of(&scene).await;
+            let mut triangles = Triangles::new(&scene.rings).await;
+            let gaps = Gaps { scene: &scene, spacing: &spacing, bounds };
+            for list in [&mut triangles.unanimous, &mut triangles.majority, &mut triangles.single] {
+                gaps.drop_across(field, list).await;
+            }
+            let mesh = triangles.settled(&scene.tree.position);
+            pause().await;
+            let area = known_area.unwrap_or_else(|| area(&scene.tree.position, &mesh));
+            let d_hex = hexagonal_spacing(area, position.len() - not_finite);
+            pause().await;
+            if !drop_close(&scene, (DUPLICATE * d_hex) as f32, &mut drop) {
+                let duplicates = position.len() - not_finite - scene.tree.len();
+                return Self { scene, spacing, triangles, mesh, duplicates, not_finite, drop };
+            }
+        }
+    }
+}
+
+/// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`.
+fn drop_equal(position: &[Vec3], drop: &mut [bool], has_duplicate: &mut [bool]) {
+    // This is a hash table with open addressing, at most half full; a slot holds an index + 1.
+    let mut slots = vec![0_u32; (2 * position.len()).next_power_of_two()];
+    let mask = slots.len() - 1;
+    for (i, p) in position.iter().enumerate() {
+        if drop[i] {
+            continue;
+        }
+        let mut hash = 0_u64;
+        for c in p.to_array() {
+            // Adding 0 turns −0 into 0.
+            hash = (hash ^ u64::from((c + 0.0).to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash ^= hash >> 29;
+        }
+        let mut slot = hash as usize & mask;
+        loop {
+            match slots[slot] {
+                0 => {
+                    slots[slot] = i as u32 + 1;
+                    break;
+                }
+                earlier if position[earlier as usize - 1] == *p => {
+                    drop[i] = true;
+                    has_duplicate[earlier as usize - 1] = true;
+                    break;
+                }
+                _ => slot = (slot + 1) & mask,
+            }
+        }
+    }
+}
+
+/// Marks every point closer than `limit` to an earlier one in `drop`. Returns whether there was any.
+fn drop_close(scene: &Scene, limit: f32, drop: &mut [bool]) -> bool {
+    let tree = &scene.tree;
+    let mut near = Vec::new();
+    let mut any = false;
+    for i in 0..tree.len() {
+        if scene.rings.nearest[i] < limit {
+            near.clear();
+            tree.within_box(tree.position[i] - limit, tree.position[i] + limit, &mut near);
+            if near.iter().any(|&j| {
+                tree.origin[j as usize] < tree.origin[i]
+                    && (tree.position[j as usize] - tree.position[i]).length() < limit
+            }) {
+                drop[tree.origin[i] as usize] = true;
+                any = true;
+            }
+        }
+    }
+    any
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_points_are_those_with_equal_coordinates_whatever_the_sign_of_zero() {
+        let values = [0.0, -0.0, 1.0, -1.0, 0.1];
+        let position: Vec<Vec3> = (0..300)
+            .map(|k: usize| {
+                Vec3::from_array([k * 7, k * 11 / 3, k * k / 5].map(|k| values[k % values.len()]))
+            })
+            .collect();
+        // Those that are not finite are dropped already.
+        let mut drop: Vec<bool> = (0..position.len()).map(|i| i % 17 == 3).collect();
+        let is_first = |i: usize| i % 17 != 3 && !(0..i).any(|j| j % 17 != 3 && position[j] == position[i]);
+        let has_later = |i: usize| (i + 1..position.len()).any(|j| j % 17 != 3 && position[j] == position[i]);
+        let mut has_duplicate = vec![false; position.len()];
+        drop_equal(&position, &mut drop, &mut has_duplicate);
+        for i in 0..position.len() {
+            assert_eq!(drop[i], !is_first(i), "{i}");
+            assert_eq!(has_duplicate[i], is_first(i) && has_later(i), "{i}");
+        }
+    }
+}
