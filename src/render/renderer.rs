@@ -105,9 +105,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Largest number of particles that [`Renderer::write`] takes, which take 128 MiB on the GPU.
+    /// Largest number of particles that [`Renderer::write`] takes, which take 144 MiB on the GPU.
     pub const MAX_PARTICLES: u32 = Store::MAX;
-    /// Largest number of faces that [`Renderer::write_faces`] takes, which take 352 MiB on the GPU.
+    /// Largest number of faces that [`Renderer::write_faces`] takes, which take 396 MiB on the GPU.
     pub const MAX_FACES: u32 = Store::MAX;
 
     /// Opens a device that can draw on `surface_target`.

@@ -133,7 +133,8 @@ impl Core {
         self.column(&self.session.particles().parent, from)
     }
 
-    /// Six three-bit fates per particle, from particle `from` on.
+    /// The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
+    /// singular point nearby.
     pub fn slots(&self, from: usize) -> Vec<u32> {
         self.column(&self.session.particles().slots, from).into_iter().map(|slots| slots.0).collect()
     }

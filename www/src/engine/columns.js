@@ -65,7 +65,7 @@ export class Columns {
     /**
      * Positions before each relaxation step, the first as they were placed. Of many particles only those are kept. Empty before a
      * relaxation has ended. They stay until the next run begins, also while no level is shown: nothing but the whole run could make
-     * them again, and their 12 bytes for a particle are few beside the 53 of all columns.
+     * them again, and their 12 bytes for a particle are few beside the 57 of all columns.
      * @type {Float32Array[]}
      */
     this.past = [];

@@ -81,7 +81,7 @@ export function stepOfRest(energies) {
   return Math.max(1, at);
 }
 
-/** The particle and the slot where the surface bends most between a particle and its parent. @param {LessonParticles} placed */
+/** The child and its parent between which the surface bends most; null if there is no child. @param {LessonParticles} placed */
 export function sharpestBend({ normals, parents }) {
   let [child, least] = [-1, 2];
   for (let i = 0; i < parents.length; i += 1) {

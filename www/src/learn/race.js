@@ -35,7 +35,8 @@ const OF_THE_PAPER = {
     { ratio: 4535.15 / 252.19, words: '27,314 against 27,151' },
   ],
 };
-/** The axis of these ratios is logarithmic and ends here. */
+/** The axis of these ratios is logarithmic, between these. */
+const LEAST_RATIO = 0.5;
 const MOST_RATIO = 30;
 const TICKS = [1, 2, 5, 10, 20];
 
@@ -135,6 +136,7 @@ export function mountRace(host, lab) {
   }
 
   async function run() {
+    const chosen = kind;
     const { orbit, lanes, names } = lay();
     const lastMs = [-Infinity, -Infinity];
     const own = new Race({
@@ -155,15 +157,21 @@ export function mountRace(host, lab) {
     go.textContent = 'Pause';
     status.textContent = 'Both are running. You may turn the pictures.';
     try {
-      const settings = await settingsOf(lab, kind);
-      orbit.fitTo((await lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES })).end);
-      await own.start(lab.surface, [settings, opponentOf(settings)]);
+      const settings = await settingsOf(lab, chosen);
+      const { end } = await lab.run({ radius: settings.radius, relax_steps: 0 }, { particles: PARTICLES });
+      // Meanwhile the race may have been given up, or paused.
+      if (race !== own) return;
+      orbit.fitTo(end);
+      const done = own.start(lab.surface, [settings, opponentOf(settings)]);
+      if (isPaused) own.pause();
+      await done;
       const ends = [await own.particles(0), await own.particles(1)];
+      if (race !== own) return;
       for (const [k, particles] of ends.entries()) lanes[k].show(particles);
-      fill(result, resultOf(names, own.lanes, ends), marksOf(kind, own.lanes[1].workMs / own.lanes[0].workMs));
+      fill(result, resultOf(names, own.lanes, ends), marksOf(chosen, own.lanes[1].workMs / own.lanes[0].workMs));
       stop();
     } catch (error) {
-      if (/** @type {any} */ (error)?.kind === 'given_up') return;
+      if (race !== own || /** @type {any} */ (error)?.kind === 'given_up') return;
       stop();
       status.textContent = reasonOf(error);
     }
@@ -196,7 +204,7 @@ function resultOf(names, lanes, ends) {
 }
 
 /** Where a ratio stands on the axis, 0 to 1. @param {number} ratio */
-const placeOf = (ratio) => Math.min(1, Math.max(0, Math.log(ratio * 2) / Math.log(MOST_RATIO * 2)));
+const placeOf = (ratio) => Math.min(1, Math.max(0, Math.log(ratio / LEAST_RATIO) / Math.log(MOST_RATIO / LEAST_RATIO)));
 
 /** This race beside those of the paper. @param {string} kind @param {number} ratio  of the two clocks */
 function marksOf(kind, ratio) {

@@ -10,7 +10,7 @@ import { adaptiveRun, LAWS } from './adaptive.js';
 /** What an assignment may lock: on its bench, then on the rest of the page. @typedef {'what' | 'left' | 'right' | 'figures' | 'questions' | 'bench' | 'race'} Control */
 /** What stands on the bench. @typedef {{ what: string, left: string, right: string }} Setup */
 /**
- * One choice. `makes` is given a value and makes the run; the first two values are shown first.
+ * One choice. `make` is given a value and makes the run; the first two values are shown first.
  * @typedef {object} WhatIf
  * @property {string} id
  * @property {string} name

@@ -25,8 +25,8 @@ export function attachMenu(button, items, { label }) {
   });
   menu.addEventListener('keydown', (event) => {
     const step = event.key === 'ArrowDown' ? 1 : event.key === 'ArrowUp' ? -1 : 0;
-    const stops = /** @type {HTMLElement[]} */ ([...menu.querySelectorAll('button')]);
-    const at = stops.indexOf(/** @type {HTMLElement} */ (document.activeElement));
+    const stops = [...menu.querySelectorAll('button')].filter((each) => each.checkVisibility());
+    const at = stops.indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
     if (!step || at < 0) return;
     event.preventDefault();
     stops[(at + step + stops.length) % stops.length].focus();

@@ -377,7 +377,7 @@ describe('colours of particles', () => {
       'seven',
       'eight',
       'eight',
-      'none',
+      'eight',
     ]);
   });
 });

@@ -46,6 +46,23 @@ test('the way of drawing is chosen in the view options, and in words where there
   await clean();
 });
 
+test('the arrow keys pass over the lines of the view options that are hidden', async ({ page }) => {
+  const { clean } = await open(page);
+  await page.getByRole('button', { name: 'View options' }).click();
+  const menu = page.locator('[popover]:popover-open');
+  const shown = await menu.locator('button:visible').count();
+  expect(await menu.locator('button').count()).toBeGreaterThan(shown);
+  const first = menu.locator('button:visible').first();
+  await first.focus();
+  for (let k = 1; k < shown; k += 1) {
+    await page.keyboard.press('ArrowDown');
+    await expect(menu.locator('button:visible').nth(k)).toBeFocused();
+  }
+  await page.keyboard.press('ArrowDown');
+  await expect(first).toBeFocused();
+  await clean();
+});
+
 test('a refined surface is told as such, and shows its coarse level while a slider is dragged', async ({ page }) => {
   const settings = { method: 'refined', size_mode: 'count', count: 20_000 };
   const { clean } = await open(page, { hash: link({ surface: 'torus', settings }) });

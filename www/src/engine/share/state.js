@@ -291,7 +291,8 @@ export function sanitize(raw, description, hasFile = false) {
         if (v === undefined || v !== value) reset.push(`parameter ${name.slice(0, 32)}`);
         if (v !== undefined) state.parameters[name] = v;
       }
-      if (Object.keys(raw.parameters).length > MOST_PARAMETERS) reset.push('parameters beyond the 64th');
+      if (Object.keys(raw.parameters).length > MOST_PARAMETERS)
+        reset.push(`parameters beyond the ${MOST_PARAMETERS}th`);
     } else reset.push('parameters');
   }
   if (raw.declared !== undefined) {
@@ -301,6 +302,7 @@ export function sanitize(raw, description, hasFile = false) {
         if (parameter && !state.declared.some((p) => p.name === parameter.name)) state.declared.push(parameter);
         else reset.push('a declared parameter');
       }
+      if (raw.declared.length > MOST_PARAMETERS) reset.push(`declared parameters beyond the ${MOST_PARAMETERS}th`);
     } else reset.push('declared parameters');
   }
   if (raw.centres !== undefined && raw.centres !== null) {

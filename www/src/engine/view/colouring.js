@@ -39,7 +39,7 @@ export function classOfSlots(slots, adaptive) {
 
 /** @param {number} valence @returns {'none' | 'four' | 'five' | 'six' | 'seven' | 'eight'} */
 export function classOfValence(valence) {
-  if (valence === 0 || valence === 255) return 'none';
+  if (valence === 0) return 'none';
   if (valence <= 4) return 'four';
   if (valence >= 8) return 'eight';
   return valence === 5 ? 'five' : valence === 6 ? 'six' : 'seven';
@@ -196,7 +196,7 @@ const VALENCE_LABELS = /** @type {const} */ ([
   ['six', '6'],
   ['seven', '7'],
   ['eight', '8 or more'],
-  ['none', 'at a border'],
+  ['none', 'none'],
 ]);
 
 /**

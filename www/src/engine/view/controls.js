@@ -114,9 +114,9 @@ function wheelZoom(event, pagePx) {
 /** @param {KeyboardEvent} event @param {Stage} stage @returns {boolean} whether the key is handled */
 function pressed(event, { camera, currentView, fit, centre, point }) {
   if (event.ctrlKey || event.metaKey || event.altKey) return false;
-  camera.rest();
   const arrow = Object.hasOwn(ARROWS, event.key) ? ARROWS[event.key] : null;
   if (arrow) {
+    camera.rest();
     const [x, y] = arrow;
     if (event.shiftKey) camera.pan(x * KEY_PAN_PX, -y * KEY_PAN_PX, currentView());
     else camera.orbit(x * KEY_TURN_RAD, -y * KEY_TURN_RAD);
@@ -125,10 +125,12 @@ function pressed(event, { camera, currentView, fit, centre, point }) {
   switch (event.key) {
     case '+':
     case '=':
+      camera.rest();
       camera.zoom(KEY_ZOOM);
       return true;
     case '-':
     case '_':
+      camera.rest();
       camera.zoom(1 / KEY_ZOOM);
       return true;
     case 'Enter': {

@@ -1,7 +1,7 @@
 /**
  * Draws discs on a 2-D canvas without a graphics API, as the last fallback. Each disc is an ellipse on the screen,
- * filled pixel by pixel with the depth of its plane. The picture equals that of a graphics card, but without
- * antialiasing.
+ * filled pixel by pixel with the depth of its plane. The picture is like that of a graphics card, but without
+ * antialiasing, domes and fading in.
  *
  * The class has the methods of the WebAssembly renderers, so that the viewer treats them alike.
  *
@@ -63,8 +63,8 @@ function eyeAxes(m) {
 }
 
 /**
- * Returns the brightness as in shaders/discs.wgsl: a wrapped key light and a hemisphere light, darker at the
- * silhouette.
+ * Returns the brightness as `brightness` in shaders/common.wgsl does, with the sky straight up: a wrapped key light and a
+ * hemisphere light, darker at the silhouette.
  * @param {number} keyward  component of the normal towards the light @param {number} skyward component upwards
  * @param {number} edgeOn  1 at the silhouette
  */

@@ -5,22 +5,13 @@
  * @module
  */
 
-/** Duration for a whole surface, whatever its number of levels. */
-const WHOLE_S = 1.1;
-/**
- * Limits of the time between two levels. Below one frame nothing is gained; above the upper limit the viewer has to
- * wait.
- */
-const FASTEST_S = 1 / 120;
-const SLOWEST_S = 0.06;
-/** Number of levels assumed while the front is running, typical of a surface at the paper's usual radius. */
-const USUAL_LEVELS = 90;
+/** Time between two levels: a surface of 90 levels, usual at the paper's radius, appears in 1.1 s. */
+const STEP_S = 1.1 / 90;
 
 export class Reveal {
   constructor() {
     this.active = false;
     this.startS = 0;
-    this.stepS = 0;
     /** Time in seconds at which each level appears. @type {number[]} */
     this.births = [];
   }
@@ -29,7 +20,6 @@ export class Reveal {
   begin(nowS) {
     this.active = true;
     this.startS = nowS;
-    this.stepS = Math.min(SLOWEST_S, Math.max(FASTEST_S, WHOLE_S / USUAL_LEVELS));
     this.births = [];
   }
 
@@ -45,7 +35,7 @@ export class Reveal {
   birthOf(level, nowS) {
     if (!this.active) return -Infinity;
     for (let k = this.births.length; k <= level; k += 1) {
-      const after = k === 0 ? nowS : this.births[k - 1] + this.stepS;
+      const after = k === 0 ? nowS : this.births[k - 1] + STEP_S;
       this.births.push(Math.max(after, nowS));
     }
     return this.births[level];

@@ -106,9 +106,10 @@ export class Player {
     if (grain !== 'level' && !this.isOpen.peek()) return void this.choose(grain);
     const lesson = this.lesson.peek();
     if (grain === 'level' && chosen !== 'level' && lesson) {
+      if (typeof to === 'string') return this.seekLevel(to === 'first' ? 0 : this.levels.last.peek());
       // Between the events a level begins with its first particle.
       const level = lesson.level.peek();
-      if (level !== null && typeof to === 'number') lesson.goToLevel(level + to);
+      if (level !== null) lesson.goToLevel(level + to);
       return;
     }
     const track = this.trackOf(grain);

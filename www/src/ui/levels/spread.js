@@ -64,8 +64,8 @@ export function nearestBins(nearest) {
 }
 
 /**
- * Counts the particles by their number of neighbours, with the share of six among all; null where no number is known. Those at a
- * border have none, and no bar.
+ * Counts the particles by their number of neighbours, with the share of six among all; null where no number is known. Duplicates
+ * have none, and no bar.
  * @param {ArrayLike<number> | null} valence
  */
 export function degreeBins(valence) {
@@ -74,7 +74,7 @@ export function degreeBins(valence) {
   /** @type {number[]} */
   const counts = new Array(most - least + 1).fill(0);
   for (let i = 0; i < valence.length; i += 1) {
-    if (valence[i] === 0 || valence[i] === 255) continue;
+    if (valence[i] === 0) continue;
     counts[Math.min(most, Math.max(least, valence[i])) - least] += 1;
   }
   return { counts, six: counts[6 - least] / valence.length };
