@@ -106,8 +106,7 @@ pub enum Seeding {
 #[serde(default)]
 pub struct Settings {
     /// Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
-    /// `residual`,
-    /// `max_iterations` and `max_particles`.
+    /// `residual`, `max_iterations` and `max_particles`.
     pub method: Method,
     /// Whether all particles have one radius (§4), or one that follows the curvature (§5).
     #[cfg_attr(test, ts(type = "'uniform' | 'adaptive'"))]

@@ -236,19 +236,19 @@ export type Figures = {
   edge_cv: number,
   /** Standard deviation over mean of edge length over the sum of the wanted radii. */
   size_cv: number,
-  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the wanted
-  * radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area. 1
-  * is ideal. With equal radii this is `cover`. */
+  /** Largest ratio of a hole's radius to that of a hexagonal lattice with the wanted radius there, which is the mean of the
+  * wanted radii of the points around the hole. One factor scales all wanted radii so that their cells have the surface's area.
+  * 1 is ideal. With equal radii this is `cover`. */
   cover_local: number,
   /** Smallest distance of natural neighbours over the sum of their wanted radii: 1 where particles just touch, 0 for
   * duplicates. */
   overlap_min: number,
-  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of their
-  * wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where there
-  * are no distances. */
+  /** Pairs of points nearer than [`CROWDED`](super::CROWDED): over d_hex, as `nn_min`, or of natural neighbours over the sum of
+  * their wanted radii, as `overlap_min`, where those are known. A duplicate is a pair with the point that it equals. None where
+  * there are no distances. */
   crowded: number | null,
-  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which none has
-  * its middle in a wider one. None where `cover` is undefined. */
+  /** Holes wider than [`WIDE`](super::WIDE), as `cover`, or as `cover_local` where wanted radii are known: empty discs of which
+  * none has its middle in a wider one. None where `cover` is undefined. */
   wide_holes: number | null,
   /** Points closer than 1e-6 to an earlier one; dropped before the triangulation. */
   dup: number,
@@ -298,7 +298,7 @@ export type Hole = {
   ratio: number,
 };
 
-/** JobStage of a job, as the page shows it. */
+/** The stage of a job, as the page shows it. */
 export type JobStage = "reading" | "normals" | "thinning" | "solving" | "done";
 
 /** What the values of a setting are. */
@@ -651,8 +651,8 @@ export type LessonSeeding = "one_by_one" | "together";
 
 /** The choices of a run. `Default` gives those of the paper; where it names no value, those of the fast sampler. */
 export type LessonSettings = {
-  /** Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds, `residual`,
-  * `max_iterations` and `max_particles`. */
+  /** Which method covers the surface. Of the settings below, the two particle systems use those of the sizes, the seeds,
+  * `residual`, `max_iterations` and `max_particles`. */
   method: LessonMethod,
   /** Whether all particles have one radius (§4), or one that follows the curvature (§5). */
   sampling: 'uniform' | 'adaptive',
@@ -665,8 +665,8 @@ export type LessonSettings = {
   law_scale: number,
   /** Smallest radius of an adaptive particle, a length. */
   radius_min: number,
-  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius at
-  * which a particle divides whatever it feels; 0 has it measured. */
+  /** Largest radius of an adaptive particle, a length. In Witkin and Heckbert's system half of the surface's diameter, a radius
+  * at which a particle divides whatever it feels; 0 has it measured. */
   radius_max: number,
   /** An adaptive child is added if the free angle τ is at least this share of φ, the angle that it takes. The paper compares
   * them as they are, which is 1: on a lattice, where the two are equal, rounding then decides. */
@@ -802,8 +802,9 @@ export type ModelInfo = {
   centres: number,
   /** Estimated condition number of the system. */
   condition: number,
-  /** Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface to
-  * first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit Equations", 1991). */
+  /** Mean residual |f|/|∇f| of all distinct points read, as a share of the diagonal of their box: their distance from the surface
+  * to first order (G. Taubin, "Estimation of Planar Curves, Surfaces, and Nonplanar Space Curves Defined by Implicit
+  * Equations", 1991). */
   residual_mean: number,
   /** Residual that 95 % of them do not exceed, as a share of that diagonal. */
   residual_95: number,
@@ -845,8 +846,8 @@ export type Parameter = {
 /** What the sampler is doing. */
 export type Phase = "idle" | "seeding" | "generation" | "refinement" | "search" | "relaxation" | "done";
 
-/** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the closest
-* pair and the largest hole. */
+/** The worst places, the worst first, at most 64 of each kind: the crowded pairs and the wide holes or, if there are none, the
+* closest pair and the largest hole. */
 export type Places = {
   /** Crowded pairs. */
   pairs: Array<Pair>,
@@ -924,7 +925,8 @@ export type Report = {
   search: Search,
   /** Which of the witnessed components hold particles. */
   sampled: Sampled,
-  /** Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was attempted. */
+  /** Cells of the box in which the proof could not decide, and witnesses of which it could not; none where no proof was
+  * attempted. */
   undecided_cells: number | null,
   /** Places where f has no gradient on the surface, a curve of them counted as one; none where they were not looked for. */
   singular_points: number | null,

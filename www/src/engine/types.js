@@ -2,8 +2,8 @@
  * Types of the engine: the core's description, the values of the engine's signals, and the arguments of its commands.
  *
  * The file has JSDoc types and a few constants. Import a type with `@typedef {import('./types.js').State} State`.
- * Lengths are in the field's own
- * coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says otherwise.
+ * Lengths are in the field's own coordinates, angles in radians (`…_rad`), pixels are CSS pixels unless a name says
+ * otherwise.
  *
  * @module
  */
@@ -86,7 +86,7 @@
 /**
  * @typedef {object} ViewState
  * @property {ColourMode} colour
- * @property {number} size  disc radius as a share of the repulsion radius, 0.2 … 1.5; 0.92 by default
+ * @property {number} size  disc radius as a share of the repulsion radius: see {@link DISC_SIZE}
  * @property {'discs' | 'mesh'} draw  how the particles are drawn
  * @property {'smooth' | 'flat'} faces  how the faces of a mesh are lit and coloured
  * @property {boolean} edges  whether the edges of a mesh are drawn
@@ -137,8 +137,7 @@
 /** @typedef {'starting' | 'webgpu' | 'webgl2' | 'canvas2d'} BackendName */
 /**
  * A message for the user. `id` names its cause (`panic`, `hang`, `safe-mode`, `device-lost`, `link`, `load`, `size`,
- * `file`,
- * `share-file`, …); a later notice of the same cause replaces it, and it is removed when it no longer applies.
+ * `file`, `share-file`, …); a later notice of the same cause replaces it, and it is removed when it no longer applies.
  * `details` is a report for the user to copy.
  * @typedef {object} Notice
  * @property {string} id
@@ -312,6 +311,8 @@
 
 /** Value of `State.surface` for a surface from a file. */
 export const FILE_SURFACE = 'file';
+/** Disc radius as a share of the repulsion radius. */
+export const DISC_SIZE = { initial: 0.92, min: 0.2, max: 1.5, step: 0.01 };
 /** Size of the largest file that is read. */
 export const LARGEST_FILE_BYTES = 50e6;
 /** File extensions that `openFile` reads, for the `accept` attribute of a file chooser. */

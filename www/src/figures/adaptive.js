@@ -20,6 +20,7 @@ const TAKEN_AT = 1.14;
 const FREE_AT = 1.36;
 /** Radius of the dot of a push. */
 const DOT = 0.07;
+
 /** @param {Opened} opened @param {Moment} moment */
 export function adaptivePlane(opened, moment) {
   const { subject, positions, radii, place } = opened;

@@ -132,6 +132,6 @@ function begin(child, { parent, slot, position }) {
 }
 
 /** The slot of which an event speaks, or null. @param {LessonEvent} event */
-export function slotOf(event) {
+function slotOf(event) {
   return 'slot' in event ? event.slot : null;
 }

@@ -44,7 +44,7 @@ const PATHS = /** @type {const} */ ({
 export const icon = (name) => drawIcon(PATHS[name]);
 
 /** @param {string} shape  a path on the same grid */
-export function drawIcon(shape) {
+function drawIcon(shape) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   svg.setAttribute('viewBox', '0 0 16 16');
   svg.setAttribute('aria-hidden', 'true');

@@ -71,6 +71,7 @@ const FIRST_BUDGET = 256;
 const FIRST_SLICES = 32;
 /** Shortest interval between column messages: about a frame at 60 Hz. */
 const PICTURE_MS = 15;
+
 /** Returns the entry of the times to which a phase of the core counts. @param {CoreProgress['phase']} phase @returns {keyof Seconds} */
 function clockOf(phase) {
   return phase === 'generation' || phase === 'refinement' || phase === 'relaxation' ? phase : 'seeding';

@@ -71,6 +71,7 @@ let core = null;
 /** @type {import('../../wasm/core/core.js').InitOutput | null} */
 let raw = null;
 const memory = { held: 0, meshed: 0 };
+
 /** Causes the fault that a test has requested: a real trap in the instance, a stack overflow or an endless loop. */
 function provoke() {
   const fault = provoked;

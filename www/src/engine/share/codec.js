@@ -18,7 +18,7 @@ const VERSION = 1;
 /** Largest length of a fragment that is decoded. */
 export const LONGEST_FRAGMENT = 65_536;
 /** Largest size of the inflated JSON. No state written by the page comes near it. */
-export const LONGEST_JSON = 65_536;
+const LONGEST_JSON = 65_536;
 /** Length below which deflate makes the text longer. */
 const WORTH_DEFLATING = 256;
 
@@ -49,26 +49,8 @@ export function difference(state, description) {
   if (Object.keys(settings).length) out.settings = settings;
   /** @type {Record<string, unknown>} */
   const look = {};
-  for (const key of /** @type {const} */ ([
-    'colour',
-    'size',
-    'draw',
-    'faces',
-    'edges',
-    'marks',
-    'theme',
-    'ghost',
-    'box',
-    'axes',
-    'bar',
-    'measured',
-    'points',
-    'level',
-    'step',
-    'grain',
-    'follow',
-  ]))
-    if (view[key] !== home.view[key]) look[key] = view[key];
+  for (const [key, value] of Object.entries(view))
+    if (key !== 'camera' && value !== /** @type {any} */ (home.view)[key]) look[key] = value;
   const { camera } = view;
   const rounded = {
     target: camera.target.map((v) => short(v)),

@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { FILE_SURFACE } from '../types.js';
+import { DISC_SIZE, FILE_SURFACE } from '../types.js';
 import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 
 /**
@@ -25,7 +25,7 @@ const LARGEST_SINGLE = 3e38;
 const LAST_LEVEL = 1e6;
 
 /** @type {readonly import('../types.js').ColourMode[]} */
-export const COLOUR_MODES = [
+const COLOUR_MODES = [
   'level',
   'fate',
   'valence',
@@ -46,12 +46,11 @@ const CHOICES = /** @type {const} */ ([
   ['faces', 'faces of the mesh', ['smooth', 'flat']],
   ['grain', 'grain of the timeline', ['level', 'particle', 'event']],
 ]);
-export const DISC_SIZE = { default: 0.92, min: 0.2, max: 1.5 };
 
 /** @returns {import('../types.js').ViewState} */
 const homeView = () => ({
   colour: 'level',
-  size: DISC_SIZE.default,
+  size: DISC_SIZE.initial,
   draw: 'discs',
   faces: 'smooth',
   edges: true,
@@ -207,7 +206,7 @@ function validFollow(v) {
  * Numbers of points that can be fitted of a model or a file; null for a surface from a formula. How many a file has is not known here.
  * @param {Description} description @param {string} id
  */
-export function centresOf({ limits, models }, id) {
+function centresOf({ limits, models }, id) {
   const most = id === FILE_SURFACE ? Infinity : models.find((model) => model.id === id)?.points;
   if (most === undefined) return null;
   const usual = Math.min(limits.centres, most);

@@ -29,8 +29,7 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowD
  * @param {{deltaY: number, deltaMode: number}} event
  * @param {number} pagePx
  */
-export const wheelPixels = ({ deltaY, deltaMode }, pagePx) =>
-  deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? pagePx : 1);
+const wheelPixels = ({ deltaY, deltaMode }, pagePx) => deltaY * (deltaMode === 1 ? 16 : deltaMode === 2 ? pagePx : 1);
 
 /**
  * @param {Stage} stage

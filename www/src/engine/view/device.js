@@ -17,7 +17,7 @@ import { BACKENDS, openDevice } from './backends.js';
 /** Time window in which losses of one kind of device are counted. */
 const WINDOW_MS = 60_000;
 /** Number of losses after which the same kind is reopened. One more loss leads to the next kind. */
-export const TRIES = 3;
+const TRIES = 3;
 /** Delay before each attempt, because a graphics process takes a moment to restart. */
 const WAIT_MS = [0, 300, 1000];
 

@@ -6,7 +6,7 @@ import { FATE } from '../../engine/columns.js';
 const FATES = 8;
 
 /** Fates of the proposed children in the order in which they are stacked, with their names. */
-export const STACKED = /** @type {const} */ ([
+const STACKED = /** @type {const} */ ([
   ['added', 'added'],
   ['matched', 'met another'],
   ['outside', 'outside'],

@@ -23,7 +23,7 @@ import { compose } from './compose.js';
  */
 
 /** Pictures per second of a sequence; the least time between two of a film. */
-export const FRAMES_PER_S = 30;
+const FRAMES_PER_S = 30;
 /** Bits of a film per pixel and second. Fine dots need more than a filmed scene. */
 const BITS_PER_PX_S = 5;
 /** Kinds of film, the best first. Safari makes only the last. */
@@ -45,7 +45,7 @@ export function durationOf(subject) {
  * @param {Engine} engine @param {Subject} subject
  * @returns {{ at: (share: number) => Promise<void>, back: () => void }}
  */
-export function poserOf(engine, subject) {
+function poserOf(engine, subject) {
   if (subject.kind === 'free') return { at: async () => {}, back: () => {} };
   const { view, parameters } = engine.state.peek();
   if (subject.kind === 'turn') {

@@ -40,7 +40,7 @@ export function isSegmented({ kind, choices = [] }) {
  * @param {Settings} values values that differ from the defaults
  * @param {string} name
  */
-export const settingValue = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
+const settingValue = (all, values, name) => values[name] ?? all.find((info) => info.name === name)?.default;
 
 /**
  * Returns whether all conditions of a setting hold.

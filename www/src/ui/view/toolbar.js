@@ -1,5 +1,7 @@
 /** The toolbar beside the picture: zoom, fit, view options, link, picture, export. */
+
 import { computed, effect } from '@preact/signals-core';
+import { DISC_SIZE } from '../../engine/types.js';
 import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
@@ -19,7 +21,6 @@ const MESH_FORMATS = [
   ['stl', 'triangles alone'],
   ['ply', 'all columns, and triangles'],
 ];
-const SIZE = { min: 0.2, max: 1.5, step: 0.01, initial: 0.92 };
 
 /**
  * @param {Engine} engine
@@ -167,11 +168,11 @@ function discSize(engine) {
   const size = computed(() => engine.state.value.view.size);
   const slider = createSlider({
     name: 'Disc size',
-    scale: SIZE,
+    scale: DISC_SIZE,
     value: size.peek(),
     describe: (value) => `${formatShare(value, 0)} of the repulsion radius`,
     change: (value) => engine.setView({ size: value }),
-    reset: () => engine.setView({ size: SIZE.initial }),
+    reset: () => engine.setView({ size: DISC_SIZE.initial }),
     number: false,
   });
   effect(() => slider.set(size.value));
