@@ -34,12 +34,13 @@ impl Parser<'_> {
     pub(super) fn call(&mut self, function: Function, span: Range<usize>) -> Parse {
         let exponent = self.exponent_of_value(function, &span)?;
         let (arguments, whole) = if let Token::Open(_) = self.peek().token {
-            let (Arguments { arguments, doubtful }, inside) = self.arguments()?;
+            let (Arguments { arguments, doubtful, first_doubtful }, inside) = self.arguments()?;
             // Decimal commas are told by the number of arguments: `min(1,5)` has two, `min(x, 1,5)` has two or three.
-            let fewest = arguments.len() - doubtful.len();
-            let may_be_fewer = (fewest..arguments.len()).any(|count| function.takes(count));
-            if let Some(error) = doubtful.into_iter().next()
-                && (may_be_fewer || !function.takes(arguments.len()))
+            let count = arguments.len();
+            let may_be_fewer = (count - doubtful..count).any(|fewer| function.takes(fewer));
+            if doubtful > 0
+                && (may_be_fewer || !function.takes(count))
+                && let Some(error) = self.decimal_comma(first_doubtful)
             {
                 return Err(error);
             }

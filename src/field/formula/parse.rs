@@ -77,8 +77,9 @@ pub(super) type Parse = Result<Expr, FormulaError>;
 /// The arguments of a function.
 pub(super) struct Arguments {
     pub(super) arguments: Vec<Expr>,
-    /// An error for each comma between them that may be a decimal one.
-    pub(super) doubtful: Vec<FormulaError>,
+    /// Number of the commas between them that may be decimal ones, and the token of the first.
+    pub(super) doubtful: usize,
+    pub(super) first_doubtful: usize,
 }
 
 impl Parser<'_> {
@@ -189,29 +190,30 @@ impl Parser<'_> {
         FormulaError::new(ErrorKind::UnexpectedSymbol, span.clone(), message)
     }
 
-    /// Error for the comma that is token `at`, if it may be a decimal one: between two numbers without a point, and without a space.
-    pub(super) fn decimal_comma(&self, at: usize) -> Option<FormulaError> {
+    /// The numbers on both sides of the comma that is token `at`, if it may be a decimal one: they have no point, and there is no space.
+    fn numbers_beside(&self, at: usize) -> Option<[&Range<usize>; 2]> {
         let [
             Spanned { token: Token::Number(_), span: whole },
-            comma,
+            Spanned { token: Token::Comma, span: comma },
             Spanned { token: Token::Number(_), span: rest },
         ] = self.tokens.get(at.checked_sub(1)?..at + 2)?
         else {
             return None;
         };
-        let is_tight =
-            comma.token == Token::Comma && whole.end == comma.span.start && comma.span.end == rest.start;
-        let (whole_text, rest_text) = (slice(self.text, whole), slice(self.text, rest));
-        // What has a point already takes no decimal comma.
-        let has_no_point = whole_text.chars().all(char::is_numeric) && !rest_text.contains('.');
-        if !(is_tight && has_no_point) {
-            return None;
-        }
+        let is_tight = whole.end == comma.start && comma.end == rest.start;
+        let is_whole = slice(self.text, whole).chars().all(char::is_numeric);
+        (is_tight && is_whole && !slice(self.text, rest).contains('.')).then_some([whole, rest])
+    }
+
+    /// Error for the comma that is token `at`, if it may be a decimal one.
+    pub(super) fn decimal_comma(&self, at: usize) -> Option<FormulaError> {
+        let span = self.numbers_beside(at).map(|[whole, rest]| whole.start..rest.end)?;
+        let written = slice(self.text, &span);
         let message = format!(
-            "`{whole_text},{rest_text}`: decimals take a point; to separate two arguments put a space after the comma"
+            "`{written}`: decimals take a point; to separate two arguments put a space after the comma"
         );
-        let error = FormulaError::new(ErrorKind::DecimalComma, whole.start..rest.end, message);
-        Some(error.suggest(format!("{whole_text}.{rest_text}")))
+        let suggestion = written.replace(',', ".");
+        Some(FormulaError::new(ErrorKind::DecimalComma, span, message).suggest(suggestion))
     }
 
     fn sum(&mut self) -> Parse {
@@ -411,15 +413,19 @@ impl Parser<'_> {
     /// Parses the arguments of a function with the brackets around them; returns their span, too.
     pub(super) fn arguments(&mut self) -> Result<(Arguments, Range<usize>), FormulaError> {
         self.bracketed(|parser| {
-            let (mut arguments, mut doubtful) = (Vec::new(), Vec::new());
+            let (mut arguments, mut doubtful, mut first_doubtful) = (Vec::new(), 0, 0);
             if !matches!(parser.peek().token, Token::Close(_)) {
                 arguments.push(parser.within(false, Self::sum)?);
                 while parser.take(&Token::Comma) {
-                    doubtful.extend(parser.decimal_comma(parser.next - 1));
+                    let comma = parser.next - 1;
+                    if parser.numbers_beside(comma).is_some() {
+                        first_doubtful = if doubtful == 0 { comma } else { first_doubtful };
+                        doubtful += 1;
+                    }
                     arguments.push(parser.within(false, Self::sum)?);
                 }
             }
-            Ok(Arguments { arguments, doubtful })
+            Ok(Arguments { arguments, doubtful, first_doubtful })
         })
     }
 
