@@ -94,8 +94,8 @@ impl Pairs {
 
 /// Returns the number of wide holes, and those to be told, from the empty discs that were found.
 ///
-/// Of discs that overlap so far that the middle of one lies in the other, only the widest, over the ideal radius, is a hole of its
-/// own.
+/// Several empty discs may show one hole: where the middle of one disc lies in another, only the one with the larger ratio of its
+/// radius to the ideal one counts.
 pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
     let bits = |hole: &Hole| hole.position.map(f32::to_bits);
     found.sort_by(|a, b| b.ratio.total_cmp(&a.ratio).then_with(|| bits(a).cmp(&bits(b))));

@@ -17,7 +17,8 @@ pub(super) const OVERFLOW: &str = "f is too large for double precision in a part
      in a form with smaller numbers, each factor by its logarithm for example, or make the box smaller.";
 
 impl Session {
-    /// What a user should know about the run. `sampled` counts its places from zero; `facing` particles face another sheet.
+    /// Returns the warnings about the run. The places in `sampled` are coordinates of the formula; `facing` is the number of particles
+    /// that face another sheet.
     pub(super) fn warnings_of_run(&self, counts: &Counts, sampled: &Sampled, facing: usize) -> Vec<String> {
         let particles = self.sampler.particles();
         let (count, origin, radius) = (particles.len(), particles.origin, self.sampler.radius());

@@ -35,7 +35,7 @@ impl Parser<'_> {
         let exponent = self.exponent_of_value(function, &span)?;
         let (arguments, whole) = if let Token::Open(_) = self.peek().token {
             let (Arguments { arguments, doubtful, first_doubtful }, inside) = self.arguments()?;
-            // Decimal commas are told by the number of arguments: `min(1,5)` has two, `min(x, 1,5)` has two or three.
+            // The number of arguments tells whether a comma may be decimal: `min(1,5)` can have two only, `min(x, 1,5)` two or three.
             let count = arguments.len();
             let may_be_fewer = (count - doubtful..count).any(|fewer| function.takes(fewer));
             if doubtful > 0

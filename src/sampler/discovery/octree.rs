@@ -13,7 +13,7 @@
 //! J. Complexity 16, 2000.) In each of these 1 + 6 + 12 *strata* of the box one coordinate is *up*, the other free ones are
 //! *sides*, and q satisfies as many equations as there are free coordinates: as a rule such points are isolated, and few.
 //!
-//! So each stratum is subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is *discarded* if an
+//! Each stratum is therefore subdivided (an octree inside, quadtrees on the faces, binary trees on the edges). A cell is *discarded* if an
 //! interval shows that f, or the derivative along a side, vanishes nowhere in it. It is *decided* if f is monotone along up, not
 //! only in the cell C but in a taller one H on the same footprint, and H is so tall that the surface through any point of C cannot
 //! leave it over that footprint: by the mean value theorem it rises or falls by no more than t = Σ max|∂f/∂side| · width /
@@ -160,7 +160,7 @@ pub(crate) struct Octree {
     hi: DVec3,
     /// Number of factors of the field, which are searched one after the other.
     factors: usize,
-    /// Most cells that all factors together may take.
+    /// Largest number of cells that the searches of all factors together may visit.
     most: usize,
     search: FactorSearch,
     bounds: BoxBounds,

@@ -298,8 +298,8 @@ pub(crate) fn is_connected_by_segments(
     false
 }
 
-/// The same by way of a point beside the chord: the middle of the chord between opposite points of a small piece lies inside it,
-/// where no step leads to the surface.
+/// Whether two points of the surface are connected by two such chains, by way of a point beside their chord. On a small piece the
+/// middle of the chord between opposite points lies inside the piece, where no step leads to the surface.
 pub(crate) fn is_connected_around(
     field: &mut dyn Field,
     factor: usize,

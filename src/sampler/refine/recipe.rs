@@ -108,8 +108,8 @@ const BLEND: u8 = WHOLE;
 /// 0.061 on the ellipsoid, with two by 0.053: what was mended for other sizes is in the way.
 const BLEND_SWEEPS: usize = 3;
 const BLEND_ROUNDS: usize = 2;
-/// What differs from the plans where sizes differ: fewer rounds at the end of the first level, dearer defects there, and springs at
-/// the others that keep the lattice stiff in shear, which on the ellipsoid gains 0.2° of the mean angle.
+/// Where sizes differ, the first level ends with fewer rounds and has dearer defects, and the springs of the other levels keep the
+/// lattice stiff in shear, which on the ellipsoid gains 0.2° of the mean angle.
 const GRADED_ROUNDS: usize = 16;
 const GRADED_THETA: f32 = 0.8;
 /// Passes that limit the slope of the sizes: there and back, twice. What is far in that order is near on the surface at some pass,

@@ -327,8 +327,8 @@ fn badness(layer: &Layer, particles: &[u32]) -> i32 {
         .sum()
 }
 
-/// What may help at `v`: one particle fewer where it has less than six neighbours, one more where it has more. With six, the number
-/// of faces decides, where it is far from the wanted one; or its edges, where sizes differ.
+/// Returns what may help at `v`: one particle fewer where its valence is below the wanted one, one more where it is above. Where both are
+/// equal, the number of faces decides if it is far from the wanted one, or else, where sizes differ, the lengths of the edges.
 fn wish(layer: &Layer, aim: Aim, v: u32) -> Option<Wish> {
     let shortage = 1.0 - layer.mesh.faces() as f32 / aim.faces;
     match layer.excess(v).cmp(&0) {
