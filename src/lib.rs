@@ -112,7 +112,6 @@
 //! * [`spatial`] and [`particles`]: the cell grid and the columns. They know no field.
 //! * `slices`: long work that can be left and gone on with, as measuring is.
 //! * [`sampler`]: discovery, fronts, relaxation, as a state machine with a budget.
-//! * [`baseline`]: the particle systems that the paper compares its method with, natively only.
 //! * [`reference`](mod@reference): the paper's algorithms and those it compares them with, written for reading, with a log of every
 //!   event.
 //! * [`quality`]: figures about a set of particles, whatever made it: it never uses the sampler.
@@ -125,8 +124,6 @@
 //! * `web`: what JavaScript sees, on `wasm32` only.
 
 pub mod answer;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod baseline;
 pub mod differential;
 pub mod export;
 pub mod extent;

@@ -29,8 +29,6 @@ const ROOMS: [Room; 4] = [
             ("particles", &["math"]),
             ("mesh", &["math", "slices", "spatial", "particles"]),
             ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh"]),
-            // The methods that the paper compares its own with stand on the sampler's survey, sizes and projection.
-            ("baseline", &["math", "field", "sampler", "spatial", "particles"]),
             // Figures about a set of particles must not depend on what made them.
             ("quality", &["math", "slices", "field", "differential", "spatial", "particles"]),
             ("export", &["math", "spatial", "particles", "mesh", "quality"]),

@@ -13,7 +13,7 @@ use draw::{Colour, View, draw, write_row};
 use glam::Vec3;
 use marching_particles::math::grouped;
 use marching_particles::quality;
-use marching_particles::reference::{self, MAX_PARTICLES, Method, Reference};
+use marching_particles::reference::{self, Method, Reference};
 use marching_particles::sampler::{LawKind, Sampling};
 use printed::{Line, Printed, TABLE_1, TABLE_2};
 use runs::{End, Job, Outcome, Set, Surface};
@@ -121,16 +121,15 @@ machine makes them longer. Particles, steps and figures are the same on every ma
 
 - **Printed** is what the paper says, on a 3 GHz PC of its time. Its times and ours are of different machines: compare what is in the
   same column, and ratios.
-- **Faithful** is `src/reference`: the paper's algorithms as they are written, one particle after the other, in double precision, without
-  regard for speed. It follows at most {} particles; where a job has more, its cell is empty (–).
-- **Fast** is the sampler of the page and the command line, with its default settings, and for the other methods `src/baseline`: the same
-  methods with batches, neighbour lists and single precision.
+- **Faithful** is `src/reference`: the paper's algorithms, and those it compares them with, as they are written, one particle after the
+  other, in double precision, without regard for speed. Ratios of times are of faithful runs: like against like.
+- **Fast** is the sampler of the page and the command line, with its default settings.
 - All methods of a table have the same surface and the same radius, or law of the radius: that with which the fast sampler places the
   printed number of particles.
 - The ellipsoid has the semi-axes 1, 0.7 and 0.5; the paper names none. The bunny is the Stanford bunny through 200 points, of which none
   lies between the ears, as in the paper; which points the paper has is not known. In adaptive sampling the radius follows κ₁ + κ₂, as
   in the paper; its limits, which the paper does not name, are 0.4 and 2 radii of as many particles of one size.
-- *Last step* is that of the last relaxation step or iteration; of the fast methods the mean of the last ten.
+- *Last step* is that of the last relaxation step or iteration; of the fast sampler the mean of the ten.
 - A run of a particle system that takes longer than {} s is **cut off**, as in the paper, and its figures are those of what was there.
 
 Hole and pair are the radius of the largest hole and the distance of the closest pair, in units of a perfect lattice: of as many particles,
@@ -138,7 +137,6 @@ or in adaptive sampling of the particles' own radii.
 ",
         plan.machine,
         plan.threads,
-        grouped(MAX_PARTICLES as usize),
         plan.limit_s
     )
 }
@@ -150,10 +148,13 @@ struct Shown {
     bunny_adaptive: Option<Set>,
 }
 
-/// The four runs of a line of Table 1: of the paper's method and the other one, each faithful and fast.
+/// The runs of a line of Table 1.
 struct Runs {
-    ours: [Option<Outcome>; 2],
-    other: [Option<Outcome>; 2],
+    /// The paper's method as it is written.
+    ours: Outcome,
+    fast: Outcome,
+    /// The method that the paper compares its own with, as it is written.
+    other: Outcome,
 }
 
 fn run_line(line: &Line, plan: &Plan) -> Runs {
@@ -162,8 +163,9 @@ fn run_line(line: &Line, plan: &Plan) -> Runs {
     let settings = job.faithful();
     let system = reference::Settings { method, ..settings.clone() };
     let runs = Runs {
-        ours: [job.run_reference(&settings, f64::INFINITY), Some(job.run_fast())],
-        other: [job.run_reference(&system, plan.limit_s), Some(job.run_baseline(plan.limit_s))],
+        ours: job.run_faithful(&settings, f64::INFINITY),
+        fast: job.run_fast(),
+        other: job.run_faithful(&system, plan.limit_s),
     };
     eprintln!("{} {:?} {}", line.model, line.sampling, line.count);
     runs
@@ -180,28 +182,22 @@ fn other_method(line: &Line) -> (&'static str, Method) {
 fn table_1(out: &mut dyn Write, plan: &Plan, shown: &mut Shown) -> io::Result<()> {
     writeln!(out, "## Table 1")?;
     let all = plan.each(&TABLE_1, |line| run_line(line, plan));
-    for (line, Runs { ours, other }) in TABLE_1.iter().zip(all) {
-        if let Some(faithful) = &ours[0]
-            && line.id == "bunny-joined"
-        {
-            let set = Some(faithful.set.clone());
-            match line.sampling {
-                Sampling::Uniform => shown.bunny_uniform = set,
-                Sampling::Adaptive => shown.bunny_adaptive = set,
-            }
+    for (line, runs) in TABLE_1.iter().zip(all) {
+        write_line(out, line, &runs)?;
+        // The smaller of the two jobs of each kind comes first.
+        if line.id == "bunny-joined" {
+            let shown = match line.sampling {
+                Sampling::Uniform => &mut shown.bunny_uniform,
+                Sampling::Adaptive => &mut shown.bunny_adaptive,
+            };
+            shown.get_or_insert(runs.ours.set);
         }
-        write_line(out, line, ours.each_ref().map(Option::as_ref), other.each_ref().map(Option::as_ref))?;
     }
     Ok(())
 }
 
 /// A line of Table 1 as a table of its own: what was measured in rows, who in columns.
-fn write_line(
-    out: &mut dyn Write,
-    line: &Line,
-    ours: [Option<&Outcome>; 2],
-    other: [Option<&Outcome>; 2],
-) -> io::Result<()> {
+fn write_line(out: &mut dyn Write, line: &Line, runs: &Runs) -> io::Result<()> {
     let name = other_method(line).0;
     let kind = match line.sampling {
         Sampling::Uniform => "uniform",
@@ -210,16 +206,14 @@ fn write_line(
     writeln!(out, "\n### {}, {kind}, {} particles\n", line.model, grouped(line.count as usize))?;
     writeln!(
         out,
-        "| | Marching, printed | faithful | fast | {name}, printed | faithful | fast |\n|---|---:|---:|---:|---:|---:|---:|"
+        "| | Marching, printed | faithful | fast | {name}, printed | faithful |\n|---|---:|---:|---:|---:|---:|"
     )?;
-    let cell = |outcome: Option<&Outcome>, of: &dyn Fn(&Outcome) -> String| outcome.map_or("–".into(), of);
     let mut row =
         |label: &str, printed: [&dyn Fn(&Printed) -> String; 2], of: &dyn Fn(&Outcome) -> String| {
-            let [a, b] = ours.map(|outcome| cell(outcome, of));
-            let [c, d] = other.map(|outcome| cell(outcome, of));
+            let [a, b, c] = [&runs.ours, &runs.fast, &runs.other].map(of);
             writeln!(
                 out,
-                "| {label} | {} | {a} | {b} | {} | {c} | {d} |",
+                "| {label} | {} | {a} | {b} | {} | {c} |",
                 printed[0](&line.ours),
                 printed[1](&line.other)
             )
@@ -258,13 +252,8 @@ fn write_line(
         "\nThe time of {name} over that of the front: {:.1} in the paper",
         line.other.total / line.ours.total
     )?;
-    for (k, pair) in ["faithful", "fast"].into_iter().enumerate() {
-        if let (Some(ours), Some(other)) = (ours[k], other[k]) {
-            let sign = if other.end == End::CutOff { "more than " } else { "" };
-            write!(out, ", {sign}{:.1} by the {pair} pair", other.total() / ours.total())?;
-        }
-    }
-    writeln!(out, ".")
+    let sign = if runs.other.end == End::CutOff { "more than " } else { "" };
+    writeln!(out, ", {sign}{:.1} here.", runs.other.total() / runs.ours.total())
 }
 
 fn notes(out: &mut dyn Write) -> io::Result<()> {
@@ -279,7 +268,7 @@ fn notes(out: &mut dyn Write) -> io::Result<()> {
 - The forces come to triangles as good as ours, with fewer particles and wider holes. Both systems cover only the component that their
   one particle sits on; the bunny and the ellipsoid have one.
 - κ₁ + κ₂ vanishes on saddles, so that on the bunny the radius goes from its smallest to its largest over short ways. The faithful methods
-  take it as it is. The fast ones limit how steeply it changes, and place more particles between.
+  take it as it is. The fast sampler limits how steeply it changes, and places more particles between.
 - Both particle systems also follow a surface that changes, which a front does not."
     )
 }
@@ -293,19 +282,18 @@ fn table_2(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     )?;
     let all = plan.each(&TABLE_2, |&(count, _)| {
         let job = Job::new("ellipsoid", Sampling::Uniform, plan.count(count));
-        (job.run_reference(&job.faithful(), f64::INFINITY), job.run_fast())
+        (job.run_faithful(&job.faithful(), f64::INFINITY), job.run_fast())
     });
     for ((count, [generation, relaxation, _]), (slow, fast)) in TABLE_2.iter().zip(all) {
-        let faithful = |of: &dyn Fn(&Outcome) -> String| slow.as_ref().map_or("–".to_owned(), of);
         writeln!(
             out,
             "| {} | {} | {} | {generation:.2} | {} | {} | {relaxation:.2} | {} | {} |",
             grouped(*count as usize),
-            faithful(&|outcome| grouped(outcome.count())),
+            grouped(slow.count()),
             grouped(fast.count()),
-            faithful(&|outcome| coarse(outcome.generation)),
+            coarse(slow.generation),
             coarse(fast.generation),
-            faithful(&|outcome| coarse(outcome.relaxation)),
+            coarse(slow.relaxation),
             coarse(fast.relaxation)
         )?;
     }
@@ -380,8 +368,7 @@ fn figures(out: &mut dyn Write, plan: &Plan, shown: &Shown) -> io::Result<()> {
 fn faithful(job: &Job, change: impl FnOnce(&mut reference::Settings)) -> Set {
     let mut settings = job.faithful();
     change(&mut settings);
-    let outcome = job.run_reference(&settings, f64::INFINITY);
-    outcome.map(|outcome| outcome.set).unwrap_or_default()
+    job.run_faithful(&settings, f64::INFINITY).set
 }
 
 fn figure_5(album: &mut Album, plan: &Plan) -> io::Result<()> {
@@ -461,10 +448,9 @@ fn figure_9(album: &mut Album, plan: &Plan) -> io::Result<()> {
 
 fn figure_10(album: &mut Album, plan: &Plan) -> io::Result<()> {
     let coarse = faithful(&Job::new("rabbit", Sampling::Uniform, plan.count(2_449)), |_| {});
-    let fine = Job::new("rabbit", Sampling::Uniform, plan.count(25_702)).run_fast().set;
+    let fine = faithful(&Job::new("rabbit", Sampling::Uniform, plan.count(25_702)), |_| {});
     let words = format!(
-        "A rabbit of our own, which stands in for the paper's: *left* with {} particles, *right* with {} (by the fast sampler, since the \
-         faithful method follows fewer).",
+        "A rabbit of our own, which stands in for the paper's: *left* with {} particles, *right* with {}.",
         grouped(coarse.position.len()),
         grouped(fine.position.len())
     );

@@ -1,7 +1,6 @@
 //! One run of a method on a job: particles, steps, times and figures.
 
 use glam::Vec3;
-use marching_particles::baseline::{self, Baseline};
 use marching_particles::field::Field;
 use marching_particles::field::gallery;
 use marching_particles::field::model;
@@ -124,6 +123,10 @@ pub(crate) struct Job {
     pub(crate) radius: f64,
 }
 
+/// Limits that no job meets.
+const MOST_PARTICLES: u32 = 200_000;
+const MOST_ITERATIONS: u32 = 10_000;
+
 /// The largest and the smallest radius of adaptive particles, in radii of as many particles of one size. The paper has such limits
 /// and does not name them.
 const RADII: [f64; 2] = [0.4, 2.0];
@@ -171,6 +174,8 @@ impl Job {
             } else {
                 0.0
             },
+            max_particles: MOST_PARTICLES,
+            max_iterations: MOST_ITERATIONS,
             ..reference::Settings::default()
         }
     }
@@ -221,10 +226,11 @@ impl Job {
         }
     }
 
-    /// A method of the reference; `None` if there are more particles than it follows.
-    pub(crate) fn run_reference(&self, settings: &reference::Settings, limit_s: f64) -> Option<Outcome> {
+    /// A method as it is written.
+    pub(crate) fn run_faithful(&self, settings: &reference::Settings, limit_s: f64) -> Outcome {
         let clock = Clock::start();
-        let mut run = Reference::new(self.surface.field(), &self.surface.bounds, settings).ok()?;
+        let mut run =
+            Reference::new(self.surface.field(), &self.surface.bounds, settings).expect("valid settings");
         let [mut generation, mut relaxation, mut last_step] = [clock.seconds(), 0.0, 0.0];
         let mut chapter = 0;
         let mut end = End::Done;
@@ -251,46 +257,6 @@ impl Job {
         let progress = run.progress();
         let figures = self.figures(&set);
         let (steps, evaluations) = (progress.steps, progress.evaluations);
-        Some(Outcome { set, steps, end, generation, relaxation, last_step, evaluations, figures })
-    }
-
-    /// The fast twin of the method that the paper compares with.
-    pub(crate) fn run_baseline(&self, limit_s: f64) -> Outcome {
-        let sizes = Settings { max_particles: 200_000, ..self.sizes };
-        let settings = baseline::Settings { sizes, ..baseline::Settings::default() };
-        let field = &mut *self.surface.field();
-        let clock = Clock::start();
-        let mut run = Baseline::start(field, &self.surface.bounds, &settings).expect("valid settings");
-        let generation = clock.seconds();
-        // The end of each iteration. The clock is too coarse for one of them.
-        let mut ends = vec![generation];
-        let mut end = End::Done;
-        while run.progress().stop_reason.is_none() {
-            let before = run.progress().iterations;
-            run.step(field, u32::MAX);
-            if run.progress().iterations > before {
-                ends.push(clock.seconds());
-            }
-            if clock.seconds() > limit_s && end == End::Done {
-                end = End::CutOff;
-                run.cancel();
-            }
-        }
-        let relaxation = clock.seconds() - generation;
-        let some = 10.min(ends.len() - 1);
-        let last_step = (ends[ends.len() - 1] - ends[ends.len() - 1 - some]) / some.max(1) as f64;
-        if run.progress().stop_reason == Some(baseline::StopReason::Iterations) {
-            end = End::CutOff;
-        }
-        let set = Set {
-            position: run.positions(),
-            normal: run.normals(),
-            radius: run.radii(),
-            level: vec![0; run.positions().len()],
-        };
-        let progress = run.progress();
-        let figures = self.figures(&set);
-        let (steps, evaluations) = (progress.iterations, progress.evaluations);
         Outcome { set, steps, end, generation, relaxation, last_step, evaluations, figures }
     }
 }

@@ -4,7 +4,7 @@
 //! Each block stands under the paper's own number. §4.2 to §4.4 with Algorithm 2 are in `uniform`, §4.3 in `surface`, §4.5 in
 //! `relaxation`, §5 in `adaptive`. The two particle systems that the paper compares them with are beside them: the general scheme of
 //! §3 in `system`, what each makes of it in `witkin_heckbert` and `forces` (§6, Table 1). What the paper discusses or leaves open is an
-//! option ([`Settings`]). Nothing here is made for speed, and a run has at most [`MAX_PARTICLES`] particles. The tests hold the fast fronts to it, particle by particle.
+//! option ([`Settings`]). Nothing here is made for speed. The tests hold the fast fronts to it, particle by particle.
 //!
 //! A run is a list of [chapters](Chapter): generation levels, the filling of gaps, relaxation steps, iterations of a particle
 //! system. Before each chapter a snapshot is taken, or in long runs before some of them. The events of a chapter are not kept: they
@@ -171,7 +171,8 @@ impl Reference {
     ///
     /// # Errors
     ///
-    /// If a setting or the box is invalid, or more than [`MAX_PARTICLES`] particles are to be expected.
+    /// If a setting or the box is invalid, or if more particles are to be expected than [`MAX_PARTICLES`] and
+    /// [`Settings::max_particles`].
     pub fn new(field: Box<dyn Field>, bounds: &Bounds, settings: &Settings) -> Result<Self, ReferenceError> {
         settings.validate()?;
         if !bounds.is_valid() {
@@ -187,11 +188,12 @@ impl Reference {
             .filter_map(|part| Some(part.area / cell(setup.radius_at(&mut surface, part.point)?)))
             .sum();
         surface.evaluations = 0;
-        let limit = f64::from(MAX_PARTICLES);
+        let most = settings.max_particles.max(MAX_PARTICLES);
+        let limit = f64::from(most);
         if expected > limit {
             // A little more, since the area is an estimate and the number is shown rounded.
             let factor = 1.01 * (expected / limit).sqrt();
-            let (expected, limit) = (expected as u64, MAX_PARTICLES);
+            let (expected, limit) = (expected as u64, most);
             return Err(match settings.sampling {
                 Sampling::Uniform => {
                     let radius = factor * settings.radius;

@@ -5,8 +5,11 @@ use crate::math::Bounds;
 use crate::sampler::{GapPolicy, LawKind, Sampling};
 use serde::{Deserialize, Serialize};
 
-/// The reference follows no more particles than this: its event log and its snapshots are for reading, not for speed.
+/// A run that is not asked for more follows no more particles than this: a log of more is not read event by event.
 pub const MAX_PARTICLES: u32 = 20_000;
+
+/// No run may be asked for more particles than this.
+const MOST_PARTICLES: u32 = 1_000_000;
 
 /// A surface given by a formula, as the page knows it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -156,7 +159,7 @@ pub struct Settings {
     pub step_size: Option<f64>,
     /// A particle system that has not come to rest after so many iterations ends all the same.
     pub max_iterations: u32,
-    /// The run stops at this many particles, at most [`MAX_PARTICLES`].
+    /// The run stops at this many particles. More than [`MAX_PARTICLES`] of them can be asked for.
     pub max_particles: u32,
 }
 
@@ -204,14 +207,13 @@ impl Settings {
     ///
     /// The first one that is out of its range, or does not go with another.
     pub fn validate(&self) -> Result<(), ReferenceError> {
-        let limit = f64::from(MAX_PARTICLES);
         let ranges = [
             ("match_tolerance", self.match_tolerance, 0.1, 0.95),
             ("residual", self.residual, 1e-10, 0.01),
             ("relax_steps", f64::from(self.relax_steps), 0.0, 100.0),
             ("step_size", self.step_size.unwrap_or_default(), 0.0, 3.0),
             ("max_iterations", f64::from(self.max_iterations), 1.0, 1e4),
-            ("max_particles", f64::from(self.max_particles), 1.0, limit),
+            ("max_particles", f64::from(self.max_particles), 1.0, f64::from(MOST_PARTICLES)),
         ];
         let sizes = match self.sampling {
             Sampling::Uniform => vec![("radius", self.radius, f64::MIN_POSITIVE, f64::MAX)],

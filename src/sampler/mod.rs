@@ -6,20 +6,20 @@
 //! the audit and the refinement make memory of their own.
 
 mod attempt;
-pub(crate) mod discovery;
+mod discovery;
 mod fates;
 mod front;
 mod message;
-pub(crate) mod neighbours;
+mod neighbours;
 mod phase;
 mod progress;
-pub(crate) mod projection;
+mod projection;
 mod refine;
-pub(crate) mod relaxation;
+mod relaxation;
 mod run;
 mod setting;
 mod settings;
-pub(crate) mod sizing;
+mod sizing;
 
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};
 pub use fates::FateCounts;
@@ -28,7 +28,7 @@ pub use progress::{Counts, Progress, Start};
 pub use refine::{Place, Refusal};
 pub use setting::{Choice, Condition, Group, Kind, Scale, Setting, Value};
 pub use settings::{
-    BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Placement, Sampling, Settings, SettingsError, SizeMode,
+    BoxMode, COUNT_ROOM, GapPolicy, LawKind, Method, Sampling, Settings, SettingsError, SizeMode,
 };
 pub use sizing::{ChordError, MaxCurvature, SumOfCurvatures};
 

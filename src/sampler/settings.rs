@@ -42,16 +42,6 @@ choices! {
 }
 
 choices! {
-    /// How a child of an adaptive particle is placed.
-    Placement {
-        /// The equations of tangency are solved.
-        Direct "direct" "Direct",
-        /// The child is pushed step by step until it touches, as in the paper (§5).
-        Faithful "faithful" "As in the paper",
-    }
-}
-
-choices! {
     /// How the particles are brought onto the surface and into order.
     Method {
         /// A front of the wanted radius, and relaxation (paper §4 and §5).
@@ -228,13 +218,6 @@ settings! {
         min: 0.01,
         max: 0.5,
         step: 0.01,
-        when: &[ADAPTIVE],
-    }
-    placement: Placement = Placement::Direct => {
-        label: "Placement",
-        help: "Where a child touches its parent and its neighbour is solved for, or found by pushing it step by step.",
-        group: Group::Advanced,
-        choices: Placement::CHOICES,
         when: &[ADAPTIVE],
     }
     relax_steps: u32 = 10 => {

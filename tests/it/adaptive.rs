@@ -1,5 +1,5 @@
-//! Tests of the adaptive front (paper §5): children touch their parents, both placements cover the surface, and a run
-//! does not depend on how it is cut into steps.
+//! Tests of the adaptive front (paper §5): children touch their parents, particles cover the surface, and a run does not
+//! depend on how it is cut into steps.
 
 use crate::smooth::smooth;
 use marching_particles::field::Field;
@@ -9,19 +9,16 @@ use marching_particles::math::Bounds;
 use marching_particles::particles::{Particles, SlotFate};
 use marching_particles::quality::{self, Figures, Sizes};
 use marching_particles::sampler::{
-    GapPolicy, LawKind, Phase, Placement, Sampler, Sampling, Settings, SizeMode, StopReason,
+    GapPolicy, LawKind, Phase, Sampler, Sampling, Settings, SizeMode, StopReason,
 };
 use marching_particles::spatial::CellGrid;
 
-const PLACEMENTS: [Placement; 2] = [Placement::Direct, Placement::Faithful];
-
 /// Settings for about 4,000 particles without relaxation.
-fn settings(placement: Placement) -> Settings {
+fn settings() -> Settings {
     Settings {
         sampling: Sampling::Adaptive,
         size_mode: SizeMode::Count,
         count: 4_000,
-        placement,
         relax_steps: 0,
         ..Settings::default()
     }
@@ -116,51 +113,39 @@ fn untouched(particles: &Particles) -> f32 {
 fn children_touch_their_parents() {
     for (surface, _) in smooth() {
         // The particles are so small that grading lowers no radius behind the front.
-        let fine =
-            |placement| Settings { size_mode: SizeMode::Radius, chord_error: 1e-4, ..settings(placement) };
-        let direct = sampled(surface, &fine(Placement::Direct));
-        assert!(untouched(direct.particles()) <= 2e-3, "{surface}: {}", untouched(direct.particles()));
-        // Until it is projected, a pushed child has the radius of its position in the tangent plane.
-        let faithful = sampled(surface, &fine(Placement::Faithful));
-        assert!(untouched(faithful.particles()) <= 0.1, "{surface}: {}", untouched(faithful.particles()));
+        let fine = Settings { size_mode: SizeMode::Radius, chord_error: 1e-4, ..settings() };
+        let sampler = sampled(surface, &fine);
+        assert!(untouched(sampler.particles()) <= 2e-3, "{surface}: {}", untouched(sampler.particles()));
     }
 }
 
 #[test]
-fn both_placements_cover_and_crowd_nothing() {
+fn particles_cover_and_crowd_nothing() {
     for (surface, euler) in smooth() {
-        for placement in PLACEMENTS {
-            let sampler = sampled(surface, &settings(placement));
-            let particles = sampler.particles();
-            let figures = figures(surface, particles);
-            let context = format!("{surface}, {placement:?}, {} particles: {figures:?}", particles.len());
-            assert_eq!((figures.open, figures.components), (0, 1), "{context}");
-            assert!((figures.euler - euler).abs() <= 1, "{context}");
-            let hole = largest_hole(surface, particles);
-            assert!(hole <= 1.6, "{context}: a hole of {hole}");
-            // The bound is the match tolerance plus rounding.
-            assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
-            assert!(figures.err_max <= 3e-4, "{context}");
-        }
+        let sampler = sampled(surface, &settings());
+        let particles = sampler.particles();
+        let figures = figures(surface, particles);
+        let context = format!("{surface}, {} particles: {figures:?}", particles.len());
+        assert_eq!((figures.open, figures.components), (0, 1), "{context}");
+        assert!((figures.euler - euler).abs() <= 1, "{context}");
+        let hole = largest_hole(surface, particles);
+        assert!(hole <= 1.6, "{context}: a hole of {hole}");
+        // The bound is the match tolerance plus rounding.
+        assert!(closest(particles) >= 0.7 - 1e-4, "{context}: {}", closest(particles));
+        assert!(figures.err_max <= 3e-4, "{context}");
     }
 }
 
 #[test]
 fn ten_steps_even_the_sizes_out() {
     for (surface, _) in smooth() {
-        for placement in PLACEMENTS {
-            let sampler = sampled(surface, &Settings { relax_steps: 10, ..settings(placement) });
-            let particles = sampler.particles();
-            let figures = figures(surface, particles);
-            let context = format!("{surface}, {placement:?}, {} particles: {figures:?}", particles.len());
-            assert!(figures.size_cv <= 0.12, "{context}");
-            assert!(
-                largest_hole(surface, particles) <= 1.6,
-                "{context}: {}",
-                largest_hole(surface, particles)
-            );
-            assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
-        }
+        let sampler = sampled(surface, &Settings { relax_steps: 10, ..settings() });
+        let particles = sampler.particles();
+        let figures = figures(surface, particles);
+        let context = format!("{surface}, {} particles: {figures:?}", particles.len());
+        assert!(figures.size_cv <= 0.12, "{context}");
+        assert!(largest_hole(surface, particles) <= 1.6, "{context}: {}", largest_hole(surface, particles));
+        assert!(closest(particles) >= 0.6, "{context}: {}", closest(particles));
     }
 }
 
@@ -188,30 +173,21 @@ fn the_bunny_is_even_after_ten_steps() {
 }
 
 #[test]
-fn direct_placement_is_better_for_a_third_of_the_evaluations() {
+fn a_particle_takes_no_more_than_two_evaluations() {
     for (surface, _) in smooth() {
-        let [direct, faithful] = PLACEMENTS.map(|placement| {
-            // A given radius takes one front; a given count would take the search for the radius too.
-            let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings(placement) };
-            let sampler = sampled(surface, &settings);
-            let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
-            let figures = figures(surface, sampler.particles());
-            (each, figures.size_cv, figures.six)
-        });
-        let context = format!("{surface}: evaluations, size_cv, six neighbours {direct:?} {faithful:?}");
-        assert!(direct.0 <= faithful.0 / 3.0, "{context}");
-        assert!(direct.0 <= 2.0, "{context}");
-        assert!(direct.1 <= faithful.1 && direct.2 >= faithful.2, "{context}");
+        // A given radius takes one front; a given count would take the search for the radius too.
+        let settings = Settings { chord_error: 1e-4, size_mode: SizeMode::Radius, ..settings() };
+        let sampler = sampled(surface, &settings);
+        let each = sampler.counts().front_evaluations as f64 / sampler.particles().len() as f64;
+        assert!(each <= 2.0, "{surface}: {each}");
     }
 }
 
 #[test]
 fn how_a_run_is_cut_into_steps_does_not_change_it() {
-    for (surface, placement) in
-        [("ellipsoid", Placement::Direct), ("gyroid", Placement::Direct), ("torus", Placement::Faithful)]
-    {
+    for surface in ["ellipsoid", "gyroid", "torus"] {
         let surface = gallery::find(surface).expect("a gallery surface");
-        let settings = Settings { count: 2_000, relax_steps: 3, ..settings(placement) };
+        let settings = Settings { count: 2_000, relax_steps: 3, ..settings() };
         let mut field = surface.field();
         let whole = run(&mut field, surface, &settings, u32::MAX);
         for budget in [1, 7, 1_000] {
@@ -228,7 +204,7 @@ fn equal_radii_give_a_lattice_as_the_uniform_front_does() {
             size_mode: SizeMode::Radius,
             radius_min_share: 0.006,
             radius_max_share: 0.006,
-            ..settings(Placement::Direct)
+            ..settings()
         };
         let sampler = sampled(surface, &equal);
         let radii = &sampler.particles().radius;
@@ -248,7 +224,7 @@ fn a_wanted_count_is_met() {
         ("torus", LawKind::MaxCurvature, 12_000),
         ("tanglecube", LawKind::SumOfCurvatures, 9_000),
     ] {
-        let sampler = sampled(surface, &Settings { count, radius_law, ..settings(Placement::Direct) });
+        let sampler = sampled(surface, &Settings { count, radius_law, ..settings() });
         let miss = sampler.particles().len() as f64 / f64::from(count) - 1.0;
         assert!(miss.abs() <= 0.03, "{surface}, {radius_law:?}: {} of {count}", sampler.particles().len());
     }
@@ -256,7 +232,7 @@ fn a_wanted_count_is_met() {
 
 #[test]
 fn radii_follow_the_curvature_and_neighbours_differ_little() {
-    let settings = settings(Placement::Direct);
+    let settings = settings();
     let sampler = sampled("ellipsoid", &settings);
     let particles = sampler.particles();
     let (least, most) =
@@ -272,87 +248,75 @@ fn radii_follow_the_curvature_and_neighbours_differ_little() {
 
 #[test]
 fn the_limit_and_the_stop_button_leave_whole_particles() {
-    for placement in PLACEMENTS {
-        let capped = sampled(
-            "torus",
-            &Settings { size_mode: SizeMode::Radius, max_particles: 700, ..settings(placement) },
-        );
-        assert_eq!(capped.particles().len(), 700);
-        assert!(capped.counts().fates.capped > 0);
+    let capped =
+        sampled("torus", &Settings { size_mode: SizeMode::Radius, max_particles: 700, ..settings() });
+    assert_eq!(capped.particles().len(), 700);
+    assert!(capped.counts().fates.capped > 0);
 
-        let surface = gallery::find("torus").expect("a gallery surface");
-        let mut field = surface.field();
-        let mut sampler = Sampler::new();
-        let settings = settings(placement);
-        sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
-        let settled = loop {
-            let progress = sampler.step(&mut field, 37);
-            if progress.particles > 500 && progress.phase == Phase::Generation {
-                break progress.particles;
-            }
-        };
-        sampler.cancel();
-        let progress = sampler.step(&mut field, 1);
-        assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
-        assert_eq!((progress.particles, sampler.particles().len()), (settled, settled));
-    }
+    let surface = gallery::find("torus").expect("a gallery surface");
+    let mut field = surface.field();
+    let mut sampler = Sampler::new();
+    let settings = settings();
+    sampler.start(&mut field, &surface.bounds, &settings).expect("valid settings");
+    let settled = loop {
+        let progress = sampler.step(&mut field, 37);
+        if progress.particles > 500 && progress.phase == Phase::Generation {
+            break progress.particles;
+        }
+    };
+    sampler.cancel();
+    let progress = sampler.step(&mut field, 1);
+    assert_eq!(progress.stop_reason, Some(StopReason::Cancelled));
+    assert_eq!((progress.particles, sampler.particles().len()), (settled, settled));
 }
 
 #[test]
 fn every_run_on_the_gallery_ends_with_particles_inside_the_box() {
     for surface in gallery::SURFACES {
-        // Faithful placement is slow, most of all near singular points.
-        let placements = if surface.smooth { &PLACEMENTS[..1] } else { &PLACEMENTS };
-        for &placement in placements {
-            let mut field = surface.field();
-            let settings = Settings { count: 1_500, relax_steps: 2, ..settings(placement) };
-            let sampler = run(&mut field, surface, &settings, 10_000);
-            let particles = sampler.particles();
-            let context = format!("{}, {placement:?}, {} particles", surface.id, particles.len());
-            assert!(particles.len() > 500, "{context}");
-            for i in 0..particles.len() {
-                assert!(surface.bounds.contains(particles.position[i]), "{context}: {i}");
-                assert!((particles.normal[i].length() - 1.0).abs() < 1e-5, "{context}: {i}");
-                assert!(particles.radius[i] > 0.0 && particles.radius[i].is_finite(), "{context}: {i}");
-            }
+        let mut field = surface.field();
+        let settings = Settings { count: 1_500, relax_steps: 2, ..settings() };
+        let sampler = run(&mut field, surface, &settings, 10_000);
+        let particles = sampler.particles();
+        let context = format!("{}, {} particles", surface.id, particles.len());
+        assert!(particles.len() > 500, "{context}");
+        for i in 0..particles.len() {
+            assert!(surface.bounds.contains(particles.position[i]), "{context}: {i}");
+            assert!((particles.normal[i].length() - 1.0).abs() < 1e-5, "{context}: {i}");
+            assert!(particles.radius[i] > 0.0 && particles.radius[i].is_finite(), "{context}: {i}");
         }
     }
 }
 
 #[test]
 fn a_surface_cut_by_its_box_ends_there() {
-    let sampler = sampled("gyroid", &settings(Placement::Direct));
+    let sampler = sampled("gyroid", &settings());
     assert!(sampler.counts().fates.outside > 50, "{:?}", sampler.counts().fates);
 }
 
 #[test]
 fn fates_of_slots_agree_with_the_counts() {
     for surface in ["torus", "gyroid", "kummer"] {
-        for placement in PLACEMENTS {
-            let sampler = sampled(
-                surface,
-                &Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings(placement) },
-            );
-            let (particles, fates) = (sampler.particles(), sampler.counts().fates);
-            let count = |fate| {
-                let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
-                slots.filter(|&f| f == fate).count() as u64
-            };
-            let context = format!("{surface}, {placement:?}");
-            assert_eq!(count(SlotFate::Added), fates.added, "{context}");
-            assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
-            assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");
-            assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{context}");
-            let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
-            assert_eq!(fates.added + seeds, particles.len() as u64, "{context}");
-            assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{context}");
-        }
+        let sampler =
+            sampled(surface, &Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings() });
+        let (particles, fates) = (sampler.particles(), sampler.counts().fates);
+        let count = |fate| {
+            let slots = particles.slots.iter().flat_map(|s| (0..10).map(|k| s.get(k)));
+            slots.filter(|&f| f == fate).count() as u64
+        };
+        let context = format!("{surface}");
+        assert_eq!(count(SlotFate::Added), fates.added, "{context}");
+        assert_eq!(count(SlotFate::Matched), fates.matched, "{context}");
+        assert_eq!(count(SlotFate::Outside), fates.outside, "{context}");
+        assert_eq!(count(SlotFate::NotConverged), fates.not_converged, "{context}");
+        let seeds = particles.parent.iter().filter(|&&p| p == Particles::NO_PARENT).count() as u64;
+        assert_eq!(fates.added + seeds, particles.len() as u64, "{context}");
+        assert_eq!(count(SlotFate::Parent) + seeds, particles.len() as u64, "{context}");
     }
 }
 
 #[test]
 fn particles_that_fill_gaps_are_counted() {
-    let settings = Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings(Placement::Direct) };
+    let settings = Settings { size_mode: SizeMode::Radius, chord_error: 3e-4, ..settings() };
     let left = sampled("kummer", &Settings { gaps: GapPolicy::Leave, ..settings });
     let filled = sampled("kummer", &settings);
     let count = filled.counts().gaps_filled as usize;
@@ -362,12 +326,10 @@ fn particles_that_fill_gaps_are_counted() {
 
 #[test]
 fn levels_increase_along_the_columns() {
-    for placement in PLACEMENTS {
-        let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings(placement) });
-        let particles = sampler.particles();
-        assert!(particles.level.is_sorted());
-        assert!(particles.parent[1..].is_sorted());
-    }
+    let sampler = sampled("ellipsoid", &Settings { gaps: GapPolicy::Leave, ..settings() });
+    let particles = sampler.particles();
+    assert!(particles.level.is_sorted());
+    assert!(particles.parent[1..].is_sorted());
 }
 
 /// The reference pushes one child after the other and has no limit on how steeply sizes change. Its particles are others, but there
@@ -379,46 +341,44 @@ fn a_front_of_many_sizes_has_as_many_and_as_large_particles_as_the_reference() {
         let surface = gallery::find(id).expect("a gallery surface");
         let diagonal = surface.bounds.diagonal();
         let (least, largest, scale) = (0.008, 0.04, 0.12);
-        for placement in PLACEMENTS {
-            let settings = Settings {
-                size_mode: SizeMode::Radius,
-                radius_law: LawKind::MaxCurvature,
-                curvature_scale: scale,
-                radius_min_share: least,
-                radius_max_share: largest,
-                grading: 0.5,
-                gaps: GapPolicy::Leave,
-                ..settings(placement)
-            };
-            let sampler = sampled(id, &settings);
-            let fast = sampler.particles();
-            let same = reference::Settings {
-                sampling: Sampling::Adaptive,
-                law: LawKind::MaxCurvature,
-                law_scale: scale,
-                radius_min: least * diagonal,
-                radius_max: largest * diagonal,
-                seeds: vec![fast.position[0].as_dvec3().to_array()],
-                matched: reference::Matched::Stay,
-                relax_steps: 0,
-                ..reference::Settings::default()
-            };
-            let mut run =
-                Reference::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
-            while !run.step(1_000).is_done {}
-            run.seek(u32::MAX);
-            let of_reference = run.particles();
-            let mean = |sum: f64, count: usize| sum / count as f64;
-            let radius = mean(fast.radius.iter().map(|&r| f64::from(r)).sum(), fast.len());
-            let wanted = mean(of_reference.iter().map(|p| p.radius).sum(), of_reference.len());
-            let count = fast.len() as f64 / of_reference.len() as f64;
-            let context = format!(
-                "{id}, {placement:?}: {} particles of mean radius {radius:.5}, the reference {} of {wanted:.5}",
-                fast.len(),
-                of_reference.len()
-            );
-            assert!((count - 1.0).abs() < 0.06, "{context}");
-            assert!((radius / wanted - 1.0).abs() < 0.03, "{context}");
-        }
+        let settings = Settings {
+            size_mode: SizeMode::Radius,
+            radius_law: LawKind::MaxCurvature,
+            curvature_scale: scale,
+            radius_min_share: least,
+            radius_max_share: largest,
+            grading: 0.5,
+            gaps: GapPolicy::Leave,
+            ..settings()
+        };
+        let sampler = sampled(id, &settings);
+        let fast = sampler.particles();
+        let same = reference::Settings {
+            sampling: Sampling::Adaptive,
+            law: LawKind::MaxCurvature,
+            law_scale: scale,
+            radius_min: least * diagonal,
+            radius_max: largest * diagonal,
+            seeds: vec![fast.position[0].as_dvec3().to_array()],
+            matched: reference::Matched::Stay,
+            relax_steps: 0,
+            ..reference::Settings::default()
+        };
+        let mut run =
+            Reference::new(Box::new(surface.field()), &surface.bounds, &same).expect("valid settings");
+        while !run.step(1_000).is_done {}
+        run.seek(u32::MAX);
+        let of_reference = run.particles();
+        let mean = |sum: f64, count: usize| sum / count as f64;
+        let radius = mean(fast.radius.iter().map(|&r| f64::from(r)).sum(), fast.len());
+        let wanted = mean(of_reference.iter().map(|p| p.radius).sum(), of_reference.len());
+        let count = fast.len() as f64 / of_reference.len() as f64;
+        let context = format!(
+            "{id}: {} particles of mean radius {radius:.5}, the reference {} of {wanted:.5}",
+            fast.len(),
+            of_reference.len()
+        );
+        assert!((count - 1.0).abs() < 0.06, "{context}");
+        assert!((radius / wanted - 1.0).abs() < 0.03, "{context}");
     }
 }

@@ -286,12 +286,6 @@ fn a_run_that_meets_the_limit_prints_what_it_has_and_says_how_many_would_fit() {
 }
 
 #[test]
-fn a_comparison_that_would_exceed_the_limit_is_refused() {
-    let message = fails(4, &["compare", "--surface", "sphere", "--count", "2000", "--max-particles", "1000"]);
-    assert!(message.contains("limit of 1000"), "{message}");
-}
-
-#[test]
 fn unwritable_file_is_named() {
     let message = fails(1, &["sample", "--radius", "5%", "--out", "/nonexistent/points.ply"]);
     assert!(message.contains("/nonexistent/points.ply"), "{message}");
@@ -314,102 +308,6 @@ fn models_from_points_are_sampled_by_name() {
     }
 }
 
-/// Runs `compare --json` with `arguments` and returns the line that it prints.
-#[track_caller]
-fn compare(arguments: &[&str]) -> Value {
-    let output = run(&[&["compare", "--json"], arguments].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
-    assert_eq!(stderr(&output), "", "no bar and no chatter without a terminal");
-    serde_json::from_str(&stdout(&output)).expect("a line of JSON")
-}
-
-#[test]
-fn comparison_says_what_to_change_if_the_other_method_cannot_take_the_radius() {
-    // The radius that follows from the count is too small a share of the box, which is 70 times as wide as the sphere.
-    let output =
-        run(&["compare", "--formula", "x^2+y^2+z^2=1e-4", "--count", "4000", "--box", "1.5", "--quiet"]);
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    assert!(
-        stderr(&output).contains("--box") && !stderr(&output).contains("--radius"),
-        "{}",
-        stderr(&output)
-    );
-}
-
-#[test]
-fn comparison_holds_the_figures_of_both_methods_at_one_radius() {
-    let uniform = compare(&["--surface", "torus", "--count", "1500"]);
-    let adaptive = compare(&["--surface", "ellipsoid", "--count", "1500", "--adaptive"]);
-    for (both, method) in [(&uniform, "witkin_heckbert"), (&adaptive, "forces")] {
-        let (ours, other) = (&both["ours"], &both["other"]);
-        assert_eq!(
-            (ours["method"].as_str(), other["method"].as_str()),
-            (Some("marching_particles"), Some(method))
-        );
-        assert_eq!(
-            (ours["stop_reason"].as_str(), other["stop_reason"].as_str()),
-            (Some("complete"), Some("settled"))
-        );
-        assert_eq!(ours["steps"], 10);
-        assert!(other["steps"].as_u64() > Some(20), "{other}");
-        for side in [ours, other] {
-            assert!(side["count"].as_f64() > Some(1_000.0) && side["evaluations"].as_u64() > Some(1_000));
-            assert!(side["quality"]["six"].as_f64() > Some(0.5), "{side}");
-        }
-        assert!(ours["quality_before"]["six"].is_f64() && other["quality_before"].is_null());
-        assert!(
-            ours["seconds"]["relaxation"].as_f64() > Some(0.0)
-                && other["seconds"]["total"].as_f64() > Some(0.0)
-        );
-        let [fissions, deaths, dropped] =
-            ["fissions", "deaths", "dropped"].map(|key| both[key].as_u64().expect(key));
-        assert_eq!(other["count"].as_u64(), Some(1 + fissions - deaths - dropped));
-        let radius = |side: &Value| side["radius"].as_f64().expect("a radius");
-        assert!((radius(ours) / radius(other) - 1.0).abs() < 0.03, "{} and {}", radius(ours), radius(other));
-    }
-    assert!(adaptive["other"]["quality"]["size_cv"].is_f64());
-}
-
-#[test]
-fn comparison_drops_no_particle_because_of_rounding() {
-    // Near the centres of the model, rounding keeps some particles from reaching the tolerance.
-    let both = compare(&["--surface", "bunny", "--count", "14600"]);
-    assert_eq!(both["dropped"], 0);
-    assert!(both["other"]["quality"]["cover"].as_f64() < Some(1.45), "{}", both["other"]["quality"]["cover"]);
-    assert_eq!(both["other"]["quality"]["euler"], 2);
-}
-
-#[test]
-fn comparison_as_text_has_columns_and_the_stop_reasons() {
-    let output = run(&["compare", "--surface", "sphere", "--radius", "3%", "--iterations", "30"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let text = stdout(&output);
-    for label in
-        ["Particles ", "Steps ", "Evaluations ", "Six neighbours ", "Largest hole ", "Sample components "]
-    {
-        assert!(text.lines().any(|line| line.starts_with(label)), "no `{label}` in:\n{text}");
-    }
-    let ended = text.lines().find(|line| line.starts_with("Ended")).expect("why it ended");
-    assert!(ended.ends_with("complete        iterations"), "{text}");
-    let head = text.lines().find(|line| line.contains("Witkin–Heckbert")).expect("a head");
-    let end = |line: &str, word: &str| line[..line.find(word).expect("a word") + word.len()].chars().count();
-    assert_eq!(end(head, "Witkin–Heckbert"), end(ended, "iterations"), "{text}");
-    assert_eq!(end(head, "relaxed"), end(ended, "complete"), "{text}");
-    assert!(text.contains("\nWitkin–Heckbert took ") && text.contains(" fissions, "), "{text}");
-}
-
-#[test]
-fn invalid_settings_of_a_comparison_are_named_by_their_option() {
-    let range = "is 2, but must lie between 0 and 1";
-    assert!(fails(2, &["compare", "--radius", "3%", "--rest", "2"]).contains(&format!("--rest {range}")));
-    let range = "is 0, but must lie between 1 and 1000000";
-    let message = fails(2, &["compare", "--radius", "3%", "--iterations", "0"]);
-    assert!(message.contains(&format!("--iterations {range}")), "{message}");
-    assert!(fails(2, &["compare", "--surface", "teapot"]).contains("ellipsoid"));
-    assert!(fails(3, &["compare", "--formula", "x^2 + 1"]).starts_with("error: "));
-    assert!(fails(2, &["compare", "--out", "a.ply"]).contains("--out"));
-}
-
 #[test]
 fn surfaces_lists_the_gallery() {
     let text = stdout(&run(&["surfaces"]));
@@ -428,17 +326,6 @@ fn surfaces_lists_the_gallery() {
 fn help_explains_units_defaults_and_examples() {
     let help = stdout(&run(&["sample", "--help"]));
     for part in ["Formulas:", "Examples:", "Exit codes:", "0.6%", "smin(a,b,k)", "200,000"] {
-        assert!(help.contains(part), "no `{part}` in the help");
-    }
-    let help = stdout(&run(&["compare", "--help"]));
-    for part in [
-        "Witkin and Heckbert (1994)",
-        "What the lines say:",
-        "Examples:",
-        "--iterations",
-        "--adaptive",
-        "0.005",
-    ] {
         assert!(help.contains(part), "no `{part}` in the help");
     }
     // The default limit in the text is the actual one.

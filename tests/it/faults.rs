@@ -5,7 +5,7 @@ use glam::Vec3;
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::sampler::{Phase, Placement, Progress, Sampling, Settings, SizeMode, StopReason};
+use marching_particles::sampler::{Phase, Progress, Sampling, Settings, SizeMode, StopReason};
 use marching_particles::session::{FieldRequest, Report, Session};
 
 /// Samples `formula` in the cube of half-width `half`.
@@ -81,13 +81,11 @@ fn no_particle_sits_where_the_gradient_overflows() {
 fn adaptive_runs_say_that_there_is_no_surface_as_uniform_ones_do() {
     for formula in ["x^2 + y^2 + z^2 + 1", "x = 5", "1/x", "sign(x)", "1", "ln(-1 - x^2)", "x^2 + y^2", "a"] {
         let (_, uniform, _) = sampled(formula, 1.0, &coarse());
-        for placement in [Placement::Direct, Placement::Faithful] {
-            let settings = Settings { sampling: Sampling::Adaptive, placement, ..coarse() };
-            let (session, progress, report) = sampled(formula, 1.0, &settings);
-            assert_eq!((session.count(), report.count), (0, 0), "{formula}");
-            assert_eq!(progress.stop_reason, uniform.stop_reason, "{formula}");
-            assert_eq!(progress.message, uniform.message, "{formula}");
-        }
+        let settings = Settings { sampling: Sampling::Adaptive, ..coarse() };
+        let (session, progress, report) = sampled(formula, 1.0, &settings);
+        assert_eq!((session.count(), report.count), (0, 0), "{formula}");
+        assert_eq!(progress.stop_reason, uniform.stop_reason, "{formula}");
+        assert_eq!(progress.message, uniform.message, "{formula}");
     }
 }
 

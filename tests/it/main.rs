@@ -2,7 +2,6 @@
 //! would take longer than running it. `cargo test --test it front::` runs one module.
 
 mod adaptive;
-mod baseline;
 mod borders;
 mod box_fit;
 #[cfg(feature = "cli")]

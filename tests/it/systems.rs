@@ -1,10 +1,8 @@
-//! Tests of the two particle systems that the paper compares its methods with: they do what their sources say, and the fast ones of
-//! `baseline` do what those written for reading do.
+//! Tests of the two particle systems that the paper compares its methods with: they do what their sources say.
 
-use marching_particles::baseline::{self, Baseline};
 use marching_particles::field::gallery;
 use marching_particles::reference::{Event, Method, Particle, Reference, Settings};
-use marching_particles::sampler::{LawKind, Sampling, Settings as Sizes};
+use marching_particles::sampler::{LawKind, Sampling};
 
 fn start(surface: &str, settings: &Settings) -> Reference {
     let surface = gallery::find(surface).expect("a gallery surface");
@@ -21,12 +19,6 @@ fn run(surface: &str, settings: &Settings) -> Reference {
 fn witkin_heckbert(radius: f64) -> Settings {
     Settings { method: Method::WitkinHeckbert, radius, ..Settings::default() }
 }
-
-/// Radius of one size.
-const RADIUS: f64 = 0.04;
-
-/// Iterations in which both have the same particles on the sphere.
-const EQUAL_ITERATIONS: [(Sampling, u32); 2] = [(Sampling::Uniform, 30), (Sampling::Adaptive, 30)];
 
 fn forces() -> Settings {
     Settings {
@@ -122,93 +114,4 @@ fn only_a_free_disc_divides_and_only_a_pressed_one_dies() {
         }
     }
     assert!(divided > 300 && died < divided, "{divided} divided, {died} died");
-}
-
-/// The fast system, and the one written for reading from the same particle with the same sizes.
-fn both(id: &str, sampling: Sampling) -> (Baseline, Reference) {
-    let surface = gallery::find(id).expect("a gallery surface");
-    let diagonal = surface.bounds.diagonal();
-    let (scale, [least, most]) = (0.1, [0.02, 0.1].map(|share| share / 3.0));
-    let sizes = Sizes {
-        sampling,
-        radius_share: RADIUS / diagonal,
-        radius_law: LawKind::MaxCurvature,
-        curvature_scale: scale,
-        radius_min_share: least,
-        radius_max_share: most,
-        // The reference does not limit how steeply the radius changes.
-        grading: 0.5,
-        ..Sizes::default()
-    };
-    let settings = baseline::Settings { sizes, ..baseline::Settings::default() };
-    let fast = Baseline::start(&mut surface.field(), &surface.bounds, &settings).expect("valid settings");
-    let settings = Settings {
-        method: if sampling == Sampling::Uniform { Method::WitkinHeckbert } else { Method::Forces },
-        sampling,
-        radius: RADIUS,
-        law: LawKind::MaxCurvature,
-        law_scale: scale,
-        radius_min: least * diagonal,
-        radius_max: fast.largest_radius().unwrap_or(most * diagonal),
-        seeds: vec![fast.positions()[0].as_dvec3().to_array()],
-        ..Settings::default()
-    };
-    (fast, start(id, &settings))
-}
-
-/// Goes on by one iteration.
-fn iterate(run: &mut Reference) {
-    let steps = run.progress().steps;
-    while !run.progress().is_done && run.progress().steps == steps {
-        run.step(1);
-    }
-    run.seek(u32::MAX);
-}
-
-#[test]
-fn on_the_sphere_the_fast_systems_begin_particle_by_particle_as_those_written_for_reading() {
-    let surface = gallery::find("sphere").expect("a gallery surface");
-    for (sampling, iterations) in EQUAL_ITERATIONS {
-        let (mut fast, mut slow) = both("sphere", sampling);
-        for iteration in 1..=iterations {
-            fast.step(&mut surface.field(), u32::MAX);
-            assert_eq!(fast.progress().iterations, iteration);
-            iterate(&mut slow);
-            let (quick, exact) = (fast.positions(), slow.particles());
-            assert_eq!(quick.len(), exact.len(), "{sampling:?}: iteration {iteration}");
-            let apart = |(a, b): (&glam::Vec3, &Particle)| a.as_dvec3().distance(b.p());
-            let farthest = quick.iter().zip(exact).map(apart).fold(0.0, f64::max);
-            assert!(farthest < 0.05 * RADIUS, "{sampling:?}: iteration {iteration}: {farthest} apart");
-        }
-    }
-}
-
-/// Particle systems multiply every difference: one that rounding makes decides which particle divides, and what follows is another
-/// run. Its statistics are the same.
-#[test]
-fn elsewhere_the_fast_systems_end_with_the_statistics_of_those_written_for_reading() {
-    for id in ["ellipsoid", "torus"] {
-        let surface = gallery::find(id).expect("a gallery surface");
-        for sampling in [Sampling::Uniform, Sampling::Adaptive] {
-            let (mut fast, mut slow) = both(id, sampling);
-            while fast.progress().stop_reason.is_none() {
-                fast.step(&mut surface.field(), u32::MAX);
-            }
-            while !slow.step(10_000).is_done {}
-            slow.seek(u32::MAX);
-            let (quick, exact) = (fast.progress(), slow.progress());
-            let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-            let radii = [
-                mean(fast.radii().into_iter().map(f64::from).collect()),
-                mean(slow.particles().iter().map(|particle| particle.radius).collect()),
-            ];
-            let context = format!("{id}, {sampling:?}: {quick:?}, {exact:?}, mean radii {radii:?}");
-            assert_eq!(quick.stop_reason, Some(baseline::StopReason::Settled), "{context}");
-            assert!(exact.is_settled, "{context}");
-            let near = |a: f64, b: f64, share: f64| (a / b - 1.0).abs() < share;
-            assert!(near(quick.particles as f64, f64::from(exact.particles), 0.03), "{context}");
-            assert!(near(radii[0], radii[1], 0.01), "{context}");
-            assert!(near(f64::from(quick.iterations), f64::from(exact.steps), 0.4), "{context}");
-        }
-    }
 }

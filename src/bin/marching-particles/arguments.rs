@@ -27,17 +27,13 @@ Examples:
   marching-particles sample --surface torus --out torus.ply
   marching-particles sample --surface ellipsoid --count 55748 --json
   marching-particles sample --surface ellipsoid --adaptive --chord-error 0.01%
-  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%
-  marching-particles compare --surface ellipsoid --count 13923";
+  marching-particles sample --formula \"x^4 + y^4 + z^4 = a\" --param a=0.5 --box 1.2 --radius 1%";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Sample a surface, write it to files and say how good it is
     #[command(long_about = SAMPLE_LONG, after_long_help = SAMPLE_AFTER)]
     Sample(Box<Sample>),
-    /// Sample a surface with this method and with the one that its paper compares it with
-    #[command(long_about = COMPARE_LONG, after_long_help = COMPARE_AFTER)]
-    Compare(Box<Compare>),
     /// List the named surfaces
     Surfaces(Surfaces),
 }
@@ -70,29 +66,6 @@ Exit codes:
   3  there is nothing to sample: no surface in the box, a constant or undefined formula
   4  more particles than the limit; what was placed before it was reached is written";
 
-const COMPARE_LONG: &str = "\
-Sample a surface with this method and with the one that its paper compares it with, and print both side by side.
-
-That is the particle system of Witkin and Heckbert (1994) for particles of one size, and with --adaptive a scheme of forces. Both \
-begin with one particle, which divides until the surface is covered, at the same radius as this method, on the same \
-machine, with one thread each, one after the other.";
-
-const COMPARE_AFTER: &str = "\
-What the lines say:
-  Steps            relaxation steps, or iterations of the other method: forces, motion, fission and death
-  Evaluations      evaluations of the field and its gradient, those of the survey included
-  Figures          as of `sample`; lengths are in units of a perfect lattice of as many particles, so that counts may differ
-  Ended            settled: nothing divides, dies or moves; iterations: they still do, and --iterations are used up
-
-Times are of one run each on a machine that may have other work: compare them by their ratio, and repeat the command.
-
-Examples:
-  marching-particles compare --surface ellipsoid --count 13923
-  marching-particles compare --surface ellipsoid --count 15296 --adaptive --json
-  marching-particles compare --surface ellipsoid --count 13923 --rest 0 --iterations 1000
-
-Exit codes: as of `sample`.";
-
 /// Arguments of `sample`.
 #[derive(Debug, Args)]
 pub(crate) struct Sample {
@@ -112,33 +85,6 @@ pub(crate) struct Sample {
     /// colours), obj, stl or ply (with what --out writes). May be given again; replaces what is there
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(crate) mesh: Vec<PathBuf>,
-
-    /// Print one line of JSON instead of text
-    #[arg(long, help_heading = "Output")]
-    pub(crate) json: bool,
-
-    /// Show no progress bar (there is none without a terminal)
-    #[arg(long, short, help_heading = "Output")]
-    pub(crate) quiet: bool,
-}
-
-/// Arguments of `compare`.
-#[derive(Debug, Args)]
-pub(crate) struct Compare {
-    #[command(flatten)]
-    pub(crate) surface: Surface,
-
-    #[command(flatten)]
-    pub(crate) sampling: Sampling,
-
-    /// Most iterations of the other method
-    #[arg(long, value_name = "N", default_value_t = baseline().max_iterations, help_heading = "Other method")]
-    pub(crate) iterations: u32,
-
-    /// Mean distance, in radii, that its particles travel in an iteration, below which they count as at rest. The method has
-    /// settled once no particle has divided or died for 20 iterations either
-    #[arg(long, value_name = "RADII", default_value_t = baseline().rest, help_heading = "Other method")]
-    pub(crate) rest: f64,
 
     /// Print one line of JSON instead of text
     #[arg(long, help_heading = "Output")]
@@ -229,10 +175,6 @@ impl Length {
             Self::Units(length) => length / diagonal,
         }
     }
-}
-
-fn baseline() -> marching_particles::baseline::Settings {
-    marching_particles::baseline::Settings::default()
 }
 
 /// A finite number from an argument.

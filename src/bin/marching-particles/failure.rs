@@ -23,8 +23,6 @@ pub(crate) enum Failure {
     Usage(String),
     /// No particle could be placed.
     Nothing(String),
-    /// The run would place more particles than the limit.
-    Limit(String),
     /// A file could not be opened or read.
     Unreadable { path: PathBuf, error: std::io::Error },
     /// A file could not be written.
@@ -38,7 +36,6 @@ impl Failure {
         ExitCode::from(match self {
             Self::Formula { .. } | Self::Usage(_) => USAGE,
             Self::Nothing(_) => NOTHING,
-            Self::Limit(_) => LIMIT,
             Self::File { .. } | Self::Unreadable { .. } => FILE,
             Self::Output => 0,
         })
@@ -59,9 +56,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Formula { text, error } => formula(f, text, error),
-            Self::Usage(message) | Self::Nothing(message) | Self::Limit(message) => {
-                write!(f, "error: {message}")
-            }
+            Self::Usage(message) | Self::Nothing(message) => write!(f, "error: {message}"),
             Self::Unreadable { path, error } => {
                 write!(f, "error: {} could not be read: {error}", path.display())
             }

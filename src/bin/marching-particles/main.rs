@@ -1,7 +1,6 @@
 //! Command-line tool that samples a surface, writes particles to files and reports their quality.
 
 mod arguments;
-mod compare;
 mod failure;
 mod mesh;
 mod options;
@@ -18,7 +17,6 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Sample(arguments) => sample::run(&arguments),
-        Command::Compare(arguments) => compare::run(&arguments),
         Command::Surfaces(arguments) => surfaces::run(&arguments),
     };
     match result {

@@ -29,16 +29,16 @@ const BUDGET: u32 = 256;
 const FORMULA_BOX: Bounds = Bounds::cube(2.0);
 
 /// A session with the requested surface, whose run has begun.
-pub(crate) struct Begun {
-    pub(crate) session: Session,
-    pub(crate) answer: FieldAnswer,
-    pub(crate) settings: Settings,
-    pub(crate) predicted_count: u64,
-    pub(crate) seconds: Seconds,
+struct Begun {
+    session: Session,
+    answer: FieldAnswer,
+    settings: Settings,
+    predicted_count: u64,
+    seconds: Seconds,
 }
 
 /// Sets the field and begins the run.
-pub(crate) fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Result<Begun, Failure> {
+fn begin(surface: &Surface, sampling: &Sampling, quiet: bool) -> Result<Begun, Failure> {
     let mut session = Session::new();
     let mut seconds = Seconds::default();
     let clock = Clock::start();
@@ -83,7 +83,7 @@ fn fit_box(
 }
 
 /// Name of the surface, if it has one.
-pub(crate) fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
+fn name(surface: &Surface, answer: &FieldAnswer) -> Option<String> {
     surface.surface.clone().filter(|_| answer.model.is_some()).or(answer.surface.map(str::to_owned))
 }
 
@@ -163,7 +163,7 @@ pub(crate) fn run(arguments: &Sample) -> Result<ExitCode, Failure> {
 }
 
 /// What to say of a run that meets the limit on particles.
-pub(crate) fn over_limit(predicted_count: u64, settings: &Settings) -> String {
+fn over_limit(predicted_count: u64, settings: &Settings) -> String {
     // The prediction may be a little too low.
     let count = predicted_count.max(u64::from(settings.max_particles) + 1);
     format!(
@@ -266,7 +266,7 @@ fn unknown_surface(id: &str) -> String {
 }
 
 /// Runs the session to its end and adds the times of the phases to `seconds`.
-pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
+fn sample(session: &mut Session, seconds: &mut Seconds, bar: &ProgressBar) -> Progress {
     /// Steps between two updates of the progress bar.
     const UPDATE: u32 = 64;
     let mut phase = Phase::Seeding;
@@ -300,7 +300,7 @@ pub(crate) fn sample(session: &mut Session, seconds: &mut Seconds, bar: &Progres
 }
 
 /// Progress bar on standard error, if that is a terminal.
-pub(crate) fn bar(quiet: bool) -> ProgressBar {
+fn bar(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -321,15 +321,15 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result
     written.map_err(|error| Failure::File { path: path.to_owned(), error })
 }
 
-pub(crate) struct Clock(Instant);
+struct Clock(Instant);
 
 impl Clock {
     #[allow(clippy::disallowed_methods, reason = "the tool is the core's caller, and owns the clock")]
-    pub(crate) fn start() -> Self {
+    fn start() -> Self {
         Self(Instant::now())
     }
 
-    pub(crate) fn seconds(&self) -> f64 {
+    fn seconds(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }
 }

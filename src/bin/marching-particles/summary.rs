@@ -9,9 +9,9 @@ use serde_json::Value;
 use std::io::{self, Write};
 
 /// Width of the labels.
-pub(crate) const LABEL: usize = 26;
+const LABEL: usize = 26;
 /// Width of a column of figures.
-pub(crate) const COLUMN: usize = 13;
+const COLUMN: usize = 13;
 
 pub(crate) fn write(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
     let report = &outcome.report;
@@ -126,7 +126,7 @@ fn table(out: &mut impl Write, outcome: &Outcome) -> io::Result<()> {
 }
 
 /// Formats a figure with the digits and the unit of its row.
-pub(crate) fn figure(row: &ReportRow, value: Option<&Value>) -> String {
+fn figure(row: &ReportRow, value: Option<&Value>) -> String {
     if let Some(word) = value.and_then(Value::as_str) {
         return word.to_owned();
     }
@@ -177,6 +177,6 @@ fn significant(number: f64) -> String {
 }
 
 /// Formats a duration in milliseconds or seconds.
-pub(crate) fn time(seconds: f64) -> String {
+fn time(seconds: f64) -> String {
     if seconds < 1.0 { format!("{:.1} ms", seconds * 1e3) } else { format!("{seconds:.2} s") }
 }

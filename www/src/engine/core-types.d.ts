@@ -699,7 +699,7 @@ export type LessonSettings = {
   step_size: number | null,
   /** A particle system that has not come to rest after so many iterations ends all the same. */
   max_iterations: number,
-  /** The run stops at this many particles, at most [`MAX_PARTICLES`]. */
+  /** The run stops at this many particles. More than [`MAX_PARTICLES`] of them can be asked for. */
   max_particles: number,
 };
 

@@ -126,7 +126,6 @@ test('a link holds every setting of an adaptive run', async ({ page }) => {
     radius_law: 'sum_of_curvatures',
     curvature_scale: 0.11,
     grading: 0.3,
-    placement: 'faithful',
   };
   const before = await set(page, { ...spindle, settings, view: { colour: 'radius' } });
   const shared = String(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl()));

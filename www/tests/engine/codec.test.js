@@ -189,7 +189,7 @@ describe('a state from anywhere', () => {
         declared: [{ name: 'k', min: 3, max: 1 }, 7, { name: 'm' }],
         bounds: { min: [0, 0, 0], max: [1, 0, 1] },
         plane: { normal: [0, 0, 0], offset: 1 },
-        settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', nothing: 1, count: 'many' },
+        settings: { radius_share: 5, relax_steps: 2.4, size_mode: 'magic', placement: 'faithful', count: 'many' },
         view: {
           colour: 'pink',
           size: 99,
@@ -221,7 +221,8 @@ describe('a state from anywhere', () => {
       'setting radius_share',
       'setting relax_steps',
       'setting size_mode',
-      'setting nothing',
+      // A setting of older links.
+      'setting placement',
       'setting count',
       'colour',
       'disc size',

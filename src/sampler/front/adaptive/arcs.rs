@@ -20,7 +20,7 @@ use glam::{Vec2, Vec3};
 
 /// A child has room if the free angle τ is at least this share of φ. At ½ its distance from either neighbour is
 /// 0.77 (r_i + r_j).
-pub(crate) const FIT: f32 = 0.5;
+const FIT: f32 = 0.5;
 
 /// An arc takes another child if it has room for this share of it.
 const CROWDING: f32 = 0.5;
@@ -153,43 +153,6 @@ pub(crate) struct Arc {
     pub(crate) start: f32,
     /// Whether no particle is near and the arc is the whole circle.
     pub(crate) whole: bool,
-}
-
-/// The comparison that decides about a child (Fig. 7g).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Room {
-    /// φ: the angle at the parent that the child's diameter takes.
-    pub(crate) phi: f32,
-    /// τ: the free angle, which equals φ where the child just fits.
-    pub(crate) tau: f32,
-}
-
-impl Room {
-    /// The room of a child that has no neighbour.
-    pub(crate) fn whole(parent_radius: f32, radius: f32) -> Self {
-        Self { phi: taken(parent_radius, radius), tau: TAU }
-    }
-
-    /// The room of a child between two neighbours, each given by its centre and radius. The second one is in the direction of
-    /// growing angles.
-    pub(crate) fn between(
-        parent_radius: f32,
-        radius: f32,
-        (before, before_radius): (Vec2, f32),
-        (behind, behind_radius): (Vec2, f32),
-    ) -> Self {
-        let phi = taken(parent_radius, radius);
-        let distance = parent_radius + radius;
-        let beside = |centre: Vec2, other: f32| wedge(distance, centre.length(), radius + other, 0.0, 0.0);
-        let apart = atan2(before.perp_dot(behind), before.dot(behind));
-        let apart = if apart <= 0.0 { apart + TAU } else { apart };
-        Self { phi, tau: apart - beside(before, before_radius) - beside(behind, behind_radius) + phi }
-    }
-}
-
-/// φ: twice the angle whose sine is r_c / (r_p + r_c).
-pub(crate) fn taken(parent_radius: f32, radius: f32) -> f32 {
-    2.0 * asin(radius / (parent_radius + radius))
 }
 
 /// Eight neighbours. A lane without a neighbour is infinitely far away.
@@ -397,41 +360,6 @@ impl Ring {
         Arc { from: start + most, to: start + least, start, whole: false }
     }
 
-    /// Returns the neighbours at the two ends of an arc: a child at either end touches them.
-    pub(crate) fn ends(&self, arc: Arc) -> Option<(usize, usize)> {
-        if arc.whole {
-            return None;
-        }
-        let mut ends = (0, 0);
-        let (mut most, mut least) = (f32::NEG_INFINITY, f32::INFINITY);
-        for i in 0..self.len {
-            let chunk = &self.chunks[i / LANES];
-            let mut angle = self.angle(i) - arc.start;
-            while angle < 0.0 {
-                angle += TAU;
-            }
-            if angle >= TAU {
-                angle -= TAU;
-            }
-            let (end, begin) = (angle + chunk.behind.0[i % LANES] - TAU, angle - chunk.before.0[i % LANES]);
-            if end > most {
-                (most, ends.0) = (end, i);
-            }
-            if begin < least {
-                (least, ends.1) = (begin, i);
-            }
-        }
-        Some(ends)
-    }
-
-    /// Neighbour `i` in the tangent plane, at its true distance, and its radius.
-    pub(crate) fn disc(&self, i: usize, frame: &ParentFrame) -> (Vec2, f32) {
-        let (chunk, lane) = (&self.chunks[i / LANES], i % LANES);
-        let offset = Vec3::new(chunk.x.0[lane], chunk.y.0[lane], chunk.z.0[lane]);
-        let flat = Vec2::new(offset.dot(frame.u), offset.dot(frame.w));
-        (flat.normalize_or_zero() * offset.length(), chunk.radius.0[lane])
-    }
-
     /// Returns the angles of the children of an arc: as many as fit, evenly spread, so that all gaps are equally wide.
     pub(crate) fn spread(&mut self, frame: &ParentFrame, arc: Arc) -> &[f32] {
         /// First guess of the angle between two children, in radians: about 60°.
@@ -493,4 +421,4 @@ const SIN_60: f32 = 0.866_025_4;
 const SLOPE_PULL: f32 = 0.02;
 
 /// Largest number of children in an arc, whatever the prediction says.
-pub(crate) const MAX_CHILDREN: usize = 16;
+const MAX_CHILDREN: usize = 16;

@@ -14,7 +14,6 @@ mod arcs;
 mod parents;
 mod placement;
 mod prediction;
-mod pushing;
 mod vicinity;
 
 use crate::field::Field;
@@ -31,8 +30,7 @@ use crate::sampler::front::level::{
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
-use crate::sampler::projection::{Accuracy, Landing, Projector, Tolerance, tolerance};
-use crate::sampler::settings::Placement;
+use crate::sampler::projection::{Accuracy, Projector, Tolerance, tolerance};
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
@@ -75,7 +73,6 @@ struct AdaptiveChild {
 /// The settings of a run and what its survey found, as far as the front needs them.
 #[derive(Clone, Copy, Debug)]
 struct Rules {
-    method: Placement,
     /// Largest change of the radius per unit of length.
     grading: f32,
     /// Least distance of two particles, as a share of r_i + r_j.
@@ -110,7 +107,6 @@ pub(crate) struct AdaptiveFront {
     found: Vec<Neighbour>,
     around: Vicinity,
     solver: DirectPlacement,
-    landing: Vec<Landing>,
     /// Rounds of filling so far, and particles placed in them.
     fills: u32,
     filled: u64,
@@ -120,7 +116,6 @@ impl AdaptiveFront {
     pub(crate) fn new() -> Self {
         Self {
             rules: Rules {
-                method: Placement::Direct,
                 grading: 0.2,
                 match_tolerance: 0.7,
                 reach: REACH,
@@ -137,7 +132,6 @@ impl AdaptiveFront {
             found: Vec::new(),
             around: Vicinity::default(),
             solver: DirectPlacement::new(),
-            landing: Vec::new(),
             fills: 0,
             filled: 0,
         }
@@ -234,7 +228,6 @@ impl LevelFront for AdaptiveFront {
         // Neighbours that touch differ by this factor at most.
         let ratio = (1.0 + grading) / (1.0 - grading);
         self.rules = Rules {
-            method: settings.placement,
             grading,
             match_tolerance: settings.match_tolerance as f32,
             reach: REACH.max(LISTED * (1.0 + ratio)),
@@ -291,23 +284,15 @@ impl LevelFront for AdaptiveFront {
             self.around.read(&found, context.neighbours, particles, parent, self.level.settled) && !is_fine;
 
         let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent);
-        let mut frame = ParentFrame { radius, u, w, n, shape: [0.0; 3], slope: Vec2::ZERO };
-        if self.rules.method == Placement::Direct {
-            frame.shape = shape_in(&local.curvature, u, w);
-            let inherited = Vec2::new(local.slope.dot(u), local.slope.dot(w));
-            frame.slope = self.around.ring.slope(u, w, radius, inherited);
-            self.parents.level[which].local.slope = u * frame.slope.x + w * frame.slope.y;
-        }
+        let inherited = Vec2::new(local.slope.dot(u), local.slope.dot(w));
+        let slope = self.around.ring.slope(u, w, radius, inherited);
+        let frame = ParentFrame { radius, u, w, n, shape: shape_in(&local.curvature, u, w), slope };
+        self.parents.level[which].local.slope = u * slope.x + w * slope.y;
         self.parents.level[which].has_placed = true;
         self.around.ring.find_arcs(&frame);
         self.found = found;
         self.around.begin_circle(!again);
-        match self.rules.method {
-            Placement::Direct => {
-                self.predict_children(&frame, alone_on_sheet);
-            }
-            Placement::Faithful => self.push_children(context, parent, &frame),
-        }
+        self.predict_children(&frame, alone_on_sheet);
         self.fill_slots(context.particles, which, again);
     }
 

@@ -25,13 +25,8 @@ impl AdaptiveFront {
                 let clearance = if alone_on_sheet { room.min(seen) } else { 0.0 };
                 let turn = if angle < 0.0 { TAU } else { 0.0 } - if angle >= TAU { TAU } else { 0.0 };
                 let fits = room >= 0.0;
-                let kind = if fits {
-                    OccupantKind::Child(child, clearance)
-                } else {
-                    OccupantKind::Known(SlotFate::Matched)
-                };
+                let kind = if fits { OccupantKind::Child(child, clearance) } else { OccupantKind::Matched };
                 self.around.enter(Occupant { angle: angle + turn, kind });
-                self.around.born += 1;
                 if fits {
                     self.around.ring.push(child.offset, child.radius, false);
                 }
@@ -86,7 +81,7 @@ impl AdaptiveFront {
             given |= 1 << slot;
             self.level.fates.uncount(slots.get(slot));
             let fate = match kind {
-                OccupantKind::Known(fate) => fate,
+                OccupantKind::Matched => SlotFate::Matched,
                 OccupantKind::Child(..) if particles.len() >= self.level.max_particles => {
                     self.level.capped = true;
                     SlotFate::Capped

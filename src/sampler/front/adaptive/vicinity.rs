@@ -1,7 +1,7 @@
 //! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
 
 use super::{LISTED, RING, TOUCHING, is_same_sheet_by_size};
-use crate::particles::{Particles, SlotFate};
+use crate::particles::Particles;
 use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
@@ -19,16 +19,16 @@ pub(super) struct Occupant {
 /// What is known of an occupant.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OccupantKind {
-    /// A particle that was there, or a child whose fate is known.
-    Known(SlotFate),
+    /// A particle that was there, or a child that matched such a one.
+    Matched,
     /// A child to be projected, with its distance to the nearest collision.
     Child(PredictedChild, f32),
 }
 
 impl OccupantKind {
-    /// Whether the occupant was there before the parent placed its children, or stands for a child that matched such a one.
+    /// Whether it is no child to be projected.
     pub(super) fn is_matched(&self) -> bool {
-        matches!(self, Self::Known(SlotFate::Matched))
+        matches!(self, Self::Matched)
     }
 }
 
@@ -41,8 +41,6 @@ pub(super) struct Vicinity {
     touching: Vec<u32>,
     /// In the order of their angles.
     pub(super) occupants: Vec<Occupant>,
-    /// Children of the parent so far, placed or not.
-    pub(super) born: u32,
 }
 
 impl Vicinity {
@@ -100,12 +98,11 @@ impl Vicinity {
     /// Empties the circle, or has it begin with the particles that touch the parent.
     pub(super) fn begin_circle(&mut self, with_touching: bool) {
         self.occupants.clear();
-        self.born = 0;
         let touching = if with_touching { self.touching.len() } else { 0 };
         for k in 0..touching {
             let angle = self.ring.angle(self.touching[k] as usize);
             let angle = if angle < 0.0 { angle + TAU } else { angle };
-            self.enter(Occupant { angle, kind: OccupantKind::Known(SlotFate::Matched) });
+            self.enter(Occupant { angle, kind: OccupantKind::Matched });
         }
     }
 

@@ -63,8 +63,8 @@ import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
  */
 
 /**
- * First budget of a phase, in work units; later budgets follow the speed of the machine. A unit of the slowest sampling, the
- * paper's placement on a model, takes a third of a millisecond, so even then a Stop takes effect within 100 ms.
+ * First budget of a phase, in work units; later budgets follow the speed of the machine. No unit
+ * takes more than a third of a millisecond, so a Stop takes effect within 100 ms.
  */
 const FIRST_BUDGET = 256;
 /** First budget of a measurement or of the search for a box, in slices, which take up to a tenth of a millisecond. */
