@@ -2,8 +2,8 @@
 #![allow(unsafe_code, reason = "counting what is allocated takes an allocator")]
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::Field;
 use marching_particles::field::gallery::SURFACES;
+use marching_particles::field::{Bounded, Enclosure, Field};
 use marching_particles::math::Sym3;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -38,6 +38,7 @@ fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
     let mut value = vec![0.0; points.len()];
     let mut gradient = vec![Vec3::ZERO; points.len()];
     let mut hessian = vec![Sym3::default(); points.len()];
+    let mut enclosure = [Enclosure::UNKNOWN];
     for surface in SURFACES {
         let mut field = surface.field();
         let mut work = || {
@@ -48,7 +49,7 @@ fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
             field.gradients(&points, &mut value, &mut gradient);
             field.hessians(&points, &mut value, &mut gradient, &mut hessian);
             field.jet(DVec3::splat(0.3));
-            field.interval(DVec3::splat(-0.3), DVec3::splat(0.3));
+            field.enclose(0, &[[DVec3::splat(-0.3), DVec3::splat(0.3)]], &mut enclosure);
         };
         work();
         let before = CALLS.get();

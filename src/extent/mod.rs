@@ -114,11 +114,12 @@ impl BoxFit {
 
 /// Finds the box of a surface in at most so many cells.
 async fn find(field: &mut dyn Field, cells: usize) -> Extent {
+    let Some(bounded) = field.bounded() else { return sampled::find(field).await };
     let mut left = cells;
     let mut bends: Option<[DVec3; 2]> = None;
     let mut before = None;
     for half in HALVES {
-        let Scan { outcome, hull } = scan::scan(field, half, &mut left).await;
+        let Scan { outcome, hull } = scan::scan(bounded, half, &mut left).await;
         pause().await;
         let is_first = before.is_none();
         match (outcome, hull) {

@@ -5,7 +5,7 @@
 //! of a sphere a few around its six poles. Bounds of the value are those of the expression and of the mean value form, as in
 //! the search for components.
 
-use crate::field::{Enclosure, Field};
+use crate::field::{Bounded, Enclosure};
 use crate::slices::pause;
 use glam::DVec3;
 
@@ -82,7 +82,7 @@ impl Level {
 }
 
 /// Scans the cube of this half-width around the origin, in about `left` cells, of which those visited are taken.
-pub(super) async fn scan(field: &mut dyn Field, half: f64, left: &mut usize) -> Scan {
+pub(super) async fn scan(field: &mut dyn Bounded, half: f64, left: &mut usize) -> Scan {
     let side = 2.0 * half * LARGER;
     let lo = side * (OFF_CENTRE / 2.0 - 0.5);
     let mut places = vec![[0; 3]];
@@ -110,7 +110,7 @@ fn eighths(cells: &[Cell]) -> Vec<Place> {
 }
 
 /// How the scan ends, if a level with these cells is the last one.
-async fn outcome(field: &mut dyn Field, level: &Level, kept: &[Cell], left: usize) -> Option<Outcome> {
+async fn outcome(field: &mut dyn Bounded, level: &Level, kept: &[Cell], left: usize) -> Option<Outcome> {
     if kept.is_empty() {
         return Some(Outcome::Empty);
     }
@@ -151,7 +151,7 @@ fn hull(level: &Level, kept: &[Cell]) -> [DVec3; 2] {
 
 /// The box of the bends of a surface that goes on: of the cells with an extreme, where these are few and none lies at the faces.
 async fn bends(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     mut level: Level,
     mut kept: Vec<Cell>,
     left: &mut usize,
@@ -174,7 +174,7 @@ async fn bends(
 }
 
 /// The cells that may hold surface, and lie at the faces of the cube or may hold an extreme.
-async fn visit(field: &mut dyn Field, level: &Level, cells: &[Place], left: &mut usize) -> Vec<Cell> {
+async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &mut usize) -> Vec<Cell> {
     *left = left.saturating_sub(cells.len());
     let factors = field.factors();
     let mut kept = Vec::new();
@@ -211,7 +211,7 @@ impl Batch {
     /// Notes the extremes that a factor of the field may have in cells where it may vanish.
     fn enclose(
         &mut self,
-        field: &mut dyn Field,
+        field: &mut dyn Bounded,
         factor: usize,
         level: &Level,
         cells: &[Place],
@@ -263,7 +263,7 @@ fn mean_value(known: &Enclosure, middle: &Enclosure, half: f64) -> [f64; 2] {
 }
 
 /// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
-async fn crosses_faces(field: &mut dyn Field, level: &Level, kept: &[Cell]) -> bool {
+async fn crosses_faces(field: &mut dyn Bounded, level: &Level, kept: &[Cell]) -> bool {
     let factors = field.factors();
     for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {
         let [lo, hi] = level.corners(cell.at);

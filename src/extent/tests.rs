@@ -215,9 +215,6 @@ fn a_field_without_bounds_is_looked_at_on_a_grid() {
         fn jet(&mut self, _: DVec3) -> crate::field::Jet {
             crate::field::Jet::default()
         }
-        fn interval(&mut self, _: DVec3, _: DVec3) -> crate::field::Interval {
-            crate::field::Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: false }
-        }
     }
     let mut fit = BoxFit::new(Blob, 1);
     let extent = fit.step(u32::MAX).expect("no slice is left");

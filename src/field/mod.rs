@@ -1,7 +1,7 @@
 //! Fields f(x, y, z) whose zero set is the surface.
 //!
-//! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and bounds over
-//! boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
+//! A [`Field`] gives values, gradients and Hessians for batches of points, exact ones at single points, and, if it is
+//! [`Bounded`], bounds over boxes. [`formula`] makes fields from text, [`gallery`] holds named formulas, and [`rbf`] interpolates points.
 
 pub mod formula;
 pub mod gallery;
@@ -23,21 +23,7 @@ pub struct Jet {
     pub hessian: Sym3<f64>,
 }
 
-/// Bounds of f over a box: a closed interval that contains every value.
-///
-/// The bounds are never NaN. The empty interval, `lo > hi`, means that f is defined nowhere in the box.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// Lower bound, which may be −∞.
-    pub lo: f64,
-    /// Upper bound, which may be +∞.
-    pub hi: f64,
-    /// Whether f is certainly defined everywhere in the box, without NaN or pole. At a pole the value may be an
-    /// infinity outside the bounds.
-    pub defined: bool,
-}
-
-/// Indices of the second derivatives, a row for each axis, among the six of [`Field::enclose_second`].
+/// Indices of the second derivatives, a row for each axis, among the six of [`Bounded::enclose_second`].
 pub(crate) const SECOND: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
 
 /// Bounds of f and ∇f over a box, with properties that interval arithmetic has proven.
@@ -124,14 +110,10 @@ pub trait Field: Send {
         let _ = scale;
     }
 
-    /// Bounds of f over the box from `lo` to `hi`, rounded outward. If they exclude 0, the box holds no point of the
-    /// surface.
-    fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval;
-
-    /// Whether the field can bound its values over a box, however wide the bounds are. Without bounds
-    /// [`Field::enclose`] is not called: the survey samples densely, and completeness is not proven.
-    fn has_bounds(&self) -> bool {
-        false
+    /// This field as one that can bound its values over boxes, however wide the bounds are. Of a field that cannot, which is the
+    /// default, the survey samples densely, and completeness is not proven.
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        None
     }
 
     /// The point from which the points and boxes that the other methods take are counted, in the coordinates of the formula.
@@ -144,36 +126,30 @@ pub trait Field: Send {
     fn periods(&self) -> [Option<f64>; 3] {
         [None; 3]
     }
+}
 
+/// A field that bounds its values and derivatives over boxes, rounded outward: what the proofs about its surface rest on.
+///
+/// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`.
+pub trait Bounded: Field {
     /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
     fn factors(&mut self) -> usize {
         1
     }
 
-    /// Bounds of factor `factor` of f and of its gradient over each box.
-    ///
-    /// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`. What an enclosure says
-    /// about being defined and continuous holds for f as a whole. The default implementation gives
-    /// [`Enclosure::UNKNOWN`].
+    /// Bounds of factor `factor` of f and of its gradient over each box. What an enclosure says about being defined and continuous
+    /// holds for f as a whole.
     ///
     /// # Panics
     ///
-    /// If `factor` is not below [`Field::factors`], or `out` is shorter than `boxes`.
-    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
-        let _ = factor;
-        out[..boxes.len()].fill(Enclosure::UNKNOWN);
-    }
+    /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
+    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]);
 
-    /// Bounds of the second derivatives of factor `factor` over each box, in the order xx, xy, xz, yy, yz, zz.
-    ///
-    /// They are meaningless where f is undefined or its gradient jumps. The default implementation gives infinite
-    /// bounds.
+    /// Bounds of the second derivatives of factor `factor` over each box, in the order xx, xy, xz, yy, yz, zz. They are meaningless
+    /// where f is undefined or its gradient jumps.
     ///
     /// # Panics
     ///
-    /// Under the same conditions as [`Field::enclose`].
-    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        let _ = factor;
-        out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]);
-    }
+    /// Under the same conditions as [`Bounded::enclose`].
+    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]);
 }

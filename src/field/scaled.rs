@@ -1,7 +1,7 @@
 //! A field times a constant. With the right one, squares of values and gradients neither overflow nor underflow in
 //! single precision, whatever units a formula is in.
 
-use super::{Enclosure, Field, Interval, Jet};
+use super::{Bounded, Enclosure, Field, Jet};
 use crate::math::{Bounds, Sym3, sort_numbers};
 use glam::{DVec3, Vec3};
 
@@ -22,6 +22,11 @@ impl<'a> Scaled<'a> {
     /// `field` times `scale`, which [`comfortable_scale`] gives.
     pub(crate) fn new(field: &'a mut dyn Field, scale: f32) -> Self {
         Self { field, scale }
+    }
+
+    /// The bounds of the other field, which has some wherever [`Field::bounded`] gives this one.
+    fn bounds(&mut self) -> &mut dyn Bounded {
+        self.field.bounded().expect("a field keeps its bounds")
     }
 }
 
@@ -108,27 +113,31 @@ impl Field for Scaled<'_> {
         }
     }
 
-    fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        let scale = f64::from(self.scale);
-        let range = self.field.interval(lo, hi);
-        Interval { lo: range.lo * scale, hi: range.hi * scale, ..range }
+    fn use_double(&mut self, scale: Option<f64>) {
+        self.field.use_double(scale);
     }
 
-    fn has_bounds(&self) -> bool {
-        self.field.has_bounds()
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        if self.field.bounded().is_some() { Some(self) } else { None }
     }
 
     fn origin(&self) -> DVec3 {
         self.field.origin()
     }
 
+    fn periods(&self) -> [Option<f64>; 3] {
+        self.field.periods()
+    }
+}
+
+impl Bounded for Scaled<'_> {
     fn factors(&mut self) -> usize {
-        self.field.factors()
+        self.bounds().factors()
     }
 
     fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         let scale = f64::from(self.scale);
-        self.field.enclose(factor, boxes, out);
+        self.bounds().enclose(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
                 known.value = known.value.map(|bound| bound * scale);
@@ -139,7 +148,7 @@ impl Field for Scaled<'_> {
 
     fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
         let scale = f64::from(self.scale);
-        self.field.enclose_second(factor, boxes, out);
+        self.bounds().enclose_second(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
                 *known = known.map(|bounds| bounds.map(|bound| bound * scale));
@@ -151,6 +160,53 @@ impl Field for Scaled<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::formula::FormulaField;
+
+    #[test]
+    fn a_scaled_field_is_the_other_field_in_every_way_but_its_size() {
+        let formula = || FormulaField::parse("exp(100 cos(x)) (cos(2y) + z)", &[]).expect("a formula");
+        let (mut own, mut other) = (formula(), formula());
+        own.set_origin(DVec3::new(0.5, 0.25, 0.125));
+        other.set_origin(own.origin());
+        let scaled = &mut Scaled::new(&mut other, 4.0);
+        assert_eq!(scaled.periods(), own.periods());
+        assert!(own.periods()[0].is_some() && own.periods()[2].is_none());
+        assert_eq!(scaled.origin(), own.origin());
+        let p = [Vec3::splat(0.1)];
+        for double in [None, Some(1e9), None] {
+            own.use_double(double);
+            scaled.use_double(double);
+            let ([mut a, mut b], [mut g, mut h]) = ([[0.0]; 2], [[Vec3::ZERO]; 2]);
+            own.gradients(&p, &mut a, &mut g);
+            scaled.gradients(&p, &mut b, &mut h);
+            assert_eq!((4.0 * a[0], 4.0 * g[0]), (b[0], h[0]), "{double:?}");
+            assert_eq!(4.0 * own.jet(DVec3::splat(0.1)).value, scaled.jet(DVec3::splat(0.1)).value);
+        }
+        let boxes = [[DVec3::ZERO, DVec3::splat(0.1)]];
+        let scaled = scaled.bounded().expect("a formula has bounds");
+        assert_eq!((own.factors(), scaled.factors()), (2, 2));
+        for factor in 0..2 {
+            let [mut a, mut b] = [[Enclosure::UNKNOWN]; 2];
+            own.enclose(factor, &boxes, &mut a);
+            scaled.enclose(factor, &boxes, &mut b);
+            assert_eq!(a[0].value.map(|bound| 4.0 * bound), b[0].value);
+            assert_eq!(a[0].gradient.map(|bounds| bounds.map(|bound| 4.0 * bound)), b[0].gradient);
+            let [mut a, mut b] = [[[[0.0; 2]; 6]]; 2];
+            own.enclose_second(factor, &boxes, &mut a);
+            scaled.enclose_second(factor, &boxes, &mut b);
+            assert_eq!(a[0].map(|bounds| bounds.map(|bound| 4.0 * bound)), b[0]);
+        }
+        struct Unbounded;
+        impl Field for Unbounded {
+            fn values(&mut self, _: &[Vec3], _: &mut [f32]) {}
+            fn gradients(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3]) {}
+            fn hessians(&mut self, _: &[Vec3], _: &mut [f32], _: &mut [Vec3], _: &mut [Sym3<f32>]) {}
+            fn jet(&mut self, _: DVec3) -> Jet {
+                Jet::default()
+            }
+        }
+        assert!(Scaled::new(&mut Unbounded, 4.0).bounded().is_none());
+    }
 
     #[test]
     fn each_cell_of_the_coarse_grid_holds_one_point() {

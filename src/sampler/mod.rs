@@ -300,7 +300,7 @@ impl Sampler {
             let double = precision::double_scale(field, &self.bounds);
             field.use_double(double);
             let scale = comfortable_scale(field, spread(&self.bounds));
-            let is_dense = !field.has_bounds();
+            let is_dense = field.bounded().is_none();
             let scaled = &mut Scaled::new(field, scale);
             self.survey = survey(scaled, &self.bounds, is_dense, &mut self.projector);
             (self.survey.scale, self.survey.double) = (scale, double);

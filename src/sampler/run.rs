@@ -197,6 +197,7 @@ impl Sampler {
         /// The reach of a piece is measured along a few paths.
         const ROOM: f64 = 1.05;
         let last = self.particles.len() - 1;
+        let Some(field) = field.bounded() else { return false };
         let Some((seed, reach)) = self.components.small_piece(field, self.particles.radius[last]) else {
             return false;
         };

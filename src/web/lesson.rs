@@ -3,7 +3,7 @@
 use super::values::{answer, to_js};
 use crate::field::formula::FormulaField;
 use crate::field::rbf::{RbfData, RbfField};
-use crate::field::{Field, Interval, Jet};
+use crate::field::{Field, Jet};
 use crate::math::{Bounds, Sym3};
 use crate::reference::{self, LessonField, Particle, Reference, Settings};
 use crate::session::{Fault, FaultKind};
@@ -58,10 +58,6 @@ impl<F: Field> Field for Pointwise<F> {
 
     fn jet(&mut self, p: DVec3) -> Jet {
         self.0.jet(p)
-    }
-
-    fn interval(&mut self, _: DVec3, _: DVec3) -> Interval {
-        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: false }
     }
 }
 

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
-use marching_particles::field::{Enclosure, Field};
+use marching_particles::field::{Bounded, Enclosure};
 use marching_particles::math::Bounds;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampling, Search, Settings, StopReason};

@@ -1,9 +1,10 @@
 //! Tests of every surface of the gallery.
 
 use glam::{DVec3, Vec3};
+use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
-use marching_particles::field::{Field, Jet};
+use marching_particles::field::{Bounded, Enclosure, Field, Jet};
 use marching_particles::math::Sym3;
 use rand_core::Rng;
 use std::collections::BTreeSet;
@@ -103,18 +104,25 @@ fn batches_agree_with_double_precision() {
 #[test]
 fn values_lie_within_the_bounds_of_boxes_around_the_point() {
     for surface in SURFACES {
-        let mut field = surface.field();
+        // A sum has itself as its only factor.
+        let text = match surface.formula.split_once('=') {
+            Some((left, right)) => format!("{left} - ({right}) + x^2 + 0.618034"),
+            None => format!("{} + x^2 + 0.618034", surface.formula),
+        };
+        let mut field = FormulaField::parse(&text, &surface.declared()).expect("a formula");
         let diagonal = surface.bounds.diagonal();
         for (k, p) in points(surface, 300).into_iter().enumerate() {
             let half = DVec3::splat(diagonal * 0.5_f64.powi((k % 12).try_into().unwrap()));
             // The point is off the centre of its box.
             let lo = p - half * 0.3;
             let hi = p + half * 0.7;
-            let bounds = field.interval(lo, hi);
+            let mut out = [Enclosure::UNKNOWN];
+            field.enclose(0, &[[lo, hi]], &mut out);
+            let [Enclosure { value: [least, most], defined, .. }] = out;
             let value = field.jet(p).value;
             assert!(
-                value.is_nan() && !bounds.defined || bounds.lo <= value && value <= bounds.hi,
-                "{} at {p}: {value} outside {bounds:?} of {lo} … {hi}",
+                value.is_nan() && !defined || least <= value && value <= most,
+                "{} at {p}: {value} outside {out:?} of {lo} … {hi}",
                 surface.id,
             );
         }
@@ -129,8 +137,12 @@ fn small_boxes_off_the_surface_are_proven_empty() {
         let mut proven = 0;
         let all = points(surface, 200);
         for &p in &all {
-            let bounds = field.interval(p - half, p + half);
-            proven += usize::from(bounds.lo > 0.0 || bounds.hi < 0.0);
+            let is_empty = (0..field.factors()).all(|factor| {
+                let mut out = [Enclosure::UNKNOWN];
+                field.enclose(factor, &[[p - half, p + half]], &mut out);
+                !out[0].may_vanish || out[0].value[0] > 0.0 || out[0].value[1] < 0.0
+            });
+            proven += usize::from(is_empty);
         }
         assert!(proven * 10 >= all.len() * 9, "{}: {proven} of {} boxes", surface.id, all.len());
     }

@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "made-up points need no equal bits")]
 
 use glam::{DVec3, Vec3};
-use marching_particles::field::{Field, Interval, Jet};
+use marching_particles::field::{Field, Jet};
 use marching_particles::math::{Bounds, Sym3};
 use marching_particles::quality::{CROWDED, Options, Report, Sizes, measure, triangles};
 use rand_core::{Rng, SeedableRng};
@@ -32,10 +32,6 @@ impl<F: Fn(DVec3) -> Jet + Send> Field for Analytic<F> {
 
     fn jet(&mut self, p: DVec3) -> Jet {
         (self.0)(p)
-    }
-
-    fn interval(&mut self, _: DVec3, _: DVec3) -> Interval {
-        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: false }
     }
 }
 

@@ -52,7 +52,7 @@ pub use ast::{FUNCTIONS, FunctionInfo};
 pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 
-use super::{Enclosure, Field, Interval, Jet};
+use super::{Bounded, Enclosure, Field, Jet};
 use crate::math::Sym3;
 use ast::{COORDINATES, Constant, Equation, Function};
 use compiled::Compiled;
@@ -488,20 +488,16 @@ impl Field for FormulaField {
         self.double = scale;
     }
 
-    fn interval(&mut self, lo: DVec3, hi: DVec3) -> Interval {
-        self.on_formula_boxes(&[[lo, hi]], |field, boxes| {
-            field.compiled.factors(&field.values)[0].first.whole(boxes[0])
-        })
-    }
-
-    fn has_bounds(&self) -> bool {
-        true
+    fn bounded(&mut self) -> Option<&mut dyn Bounded> {
+        Some(self)
     }
 
     fn origin(&self) -> DVec3 {
         self.origin
     }
+}
 
+impl Bounded for FormulaField {
     fn factors(&mut self) -> usize {
         self.compiled.factors(&self.values).len()
     }

@@ -14,7 +14,7 @@ mod tree;
 pub use data::{DataError, RbfData};
 pub use frame::Frame;
 
-use super::{Field, Interval, Jet};
+use super::{Field, Jet};
 use crate::math::Sym3;
 use glam::{DVec3, Vec3};
 
@@ -76,9 +76,5 @@ impl Field for RbfField {
 
     fn exact_gradients(&mut self, points: &[Vec3], value: &mut [f64], gradient: &mut [DVec3]) {
         self.data.gradients(points, value, gradient);
-    }
-
-    fn interval(&mut self, _lo: DVec3, _hi: DVec3) -> Interval {
-        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, defined: true }
     }
 }

@@ -4,7 +4,7 @@
 //! witness is connected with a particle anew, by proof. Where that fails and no particle near it even seems to be on its sheet,
 //! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
 
-use crate::field::{Enclosure, Field};
+use crate::field::{Bounded, Enclosure};
 use crate::math::sort_few;
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
@@ -57,7 +57,7 @@ pub(crate) struct Audit {
 
 /// Input of an audit.
 pub(crate) struct Audited<'a> {
-    pub(crate) field: &'a mut dyn Field,
+    pub(crate) field: &'a mut dyn Bounded,
     pub(crate) projector: &'a mut Projector,
     pub(crate) particles: &'a Particles,
     pub(crate) seeds: &'a [Seed],
@@ -205,7 +205,7 @@ impl Audit {
     /// Whether a witness is proven to be on the component of a named one, of those within `reach`.
     fn is_on_named(
         &self,
-        field: &mut dyn Field,
+        field: &mut dyn Bounded,
         factor: usize,
         from: Oriented,
         (slack, within): (f64, ([DVec3; 2], f64)),
@@ -224,7 +224,7 @@ impl Audit {
 
 /// Whether two points of the surface are connected by proof, straight or by a way around.
 fn is_connected(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     factor: usize,
     from: Oriented,
     to: DVec3,
@@ -246,7 +246,7 @@ pub(crate) struct Piece {
 
 /// Follows the zero set of a factor of the field from the point `from` of it, to a distance of `most`: along its cuts with eight
 /// half-planes through the normal.
-pub(crate) fn follow(field: &mut dyn Field, factor: usize, from: DVec3, most: f64) -> Piece {
+pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: f64) -> Piece {
     const PATHS: usize = 8;
     /// Steps of a path, of which a circle takes 32, and the long way around a spheroid with axes of 1 and 3 takes 200.
     const STEPS: u32 = 256;
@@ -310,7 +310,7 @@ pub(crate) fn follow(field: &mut dyn Field, factor: usize, from: DVec3, most: f6
 
 /// Whether one of the particles with these indices lies on the small piece around a seed that reaches so far.
 pub(crate) fn holds_any(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     particles: &Particles,
     (seed, reach): (Seed, f64),
     mut indices: impl Iterator<Item = usize>,

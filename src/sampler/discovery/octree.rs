@@ -45,7 +45,7 @@
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Enclosure, Field, SECOND};
+use crate::field::{Bounded, Enclosure, SECOND};
 use crate::math::Bounds;
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
@@ -245,7 +245,7 @@ struct Line {
 
 impl BoxBounds {
     /// Bounds f and its gradient over the boxes.
-    fn enclose(&mut self, field: &mut dyn Field, factor: usize) {
+    fn enclose(&mut self, field: &mut dyn Bounded, factor: usize) {
         let n = self.boxes.len();
         self.known.resize(n.max(self.known.len()), Enclosure::UNKNOWN);
         field.enclose(factor, &self.boxes, &mut self.known[..n]);
@@ -253,7 +253,7 @@ impl BoxBounds {
 
     /// Bounds f and its gradient over the boxes, the mean value forms included; behind these bounds stand those in the middles
     /// of the boxes.
-    fn refine(&mut self, field: &mut dyn Field, factor: usize) {
+    fn refine(&mut self, field: &mut dyn Bounded, factor: usize) {
         let n = self.boxes.len();
         if n == 0 {
             return;
@@ -349,7 +349,7 @@ impl Octree {
     }
 
     /// Does up to `budget` units of work, rounded up to whole chunks of cells, and returns what is left.
-    pub(crate) fn step(&mut self, field: &mut dyn Field, mut budget: u32) -> u32 {
+    pub(crate) fn step(&mut self, field: &mut dyn Bounded, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
             self.factors = field.factors();
             if bounds_say_something(field, [self.lo, self.hi]) {
@@ -388,7 +388,7 @@ impl Octree {
     }
 
     /// Visits the cells of the level in this range: each is discarded, made taller, left out or halved.
-    fn visit(&mut self, field: &mut dyn Field, range: core::ops::Range<usize>) {
+    fn visit(&mut self, field: &mut dyn Bounded, range: core::ops::Range<usize>) {
         self.batch.open.clear();
         let searched =
             self.search.level[range].iter().filter(|cell| !is_left_out(cell, &self.search.isolated));
@@ -443,7 +443,7 @@ impl Octree {
 
     /// Whether the cell lies in a box that is left out of the search: one there is already, or a new one around a singular
     /// point in or near the cell.
-    fn is_isolated(&mut self, field: &mut dyn Field, cell: &Cell, known: &Enclosure) -> bool {
+    fn is_isolated(&mut self, field: &mut dyn Bounded, cell: &Cell, known: &Enclosure) -> bool {
         if is_left_out(cell, &self.search.isolated) {
             return true;
         }
@@ -482,7 +482,7 @@ impl Octree {
     }
 
     /// Decides the cells that are to be made taller, or halves them.
-    fn decide(&mut self, field: &mut dyn Field) {
+    fn decide(&mut self, field: &mut dyn Bounded) {
         self.bounds.boxes.clear();
         self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::corners));
         self.bounds.refine(field, self.search.factor);
@@ -535,7 +535,7 @@ impl Octree {
     }
 
     /// Finds the zero of f on each of the lines, at whose ends f has different signs, by Newton's method safeguarded by bisection.
-    fn find_roots(&mut self, field: &mut dyn Field) {
+    fn find_roots(&mut self, field: &mut dyn Bounded) {
         /// Bisection alone reaches the precision of a number in so many steps.
         const MOST_STEPS: u32 = 60;
         let mut settled = self.batch.lines.is_empty();
@@ -674,7 +674,7 @@ fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
 }
 
 /// Whether the field has finite bounds at all, tested on a few small boxes.
-fn bounds_say_something(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> bool {
+fn bounds_say_something(field: &mut dyn Bounded, [lo, hi]: [DVec3; 2]) -> bool {
     const SIDE: usize = 3;
     let bounds = Bounds { min: lo.to_array(), max: hi.to_array() };
     let boxes: Vec<[DVec3; 2]> = bounds.spread(SIDE).map(|p| [p, p + MARGIN * (hi - lo)]).collect();

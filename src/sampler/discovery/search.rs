@@ -1,7 +1,7 @@
 //! The search for components as the sampler drives it: the [octree](super::octree), whose witnesses are seeds where the points of the
 //! survey are covered, and the [audit](super::audit) at the end.
 
-use crate::field::Field;
+use crate::field::{Bounded, Field};
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::discovery::audit::{Audit, Audited, follow};
@@ -56,8 +56,8 @@ pub(crate) enum Cover {
 
 impl ComponentSearch {
     /// Begins with a new field.
-    pub(crate) fn begin(&mut self, field: &dyn Field, bounds: &Bounds) {
-        self.octree.begin(field.has_bounds(), bounds);
+    pub(crate) fn begin(&mut self, field: &mut dyn Field, bounds: &Bounds) {
+        self.octree.begin(field.bounded().is_some(), bounds);
         self.points.clear();
         (self.lost, self.unresolved) = (0, None);
         self.is_projected = false;
@@ -94,6 +94,7 @@ impl ComponentSearch {
         (tolerance, least_gap): (Tolerance, f64),
         budget: u32,
     ) -> u32 {
+        let Some(field) = field.bounded() else { return budget };
         let left = self.octree.step(field, budget);
         if self.octree.is_done() && !self.is_projected {
             self.is_projected = true;
@@ -106,7 +107,7 @@ impl ComponentSearch {
     /// Projects the witnesses onto the surface as single precision computes it, and into the box.
     fn project(
         &mut self,
-        field: &mut dyn Field,
+        field: &mut dyn Bounded,
         projector: &mut Projector,
         bounds: &Bounds,
         tolerance: Tolerance,
@@ -155,7 +156,7 @@ impl ComponentSearch {
     }
 
     /// Drops witnesses that are connected with others within the box: along a ridge of equal height there are many.
-    fn thin_out(&mut self, field: &mut dyn Field, corners: [DVec3; 2], tolerance: Tolerance) {
+    fn thin_out(&mut self, field: &mut dyn Bounded, corners: [DVec3; 2], tolerance: Tolerance) {
         let slack = f64::from(2.0 * tolerance.residual);
         let witnesses = core::mem::take(&mut self.octree.witnesses);
         let mut kept: Vec<(Witness, DVec3)> = Vec::new();
@@ -225,6 +226,8 @@ impl ComponentSearch {
         near: Vec<u32>,
         (tolerance, rule): (Tolerance, SheetRule),
     ) -> Cover {
+        // Without bounds there is no witness.
+        let Some(field) = field.bounded() else { return Cover::Covered };
         let Seed { position, normal, factor, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let from = (position.as_dvec3(), normal.as_dvec3());
@@ -251,7 +254,7 @@ impl ComponentSearch {
     }
 
     /// The piece of the surface around the last witness, if it is small and closed in itself.
-    pub(crate) fn small_piece(&self, field: &mut dyn Field, radius: f32) -> Option<(Seed, f64)> {
+    pub(crate) fn small_piece(&self, field: &mut dyn Bounded, radius: f32) -> Option<(Seed, f64)> {
         /// Distance to which the piece is followed, in radii of a particle. Larger pieces have room for a child.
         const FOLLOWED: f64 = 4.0;
         let seed = *self.points.get(self.next.checked_sub(1)?)?;
@@ -268,6 +271,7 @@ impl ComponentSearch {
         (radius, tolerance, rule): (f64, Tolerance, SheetRule),
         budget: u32,
     ) -> u32 {
+        let Some(field) = field.bounded() else { return budget };
         let mut audited = Audited {
             field,
             projector,

@@ -5,7 +5,7 @@
 //! distance. Between two sheets at a distance g the lift is about g. Two sheets that face the same way always have a third one
 //! between them that faces the other way.
 
-use crate::field::{Enclosure, Field};
+use crate::field::{Bounded, Enclosure, Field};
 use crate::particles::Particles;
 use crate::sampler::projection::{Accuracy, Projector};
 use crate::spatial::Neighbour;
@@ -215,7 +215,7 @@ pub(crate) type Oriented = (DVec3, DVec3);
 /// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function over
 /// the rectangle between the two, and meets the line through the second point exactly once.
 pub(crate) fn are_connected(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     factor: usize,
     pairs: &[(Oriented, DVec3)],
     slack: f64,
@@ -245,7 +245,7 @@ pub(crate) fn are_connected(
 /// of the surface in the box from `lo` to `hi`. A midpoint outside that box is moved `margin` inside and back to the surface, by
 /// turns.
 pub(crate) fn is_connected_by_segments(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     factor: usize,
     from: Oriented,
     to: DVec3,
@@ -301,7 +301,7 @@ pub(crate) fn is_connected_by_segments(
 /// Whether two points of the surface are connected by two such chains, by way of a point beside their chord. On a small piece the
 /// middle of the chord between opposite points lies inside the piece, where no step leads to the surface.
 pub(crate) fn is_connected_around(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     factor: usize,
     from: Oriented,
     to: DVec3,
@@ -323,7 +323,7 @@ pub(crate) fn is_connected_around(
 
 /// The point at which Newton's method along the gradient finds, from `p`, a zero of a factor of the field; and the unit normal
 /// there.
-fn land(field: &mut dyn Field, factor: usize, mut p: DVec3) -> Option<Oriented> {
+fn land(field: &mut dyn Bounded, factor: usize, mut p: DVec3) -> Option<Oriented> {
     const STEPS: u32 = 8;
     for _ in 0..STEPS {
         let (value, gradient) = value_at(field, factor, p);
@@ -340,7 +340,7 @@ fn land(field: &mut dyn Field, factor: usize, mut p: DVec3) -> Option<Oriented> 
 }
 
 /// Value and gradient of a factor of the field at a point: the middles of their bounds.
-pub(crate) fn value_at(field: &mut dyn Field, factor: usize, p: DVec3) -> (f64, DVec3) {
+pub(crate) fn value_at(field: &mut dyn Bounded, factor: usize, p: DVec3) -> (f64, DVec3) {
     let mut known = [Enclosure::UNKNOWN];
     field.enclose(factor, &[[p, p]], &mut known);
     known[0].middle()

@@ -12,7 +12,7 @@
 //! negative: at a minimum neither is negative, at a maximum neither positive. This is so around a cone point, whose tangent
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
-use crate::field::{Enclosure, Field};
+use crate::field::{Bounded, Enclosure, Field};
 use crate::math::Sym3;
 use crate::particles::{Particles, Slots};
 use crate::spatial::tree::Tree;
@@ -150,7 +150,7 @@ fn size_sq(m: &DMat3) -> f64 {
 /// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field has no local extremum. It lies in
 /// the box from `lo` to `hi` and meets none of the boxes `taken`.
 pub(crate) fn isolating_box(
-    field: &mut dyn Field,
+    field: &mut dyn Bounded,
     factor: usize,
     at: DVec3,
     [lo, hi]: [DVec3; 2],
@@ -189,7 +189,7 @@ fn sub_boxes([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; SUB_BOXES] {
 
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
 /// function [is a saddle](is_saddle) throughout.
-fn has_no_extremum(field: &mut dyn Field, factor: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
+fn has_no_extremum(field: &mut dyn Bounded, factor: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
     let mut known = [Enclosure::UNKNOWN; SUB_BOXES];
     let mut second = [[[0.0; 2]; 6]; SUB_BOXES];
     field.enclose(factor, boxes, &mut known);

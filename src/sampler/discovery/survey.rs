@@ -499,7 +499,7 @@ fn measure_precision(
     // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
     out.crowding = f32::INFINITY;
     let mut is_facing_another = false;
-    if field.has_bounds() {
+    if field.bounded().is_some() {
         is_facing_another = look_for_near_sheets(field, out, spacing);
         if out.nearness.is_some() {
             land_anew(field, projector, out);

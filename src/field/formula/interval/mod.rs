@@ -13,7 +13,7 @@ mod rows;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
-use crate::field::{Enclosure, Interval};
+use crate::field::Enclosure;
 use glam::DVec3;
 use range::Range;
 use rows::{BOXES, Row};
@@ -215,14 +215,6 @@ impl BoxProgram {
     /// continuous.
     pub(super) fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
         self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
-    }
-
-    /// Bounds of result 4, the whole field, over one box.
-    pub(super) fn whole(&mut self, corners: [DVec3; 2]) -> Interval {
-        let mut out = Range::exactly(f64::NAN);
-        self.run(&[corners], |_, result| out = result(4));
-        let [lo, hi] = if out.is_empty() { Enclosure::NOWHERE.value } else { [out.lo, out.hi] };
-        Interval { lo, hi, defined: out.flags & flags::DEFINED != 0 }
     }
 
     /// Bounds of results 0 … 5, the second derivatives.
