@@ -12,6 +12,7 @@ mod front;
 mod message;
 mod neighbours;
 mod phase;
+pub(crate) mod probe;
 mod progress;
 mod projection;
 mod refine;
@@ -46,7 +47,7 @@ use front::Front;
 use glam::Vec3;
 use neighbours::packed::PackedNeighbours;
 use phase::PhaseState;
-use projection::Projector;
+use probe::{Probe, ProbeMemory};
 use refine::CoarseFronts;
 use relaxation::Relaxation;
 use run::Input;
@@ -72,7 +73,7 @@ pub struct Sampler {
     survey: Survey,
     attempt: Attempt,
     phase: PhaseState,
-    projector: Projector,
+    memory: ProbeMemory,
     components: ComponentSearch,
     front: Front,
     /// Coarse fronts, of which a refinement takes several where the surface has several components.
@@ -107,7 +108,7 @@ impl Sampler {
             survey: Survey::default(),
             attempt: Attempt::default(),
             phase: PhaseState::Idle,
-            projector: Projector::new(),
+            memory: ProbeMemory::default(),
             components: ComponentSearch::default(),
             front: Front::new(),
             coarse: CoarseFronts::default(),
@@ -258,14 +259,13 @@ impl Sampler {
         self.coarse = CoarseFronts::default();
         self.relaxation.clear();
         self.counts = Counts::default();
-        self.projector.evaluations = 0;
+        self.memory.evaluations = 0;
         self.look_over(field, is_known);
-        self.counts.seeding_evaluations = self.projector.evaluations;
-
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
             let field = &mut Scaled::new(field, self.survey.scale);
-            Sizing::new(field, bounds, settings, &self.survey, &mut self.counts.seeding_evaluations)
+            Sizing::new(&mut Probe::new(field, &mut self.memory), bounds, settings, &self.survey)
         });
+        self.counts.seeding_evaluations = self.memory.evaluations;
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.scale);
@@ -302,7 +302,7 @@ impl Sampler {
             let scale = comfortable_scale(field, spread(&self.bounds));
             let is_dense = field.bounded().is_none();
             let scaled = &mut Scaled::new(field, scale);
-            self.survey = survey(scaled, &self.bounds, is_dense, &mut self.projector);
+            self.survey = survey(&mut Probe::new(scaled, &mut self.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
             if self.survey.absence == Absence::Undefined && precision::overflows_double(field, &self.bounds) {
                 self.survey.absence = Absence::TooLarge;
@@ -311,9 +311,10 @@ impl Sampler {
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);
             let limits = (self.survey.tolerance(), self.least_gap());
-            while self.components.search(field, &mut self.projector, &self.bounds, limits, u32::MAX) == 0 {}
+            let probe = &mut Probe::new(field, &mut self.memory);
+            while self.components.search(probe, &self.bounds, limits, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
-            self.survey.adopt(field, found, &self.bounds, self.components.witnessed());
+            self.survey.adopt(probe.field, found, &self.bounds, self.components.witnessed());
         }
     }
 

@@ -71,7 +71,7 @@ pub struct Counts {
     pub fates: FateCounts,
     /// Particles placed in gaps between fronts.
     pub gaps_filled: u64,
-    /// CoarseFronts started, each from a seed of its own.
+    /// Fronts started, each from a seed of its own.
     pub seeds: u32,
     /// Seeds that stayed alone beside other particles and were taken back.
     pub left_out: u32,
@@ -101,7 +101,7 @@ impl Sampler {
             refine_levels,
             relax_step: self.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
-            evaluations: self.projector.evaluations,
+            evaluations: self.memory.evaluations,
             fraction: self.fraction(settled),
             stop_reason: self.phase.stop_reason(),
             message: self.message(),

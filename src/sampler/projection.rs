@@ -4,11 +4,8 @@
 
 use crate::field::Field;
 use crate::math::sort_few;
+use crate::sampler::probe::{BATCH, Probe, ProbeMemory};
 use glam::Vec3;
-
-/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the
-/// first-level cache. The result for a point does not depend on it.
-pub(crate) const BATCH: usize = 128;
 
 /// Largest number of Newton steps on a circle; a good guess takes two evaluations.
 const MAX_NEWTON_STEPS: u32 = 12;
@@ -151,41 +148,7 @@ struct Active {
     last: f32,
 }
 
-/// Projects batches of points, and owns the buffers for that.
-#[derive(Clone, Debug)]
-pub(crate) struct Projector {
-    points: Vec<Vec3>,
-    value: Vec<f32>,
-    gradient: Vec<Vec3>,
-    /// Number of field evaluations so far, one for each point and call.
-    pub(crate) evaluations: u64,
-}
-
-impl Projector {
-    pub(crate) fn new() -> Self {
-        Self {
-            points: Vec::with_capacity(BATCH),
-            value: vec![0.0; BATCH],
-            gradient: vec![Vec3::ZERO; BATCH],
-            evaluations: 0,
-        }
-    }
-
-    /// Returns value and gradient at a point.
-    pub(crate) fn evaluate(&mut self, field: &mut dyn Field, point: Vec3) -> (f32, Vec3) {
-        self.evaluations += 1;
-        field.gradients(&[point], &mut self.value[..1], &mut self.gradient[..1]);
-        (self.value[0], self.gradient[0])
-    }
-
-    /// Returns values and gradients at no more than [`BATCH`] points, which are evaluated in one call.
-    pub(crate) fn evaluate_batch(&mut self, field: &mut dyn Field, points: &[Vec3]) -> (&[f32], &[Vec3]) {
-        let n = points.len();
-        self.evaluations += n as u64;
-        field.gradients(points, &mut self.value[..n], &mut self.gradient[..n]);
-        (&self.value[..n], &self.gradient[..n])
-    }
-
+impl Probe<'_> {
     /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs
     /// to `circles[i]`.
     ///
@@ -193,7 +156,6 @@ impl Projector {
     /// search follows. Both together take at most 50 steps, so the search ends on any field.
     pub(crate) fn land_on_circles(
         &mut self,
-        field: &mut dyn Field,
         circles: &[Circle],
         tolerance: Tolerance,
         landing: &mut Vec<Landing>,
@@ -210,19 +172,20 @@ impl Projector {
         let mut unsettled_count = 0;
         let mut count = circles.len();
         while count > 0 {
-            self.points.clear();
-            self.points.extend(active[..count].iter().map(|a| circles[a.circle as usize].point(a.turn)));
-            self.evaluations += count as u64;
-            field.gradients(&self.points, &mut self.value[..count], &mut self.gradient[..count]);
+            let ProbeMemory { points, value, gradient, evaluations } = &mut *self.memory;
+            points.clear();
+            points.extend(active[..count].iter().map(|a| circles[a.circle as usize].point(a.turn)));
+            *evaluations += count as u64;
+            self.field.gradients(points, &mut value[..count], &mut gradient[..count]);
             let mut kept = 0;
             for k in 0..count {
                 let mut a = active[k];
                 let circle = &circles[a.circle as usize];
-                let (value, gradient) = (self.value[k], self.gradient[k]);
+                let (value, gradient) = (value[k], gradient[k]);
                 let slope = gradient.length();
                 if value.abs() <= tolerance.residual * slope && tolerance.is_slope(slope) {
                     landing[a.circle as usize] =
-                        Landing::On { position: self.points[k], normal: unit(gradient, slope) };
+                        Landing::On { position: points[k], normal: unit(gradient, slope) };
                     continue;
                 }
                 a.steps += 1;
@@ -246,13 +209,13 @@ impl Projector {
             count = kept;
         }
         for &i in &unsettled[..unsettled_count] {
-            landing[i as usize] = self.search_arc(field, &circles[i as usize], tolerance);
+            landing[i as usize] = self.search_arc(&circles[i as usize], tolerance);
         }
     }
 
     /// Goes along the surface from the centre of a circle to the circle, in small steps, so that it stays on the sheet of the
     /// centre where others are near.
-    pub(crate) fn walk(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
+    pub(crate) fn walk(&mut self, circle: &Circle, tolerance: Tolerance) -> Landing {
         /// Steps from the centre to the circle.
         const STEPS: u32 = 8;
         /// Newton steps in the plane of the circle after each.
@@ -268,7 +231,7 @@ impl Projector {
             let before = n;
             p += ahead * step + n * rise;
             for _ in 0..LANDINGS {
-                let (value, gradient) = self.evaluate(field, p);
+                let (value, gradient) = self.gradient(p);
                 let within = plane(gradient);
                 p -= within * (value / within.length_squared());
                 n = within.normalize_or_zero();
@@ -283,12 +246,12 @@ impl Projector {
         let length = (cos * cos + sin * sin).sqrt();
         let mut landing = Vec::new();
         let circle = Circle { guess: [cos / length, sin / length], ..*circle };
-        self.land_on_circles(field, &[circle], tolerance, &mut landing);
+        self.land_on_circles(&[circle], tolerance, &mut landing);
         landing[0]
     }
 
     /// Finds the root on the arc that is nearest to the guess, by bracketing and the Illinois method.
-    fn search_arc(&mut self, field: &mut dyn Field, circle: &Circle, tolerance: Tolerance) -> Landing {
+    fn search_arc(&mut self, circle: &Circle, tolerance: Tolerance) -> Landing {
         // θ runs over ±100° in equal steps from the tangent plane.
         let half = HALF_TURN;
         let mut turns = [[1.0, 0.0]; ARC_SAMPLES + 1];
@@ -296,11 +259,10 @@ impl Projector {
             turns[ARC_SAMPLES / 2 + k + 1] = turned(turns[ARC_SAMPLES / 2 + k], half);
             turns[ARC_SAMPLES / 2 - k - 1] = turned(turns[ARC_SAMPLES / 2 - k], -half);
         }
-        self.points.clear();
-        self.points.extend(turns.iter().map(|&turn| circle.point(turn)));
+        let points = turns.map(|turn| circle.point(turn));
         let mut f = [0.0; ARC_SAMPLES + 1];
-        field.values(&self.points, &mut f);
-        self.evaluations += f.len() as u64;
+        self.field.values(&points, &mut f);
+        self.count(f.len() as u64);
         if f.iter().all(|v| !v.is_finite()) {
             return Landing::Undefined;
         }
@@ -320,7 +282,7 @@ impl Projector {
         sort_few(&mut brackets[..count], |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt());
         let mut budget = MAX_BRACKET_STEPS;
         for &(_, k) in &brackets[..count] {
-            let found = self.illinois(field, circle, tolerance, (turns[k], f[k], f[k + 1]), &mut budget);
+            let found = self.illinois(circle, tolerance, (turns[k], f[k], f[k + 1]), &mut budget);
             if let Some(landing) = found {
                 return landing;
             }
@@ -333,7 +295,6 @@ impl Projector {
     /// sign changes at a pole or a jump.
     fn illinois(
         &mut self,
-        field: &mut dyn Field,
         circle: &Circle,
         tolerance: Tolerance,
         (turn, mut fa, mut fb): ([f32; 2], f32, f32),
@@ -350,7 +311,7 @@ impl Projector {
                 t = 0.5 * (a + b);
             }
             let position = circle.point(turned(turn, t));
-            let (value, gradient) = self.evaluate(field, position);
+            let (value, gradient) = self.gradient(position);
             if !value.is_finite() || value.abs() > end {
                 return None;
             }
@@ -390,7 +351,6 @@ impl Projector {
     #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
     pub(crate) fn land_along_gradient(
         &mut self,
-        field: &mut dyn Field,
         points: &mut [Vec3],
         normal: &mut [Vec3],
         ok: &mut [bool],
@@ -409,16 +369,17 @@ impl Projector {
             if count == 0 {
                 break;
             }
-            self.points.clear();
-            self.points.extend(active[..count].iter().map(|&i| points[i as usize]));
-            self.evaluations += count as u64;
-            let (value, gradient) = (&mut self.value[..count], &mut self.gradient[..count]);
-            descents.evaluate(field, &active[..count], &self.points, value, gradient);
+            let ProbeMemory { points: batch, value, gradient, evaluations } = &mut *self.memory;
+            batch.clear();
+            batch.extend(active[..count].iter().map(|&i| points[i as usize]));
+            *evaluations += count as u64;
+            let (value, gradient) = (&mut value[..count], &mut gradient[..count]);
+            descents.evaluate(self.field, &active[..count], batch, value, gradient);
             let mut kept = 0;
             for k in 0..count {
                 let i = active[k] as usize;
                 let Descent { residual, reach, trust } = descents.of(i);
-                let (value, gradient) = (self.value[k], self.gradient[k]);
+                let (value, gradient) = (value[k], gradient[k]);
                 let slope_sq = gradient.length_squared();
                 let inverse_slope = 1.0 / slope_sq.sqrt();
                 let slope = slope_sq * inverse_slope;

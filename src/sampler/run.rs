@@ -9,6 +9,7 @@ use crate::sampler::discovery::singular;
 use crate::sampler::discovery::survey::Absence;
 use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
+use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, Next, Refusal, Surface};
 use crate::sampler::relaxation;
 use crate::sampler::settings::{GapPolicy, Sampling};
@@ -74,18 +75,28 @@ impl Sampler {
                     PhaseState::Marking(StopReason::Cancelled)
                 }
             },
-            Input::Work { field, left } => match phase {
-                PhaseState::Idle | PhaseState::Done(_) => phase,
-                PhaseState::Seeding(cursor) => self.find_seed(field, left, cursor),
-                PhaseState::Generation(after) => self.grow(field, left, after),
-                PhaseState::Search => self.search_components(field, left),
-                PhaseState::Filling => self.fill(field, left),
-                PhaseState::Refinement(refinement) => self.refine(field, left, refinement),
-                PhaseState::Relaxation => self.relax_particles(field, left),
-                PhaseState::Audit(reason) => self.audit(field, left, reason),
-                PhaseState::Marking(reason) => self.mark(field, reason),
-            },
+            Input::Work { field, left } => {
+                let mut memory = core::mem::take(&mut self.memory);
+                let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
+                self.memory = memory;
+                next
+            }
         };
+    }
+
+    /// Does work of the present phase, up to a budget of which `left` is the rest, and returns the next phase.
+    fn work(&mut self, probe: &mut Probe, left: &mut u32, phase: PhaseState) -> PhaseState {
+        match phase {
+            PhaseState::Idle | PhaseState::Done(_) => phase,
+            PhaseState::Seeding(cursor) => self.find_seed(probe, left, cursor),
+            PhaseState::Generation(after) => self.grow(probe, left, after),
+            PhaseState::Search => self.search_components(probe, left),
+            PhaseState::Filling => self.fill(probe, left),
+            PhaseState::Refinement(refinement) => self.refine(probe, left, refinement),
+            PhaseState::Relaxation => self.relax_particles(probe, left),
+            PhaseState::Audit(reason) => self.audit(probe, left, reason),
+            PhaseState::Marking(reason) => self.mark(probe.field, reason),
+        }
     }
 
     /// Empties the columns and prepares fronts of the present radius.
@@ -121,9 +132,9 @@ impl Sampler {
     }
 
     /// Looks for the next survey point that no particle covers and starts a front there.
-    fn find_seed(&mut self, field: &mut dyn Field, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
+    fn find_seed(&mut self, probe: &mut Probe, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
         if let Some((position, normal)) = self.coarse.seed() {
-            return self.begin_front(field, position, normal, None).unwrap_or(PhaseState::Search);
+            return self.begin_front(probe, position, normal, None).unwrap_or(PhaseState::Search);
         }
         while *left > 0 {
             if self.has_too_many_lone_seeds() {
@@ -132,15 +143,11 @@ impl Sampler {
             let Some(i) = cursor.next() else { return PhaseState::Search };
             *left -= 1;
             let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
-            let start = self.projector.evaluations;
-            let is_seed = !self.front.active_mut().is_covered(
-                field,
-                &mut self.projector,
-                &self.particles,
-                (position, normal),
-            ) && self.survey.is_zero(field, &mut self.projector, i);
-            self.counts.seeding_evaluations += self.projector.evaluations - start;
-            if is_seed && let Some(next) = self.begin_front(field, position, normal, Some(cursor)) {
+            let start = probe.evaluations();
+            let is_seed = !self.front.active_mut().is_covered(probe, &self.particles, (position, normal))
+                && self.survey.is_zero(probe, i);
+            self.counts.seeding_evaluations += probe.evaluations() - start;
+            if is_seed && let Some(next) = self.begin_front(probe, position, normal, Some(cursor)) {
                 return next;
             }
         }
@@ -151,7 +158,7 @@ impl Sampler {
     /// next; where the surface has no radius an adaptive front cannot start, and there is no transition.
     fn begin_front(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         position: Vec3,
         normal: Vec3,
         after: Option<SurveyCursor>,
@@ -160,7 +167,7 @@ impl Sampler {
             self.front.active_mut().level_mut().capped = true;
             return Some(PhaseState::Search);
         }
-        let is_started = self.with_front(field, |front, context| front.add_seed(context, position, normal));
+        let is_started = self.with_front(probe, |front, context| front.add_seed(context, position, normal));
         is_started.then(|| {
             self.counts.seeds += u32::from(self.coarse.seed().is_none());
             PhaseState::Generation(after)
@@ -168,12 +175,12 @@ impl Sampler {
     }
 
     /// Lets the front grow until it has met itself, another one or the box everywhere.
-    fn grow(&mut self, field: &mut dyn Field, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
-        self.spend_on_front(field, left, |front, context, budget| front.step(context, budget));
+    fn grow(&mut self, probe: &mut Probe, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
+        self.spend_on_front(probe, left, |front, context, budget| front.step(context, budget));
         if !self.front.active().is_done() {
             return PhaseState::Generation(after);
         }
-        let is_dropped = self.drop_lone_seed(field, after.is_none());
+        let is_dropped = self.drop_lone_seed(probe, after.is_none());
         self.counts.left_out += u32::from(is_dropped);
         match after {
             Some(cursor) if !self.front.is_capped() => PhaseState::Seeding(cursor),
@@ -183,21 +190,21 @@ impl Sampler {
 
     /// Takes the last seed back if it stayed alone beside another particle, unless it `is_witness` of a small piece of its own.
     /// Says whether it was.
-    fn drop_lone_seed(&mut self, field: &mut dyn Field, is_witness: bool) -> bool {
-        let is_lone = self.with_front(field, |front, context| front.has_lone_seed(context.particles));
-        let is_kept = is_lone && is_witness && self.coarse.seed().is_none() && self.is_on_own_piece(field);
+    fn drop_lone_seed(&mut self, probe: &mut Probe, is_witness: bool) -> bool {
+        let is_lone = self.with_front(probe, |front, context| front.has_lone_seed(context.particles));
+        let is_kept = is_lone && is_witness && self.coarse.seed().is_none() && self.is_on_own_piece(probe);
         if is_lone && !is_kept {
-            self.with_front(field, |front, context| front.drop_last_seed(context));
+            self.with_front(probe, |front, context| front.drop_last_seed(context));
         }
         is_lone && !is_kept
     }
 
     /// Whether the last particle, a witness, is the only one on a small piece of the surface that is closed in itself.
-    fn is_on_own_piece(&mut self, field: &mut dyn Field) -> bool {
+    fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
         /// The reach of a piece is measured along a few paths.
         const ROOM: f64 = 1.05;
         let last = self.particles.len() - 1;
-        let Some(field) = field.bounded() else { return false };
+        let Some(field) = probe.field.bounded() else { return false };
         let Some((seed, reach)) = self.components.small_piece(field, self.particles.radius[last]) else {
             return false;
         };
@@ -211,12 +218,11 @@ impl Sampler {
     /// Calls a method of the front with what it works on.
     fn with_front<R>(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext) -> R,
     ) -> R {
         let mut context = FrontContext {
-            field,
-            projector: &mut self.projector,
+            probe,
             sizing: self.attempt.sizing.as_ref(),
             neighbours: &mut self.neighbours,
             particles: &mut self.particles,
@@ -227,30 +233,30 @@ impl Sampler {
     /// Calls a method of the front that uses up the budget, and counts its evaluations.
     fn spend_on_front(
         &mut self,
-        field: &mut dyn Field,
+        probe: &mut Probe,
         left: &mut u32,
         call: impl FnOnce(&mut dyn LevelFront, &mut FrontContext, u32) -> u32,
     ) {
-        let start = self.projector.evaluations;
-        *left = self.with_front(field, |front, context| call(front, context, *left));
-        let evaluations = self.projector.evaluations - start;
+        let start = probe.evaluations();
+        *left = self.with_front(probe, |front, context| call(front, context, *left));
+        let evaluations = probe.evaluations() - start;
         self.counts.generation_evaluations += evaluations;
         self.counts.front_evaluations += evaluations;
     }
 
     /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
     /// but for the gaps.
-    fn search_components(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
+    fn search_components(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
         if self.front.is_capped() {
-            return self.end_generation(field);
+            return self.end_generation(probe);
         }
         if self.coarse.seed().is_some() {
-            return self.begin_filling(field);
+            return self.begin_filling(probe);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
         let limits = (tolerance, self.least_gap());
-        let unused = self.components.search(field, &mut self.projector, &self.bounds, limits, slice);
+        let unused = self.components.search(probe, &self.bounds, limits, slice);
         if unused == 0 {
             *left = 0;
             return PhaseState::Search;
@@ -258,28 +264,21 @@ impl Sampler {
         *left -= slice - unused;
         while *left > 0 {
             if self.has_too_many_lone_seeds() {
-                return self.begin_filling(field);
+                return self.begin_filling(probe);
             }
             let (witness, unused) = self.components.next(*left);
             *left = unused;
             let Some(seed) = witness else {
-                return self.begin_filling(field);
+                return self.begin_filling(probe);
             };
             let rule = self.front.active().rule();
             let mut near = self.components.take_near();
             self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
-            let start = self.projector.evaluations;
-            let cover = self.components.cover(
-                field,
-                &mut self.projector,
-                &self.particles,
-                seed,
-                near,
-                (tolerance, rule),
-            );
-            self.counts.seeding_evaluations += self.projector.evaluations - start;
+            let start = probe.evaluations();
+            let cover = self.components.cover(probe, &self.particles, seed, near, (tolerance, rule));
+            self.counts.seeding_evaluations += probe.evaluations() - start;
             if cover == Cover::Bare
-                && let Some(next) = self.begin_front(field, seed.position, seed.normal, None)
+                && let Some(next) = self.begin_front(probe, seed.position, seed.normal, None)
             {
                 return next;
             }
@@ -296,24 +295,24 @@ impl Sampler {
         is_over
     }
 
-    fn begin_filling(&mut self, field: &mut dyn Field) -> PhaseState {
+    fn begin_filling(&mut self, probe: &mut Probe) -> PhaseState {
         let has_gaps = self.settings.gaps == GapPolicy::Fill && self.front.active_mut().begin_filling();
-        if has_gaps { PhaseState::Filling } else { self.end_generation(field) }
+        if has_gaps { PhaseState::Filling } else { self.end_generation(probe) }
     }
 
     /// Fills gaps until no particle fits into any.
-    fn fill(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
-        self.spend_on_front(field, left, |front, context, budget| front.fill(context, budget));
+    fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
+        self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
         let front = self.front.active_mut();
         if !front.is_filled() || front.begin_filling() {
             PhaseState::Filling
         } else {
-            self.end_generation(field)
+            self.end_generation(probe)
         }
     }
 
     /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
-    fn end_generation(&mut self, field: &mut dyn Field) -> PhaseState {
+    fn end_generation(&mut self, probe: &mut Probe) -> PhaseState {
         let count = self.particles.len();
         if count == 0 {
             return self.begin_audit(match self.survey.absence {
@@ -322,7 +321,7 @@ impl Sampler {
                 _ => StopReason::NoSurface,
             });
         }
-        if let Some(next) = self.begin_refinement(field) {
+        if let Some(next) = self.begin_refinement(probe) {
             return next;
         }
         if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
@@ -339,7 +338,7 @@ impl Sampler {
 
     /// Begins to refine the front that has covered the surface, or another one over a component that may be coarser. Does nothing where
     /// the front stands.
-    fn begin_refinement(&mut self, field: &mut dyn Field) -> Option<PhaseState> {
+    fn begin_refinement(&mut self, probe: &mut Probe) -> Option<PhaseState> {
         let target = self.attempt.target(&self.settings)?;
         let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;
         let next = if let Some(point) = self.components.singular().first() {
@@ -355,7 +354,7 @@ impl Sampler {
                 bend: *bend,
                 failures: *failures,
             };
-            self.coarse.take_in(field, &surface, &mut self.particles, target)
+            self.coarse.take_in(probe.field, &surface, &mut self.particles, target)
         };
         Some(match next {
             Ok(Next::Front(fewer)) => {
@@ -392,17 +391,12 @@ impl Sampler {
         self.begin_attempt()
     }
 
-    fn refine(
-        &mut self,
-        field: &mut dyn Field,
-        left: &mut u32,
-        mut refinement: Box<Components>,
-    ) -> PhaseState {
+    fn refine(&mut self, probe: &mut Probe, left: &mut u32, mut refinement: Box<Components>) -> PhaseState {
         let before = refinement.evaluations();
         let sizing = self.attempt.refining.as_ref().and_then(|refining| refining.sizing.as_ref());
-        let step = refinement.step(field, sizing, &mut self.particles, *left);
+        let step = refinement.step(probe.field, sizing, &mut self.particles, *left);
         let evaluations = refinement.evaluations() - before;
-        self.projector.evaluations += evaluations;
+        probe.count(evaluations);
         self.counts.generation_evaluations += evaluations;
         match step {
             Err(refusal) => {
@@ -464,17 +458,13 @@ impl Sampler {
         self.begin_relaxation()
     }
 
-    fn relax_particles(&mut self, field: &mut dyn Field, left: &mut u32) -> PhaseState {
-        let start = self.projector.evaluations;
-        let mut surface = relaxation::SurfaceContext {
-            field,
-            projector: &mut self.projector,
-            sizing: self.attempt.sizing.as_ref(),
-        };
+    fn relax_particles(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
+        let start = probe.evaluations();
+        let sizing = self.attempt.sizing.as_ref();
         let slice = (*left).min(RELAXATION_SLICE);
-        self.moved |= self.relaxation.step(&mut surface, &mut self.neighbours, &mut self.particles, slice);
+        self.moved |= self.relaxation.step(probe, sizing, &mut self.neighbours, &mut self.particles, slice);
         *left = 0;
-        self.counts.relaxation_evaluations += self.projector.evaluations - start;
+        self.counts.relaxation_evaluations += probe.evaluations() - start;
         if self.relaxation.is_done() {
             self.begin_audit(self.reason_for_end())
         } else {
@@ -488,18 +478,17 @@ impl Sampler {
     }
 
     /// Finds out which components hold particles.
-    fn audit(&mut self, field: &mut dyn Field, left: &mut u32, reason: StopReason) -> PhaseState {
+    fn audit(&mut self, probe: &mut Probe, left: &mut u32, reason: StopReason) -> PhaseState {
         let tolerance = self.attempt.tolerance(&self.survey);
         let slice = (*left).min(SEARCH_SLICE);
-        let start = self.projector.evaluations;
+        let start = probe.evaluations();
         let unused = self.components.audit(
-            field,
-            &mut self.projector,
+            probe,
             &self.particles,
             (self.attempt.radius, tolerance, self.front.active().rule()),
             slice,
         );
-        self.counts.seeding_evaluations += self.projector.evaluations - start;
+        self.counts.seeding_evaluations += probe.evaluations() - start;
         if unused == 0 {
             *left = 0;
             return PhaseState::Audit(reason);

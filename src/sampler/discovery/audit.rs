@@ -12,7 +12,7 @@ use crate::sampler::discovery::octree::Seed;
 use crate::sampler::discovery::sheets::{
     Oriented, SheetRule, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
 };
-use crate::sampler::projection::Projector;
+use crate::sampler::probe::Probe;
 use crate::spatial::tree::Tree;
 use glam::DVec3;
 
@@ -56,9 +56,8 @@ pub(crate) struct Audit {
 }
 
 /// Input of an audit.
-pub(crate) struct Audited<'a> {
-    pub(crate) field: &'a mut dyn Bounded,
-    pub(crate) projector: &'a mut Projector,
+pub(crate) struct Audited<'a, 'b> {
+    pub(crate) probe: &'a mut Probe<'b>,
     pub(crate) particles: &'a Particles,
     pub(crate) seeds: &'a [Seed],
     /// Largest distance of a particle from the surface.
@@ -146,9 +145,10 @@ impl Audit {
 
     /// Decides whether the component of a witness holds one of the particles near it.
     fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[(f32, u32)]) {
-        let Audited { field, projector, particles, slack, radius, rule, within, .. } = audited;
+        let Audited { probe, particles, slack, radius, rule, within, .. } = audited;
         let Seed { exact, factor, .. } = seed;
-        let from = (exact, value_at(*field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z));
+        let Some(field) = probe.field.bounded() else { return };
+        let from = (exact, value_at(field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z));
         // On the factor of the witness: the others are on other sheets.
         let mut on_part = near.to_vec();
         let boxes: Vec<[DVec3; 2]> =
@@ -166,38 +166,33 @@ impl Audit {
         let place_of = |j: u32| particles.position[j as usize].as_dvec3();
         let pairs: Vec<(Oriented, DVec3)> =
             on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
-        let is_held = are_connected(*field, factor, &pairs, *slack, None).contains(&true)
+        let is_held = are_connected(field, factor, &pairs, *slack, None).contains(&true)
             || on_part
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&(_, j)| is_connected(*field, factor, from, place_of(j), *slack, *within));
+                .any(|&(_, j)| is_connected(field, factor, from, place_of(j), *slack, *within));
         if is_held {
             return;
         }
         let seems_held = on_part.iter().take(TOGETHER).any(|&(_, j)| {
             let (position, normal) = (particles.position[j as usize], particles.normal[j as usize]);
             normal.dot(seed.normal) > 0.0
-                && rule.is_one_sheet(
-                    *field,
-                    projector,
-                    (seed.position, seed.normal),
-                    position - seed.position,
-                    normal,
-                )
+                && rule.is_one_sheet(probe, (seed.position, seed.normal), position - seed.position, normal)
         });
         if seems_held {
             self.leave_open(exact, 1);
             return;
         }
+        let Some(field) = probe.field.bounded() else { return };
         let followed = FOLLOWED * *radius;
-        if self.is_on_named(*field, factor, from, (*slack, *within), followed) {
+        if self.is_on_named(field, factor, from, (*slack, *within), followed) {
             return;
         }
         if self.without.len() >= MOST_NAMED {
             self.leave_open(exact, 1);
             return;
         }
-        let Piece { reach, goes_on } = follow(*field, factor, exact, followed);
+        let Piece { reach, goes_on } = follow(field, factor, exact, followed);
         self.without.push(Unsampled { position: exact.to_array(), reach, goes_on });
         self.named.push(seed);
     }

@@ -12,7 +12,8 @@ use crate::sampler::discovery::sheets::{
     Oriented, SheetRule, TOGETHER, are_connected, is_connected_by_segments,
 };
 use crate::sampler::discovery::singular::Singular;
-use crate::sampler::projection::{BATCH, Descent, Projector, Tolerance};
+use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::projection::{Descent, Tolerance};
 use glam::{DVec3, Vec3};
 
 /// Units of work that a witness counts for.
@@ -88,33 +89,28 @@ impl ComponentSearch {
     /// Does up to `budget` units of the search. Returns the rest of the budget, 0 until the search is complete.
     pub(crate) fn search(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         bounds: &Bounds,
         (tolerance, least_gap): (Tolerance, f64),
         budget: u32,
     ) -> u32 {
-        let Some(field) = field.bounded() else { return budget };
+        let Some(field) = probe.field.bounded() else { return budget };
         let left = self.octree.step(field, budget);
         if self.octree.is_done() && !self.is_projected {
             self.is_projected = true;
-            self.project(field, projector, bounds, tolerance);
-            self.unresolved = nearest(field, self.points.iter().map(|seed| seed.exact), least_gap).0;
+            self.project(probe, bounds, tolerance);
+            self.unresolved = nearest(probe.field, self.points.iter().map(|seed| seed.exact), least_gap).0;
         }
         if self.octree.is_done() { left } else { 0 }
     }
 
     /// Projects the witnesses onto the surface as single precision computes it, and into the box.
-    fn project(
-        &mut self,
-        field: &mut dyn Bounded,
-        projector: &mut Projector,
-        bounds: &Bounds,
-        tolerance: Tolerance,
-    ) {
+    fn project(&mut self, probe: &mut Probe, bounds: &Bounds, tolerance: Tolerance) {
         let margin = self.octree.margin();
         let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
-        self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
+        if let Some(field) = probe.field.bounded() {
+            self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
+        }
         // A witness whose component lies in the margin alone is not needed.
         let starts: Vec<(DVec3, usize)> = self
             .octree
@@ -124,7 +120,7 @@ impl ComponentSearch {
                 let start = if inside(position) {
                     Some(position)
                 } else {
-                    moved_inside(field, position, bounds, margin)
+                    moved_inside(probe.field, position, bounds, margin)
                 };
                 start.map(|p| (p, factor))
             })
@@ -134,8 +130,7 @@ impl ComponentSearch {
         for starts in starts.chunks(BATCH) {
             let mut points: Vec<Vec3> = starts.iter().map(|start| start.0.as_vec3()).collect();
             let reach = margin as f32 + 16.0 * tolerance.residual;
-            projector.land_along_gradient(
-                field,
+            probe.land_along_gradient(
                 &mut points,
                 &mut normal,
                 &mut ok,
@@ -219,15 +214,14 @@ impl ComponentSearch {
     /// bounds are too wide for one, by the field at a point between the two. The [audit](super::audit) asks again.
     pub(crate) fn cover(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         seed: Seed,
         near: Vec<u32>,
         (tolerance, rule): (Tolerance, SheetRule),
     ) -> Cover {
         // Without bounds there is no witness.
-        let Some(field) = field.bounded() else { return Cover::Covered };
+        let Some(field) = probe.field.bounded() else { return Cover::Covered };
         let Seed { position, normal, factor, .. } = seed;
         let slack = f64::from(2.0 * tolerance.residual);
         let from = (position.as_dvec3(), normal.as_dvec3());
@@ -247,7 +241,7 @@ impl ComponentSearch {
             || near.iter().take(MOST_TRIED).any(|&j| {
                 let j = j as usize;
                 let offset = particles.position[j] - position;
-                rule.is_one_sheet(field, projector, (position, normal), offset, particles.normal[j])
+                rule.is_one_sheet(probe, (position, normal), offset, particles.normal[j])
             });
         self.near = near;
         if is_covered { Cover::Covered } else { Cover::Bare }
@@ -265,16 +259,16 @@ impl ComponentSearch {
     /// Does up to `budget` units of the audit of the finished run, and returns what is left: 0 until the audit is complete.
     pub(crate) fn audit(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         (radius, tolerance, rule): (f64, Tolerance, SheetRule),
         budget: u32,
     ) -> u32 {
-        let Some(field) = field.bounded() else { return budget };
+        if probe.field.bounded().is_none() {
+            return budget;
+        }
         let mut audited = Audited {
-            field,
-            projector,
+            probe,
             particles,
             seeds: &self.points,
             slack: f64::from(2.0 * tolerance.residual),

@@ -5,9 +5,10 @@
 //! distance. Between two sheets at a distance g the lift is about g. Two sheets that face the same way always have a third one
 //! between them that faces the other way.
 
-use crate::field::{Bounded, Enclosure, Field};
+use crate::field::{Bounded, Enclosure};
 use crate::particles::Particles;
-use crate::sampler::projection::{Accuracy, Projector};
+use crate::sampler::probe::Probe;
+use crate::sampler::projection::Accuracy;
 use crate::spatial::Neighbour;
 use glam::{DVec3, Vec3};
 
@@ -77,8 +78,7 @@ impl SheetRule {
     /// [`is_one_sheet`], by this rule.
     pub(crate) fn is_one_sheet(
         self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         from: (Vec3, Vec3),
         offset: Vec3,
         other: Vec3,
@@ -86,10 +86,8 @@ impl SheetRule {
         /// Times that the way between the two points is halved: the error of the curve between them falls by 16 each time.
         const HALVINGS: u32 = 3;
         match self.resolved {
-            Some(least) => {
-                is_one_sheet_between(field, projector, from, (from.0 + offset, other), least, HALVINGS)
-            }
-            None => is_one_sheet(field, projector, from, offset, other),
+            Some(least) => is_one_sheet_between(probe, from, (from.0 + offset, other), least, HALVINGS),
+            None => is_one_sheet(probe, from, offset, other),
         }
     }
 }
@@ -109,8 +107,7 @@ fn along_the_way((p, n): (Vec3, Vec3), (q, m): (Vec3, Vec3)) -> [Vec3; 3] {
 /// surface is far nearer than the two points' lift, and faces the same way. Where it is not, the way is halved at the surface.
 /// Sheets nearer than `least` count as one.
 fn is_one_sheet_between(
-    field: &mut dyn Field,
-    projector: &mut Projector,
+    probe: &mut Probe,
     from: (Vec3, Vec3),
     to: (Vec3, Vec3),
     least: f32,
@@ -129,7 +126,7 @@ fn is_one_sheet_between(
     let lift = lift(offset, from.1, to.1);
     let way = along_the_way(from, to);
     let near = (NEAR * lift).max(0.5 * least);
-    let (value, gradient) = projector.evaluate_batch(field, &way);
+    let (value, gradient) = probe.gradients(&way);
     let is_on = |k: usize| gradient[k].dot(facing) > 0.0 && value[k].abs() <= near * gradient[k].length();
     if (0..3).all(is_on) || lift <= least && gradient[1].dot(facing) > 0.0 {
         return true;
@@ -144,15 +141,15 @@ fn is_one_sheet_between(
             return false;
         }
         middle.0 -= step;
-        let (value, gradient) = projector.evaluate(field, middle.0);
+        let (value, gradient) = probe.gradient(middle.0);
         middle.1 = gradient;
         step = gradient * (value / gradient.length_squared());
         if step.length_squared() <= 0.0625 * least * least {
             let normal = gradient.normalize_or_zero();
             let middle = (middle.0, normal);
             return normal.dot(facing) > 0.0
-                && is_one_sheet_between(field, projector, from, middle, least, halvings - 1)
-                && is_one_sheet_between(field, projector, middle, to, least, halvings - 1);
+                && is_one_sheet_between(probe, from, middle, least, halvings - 1)
+                && is_one_sheet_between(probe, middle, to, least, halvings - 1);
         }
     }
     false
@@ -162,8 +159,7 @@ fn is_one_sheet_between(
 /// `spacing` is the usual distance between particles at each.
 pub(crate) fn is_near_own(
     rule: SheetRule,
-    field: &mut dyn Field,
-    projector: &mut Projector,
+    probe: &mut Probe,
     particles: &Particles,
     (position, normal): (Vec3, Vec3),
     near: &[Neighbour],
@@ -171,9 +167,7 @@ pub(crate) fn is_near_own(
 ) -> bool {
     let other = |near: &Neighbour| particles.normal[near.index as usize];
     near.iter().any(|near| !rule.is_doubtful(near.offset, normal, other(near), spacing(near.index as usize)))
-        || near
-            .iter()
-            .any(|near| rule.is_one_sheet(field, projector, (position, normal), near.offset, other(near)))
+        || near.iter().any(|near| rule.is_one_sheet(probe, (position, normal), near.offset, other(near)))
 }
 
 /// Whether a point of the surface with the unit normal `normal` and another one at `offset` from it, with the unit normal
@@ -182,13 +176,7 @@ pub(crate) fn is_near_own(
 /// It is made at the middle of the cubic curve that is tangent to the surface at both points. On one sheet the distance of
 /// this middle from the surface is of fourth order, far less than half the lift, and the gradient there faces the same way. Between
 /// two sheets the middle is half the lift away from both.
-fn is_one_sheet(
-    field: &mut dyn Field,
-    projector: &mut Projector,
-    (position, normal): (Vec3, Vec3),
-    offset: Vec3,
-    other: Vec3,
-) -> bool {
+fn is_one_sheet(probe: &mut Probe, (position, normal): (Vec3, Vec3), offset: Vec3, other: Vec3) -> bool {
     /// Smallest lift, as a share of the distance, that rounding leaves meaningful.
     const ROUNDING: f32 = 0.01;
     /// Share of the lift within which the surface has to be of the middle.
@@ -196,7 +184,7 @@ fn is_one_sheet(
     let length = offset.length();
     let along = |n: Vec3| (offset - n * offset.dot(n)).normalize_or_zero() * length;
     let middle = position + offset * 0.5 + (along(normal) - along(other)) * 0.125;
-    let (value, gradient) = projector.evaluate(field, middle);
+    let (value, gradient) = probe.gradient(middle);
     let reach = NEAR * lift(offset, normal, other).max(ROUNDING * length);
     gradient.dot(normal + other) > 0.0 && value.abs() <= reach * gradient.length()
 }

@@ -6,7 +6,8 @@ use crate::math::{Bounds, sort_numbers};
 use crate::sampler::discovery::completeness::Search;
 use crate::sampler::discovery::dips::{Crossing, Dip, End, Look};
 use crate::sampler::discovery::nearness::{Nearness, UNRESOLVED, nearest};
-use crate::sampler::projection::{Accuracy, BATCH, Descent, Projector, Tolerance, tolerance};
+use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::projection::{Accuracy, Descent, Tolerance, tolerance};
 use glam::{DVec3, Vec3};
 
 /// Grid cells along the longest side of the box. 32³ evaluations are a few per cent of a run with 50,000 particles.
@@ -132,14 +133,7 @@ impl Layer {
     }
 
     /// Evaluates the field at layer `k`, or takes it from a dense grid.
-    fn fill(
-        &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
-        grid: &Grid,
-        dense: Option<&Dense>,
-        k: usize,
-    ) {
+    fn fill(&mut self, probe: &mut Probe, grid: &Grid, dense: Option<&Dense>, k: usize) {
         let count = grid.layer();
         if let Some(dense) = dense {
             let layer = k * count..(k + 1) * count;
@@ -153,7 +147,7 @@ impl Layer {
             let last = (first + BATCH).min(count);
             points.clear();
             points.extend((first..last).map(|m| grid.node(m % nx, m / nx, k)));
-            let (value, gradient) = projector.evaluate_batch(field, &points);
+            let (value, gradient) = probe.gradients(&points);
             self.value[first..last].copy_from_slice(value);
             self.gradient[first..last].copy_from_slice(gradient);
         }
@@ -267,12 +261,12 @@ impl Candidates {
     }
 
     /// Looks at the edges that the surface may cross twice, and adds the places where it does.
-    fn look_into_dips(&mut self, field: &mut dyn Field, projector: &mut Projector, grid: &Grid) {
+    fn look_into_dips(&mut self, probe: &mut Probe, grid: &Grid) {
         for _ in 0..LOOKS {
             let dips = core::mem::take(&mut self.dips);
             for chunk in dips.chunks(BATCH) {
                 let bottoms: Vec<Vec3> = chunk.iter().map(Dip::bottom).collect();
-                let (value, gradient) = projector.evaluate_batch(field, &bottoms);
+                let (value, gradient) = probe.gradients(&bottoms);
                 for ((dip, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
                     match dip.look(value, gradient) {
                         Look::Crossed(places) => {
@@ -320,7 +314,7 @@ const COARSEST: usize = 4;
 const REACH: f32 = 0.7;
 
 impl Dense {
-    fn new(field: &mut dyn Field, projector: &mut Projector, grid: &Grid) -> Self {
+    fn new(probe: &mut Probe, grid: &Grid) -> Self {
         let [nx, ny, nz] = grid.nodes;
         let index = |[i, j, k]: [usize; 3]| (k * ny + j) * nx + i;
         // The eight places at the corners of a cube.
@@ -350,7 +344,7 @@ impl Dense {
             for chunk in wanted.chunks(BATCH) {
                 points.clear();
                 points.extend(chunk.iter().map(|&[i, j, k]| grid.node(i, j, k)));
-                let (value, gradient) = projector.evaluate_batch(field, &points);
+                let (value, gradient) = probe.gradients(&points);
                 for ((&corner, &value), &gradient) in chunk.iter().zip(value).zip(gradient) {
                     (dense.value[index(corner)], dense.gradient[index(corner)]) = (value, gradient);
                 }
@@ -393,34 +387,29 @@ impl Dense {
 ///
 /// The area follows from the edges by Cauchy's formula: an edge along an axis crosses the surface once in s² of
 /// projected area, so each crossing stands for s²/(|n_x| + |n_y| + |n_z|) of true area.
-pub(crate) fn survey(
-    field: &mut dyn Field,
-    bounds: &Bounds,
-    is_dense: bool,
-    projector: &mut Projector,
-) -> Survey {
+pub(crate) fn survey(probe: &mut Probe, bounds: &Bounds, is_dense: bool) -> Survey {
     let grid = Grid::over(bounds, is_dense);
-    let dense = is_dense.then(|| Dense::new(field, projector, &grid));
+    let dense = is_dense.then(|| Dense::new(probe, &grid));
     let mut found = Candidates::new();
     let [mut lower, mut upper] = [0, 1].map(|_| Layer::new(&grid));
     let layers = grid.nodes[2];
     for k in 0..=layers {
         // The layer above; the last round only closes the layer below.
         if k < layers {
-            upper.fill(field, projector, &grid, dense.as_ref(), k);
+            upper.fill(probe, &grid, dense.as_ref(), k);
             found.note_values(&upper.value);
         }
         if k > 0 {
             found.look_at(&grid, dense.as_ref(), k - 1, &lower, (k < layers).then_some(&upper));
-            found.look_into_dips(field, projector, &grid);
+            found.look_into_dips(probe, &grid);
         }
         core::mem::swap(&mut lower, &mut upper);
     }
     let mut out = Survey { area: found.area, ..Survey::default() };
     let spacing = grid.spacing as f32;
-    out.gradient_scale = gradient_scale(field, projector, &found.place, &found.areas);
-    project(field, bounds, projector, &mut found.place, &found.areas, spacing, &mut out);
-    measure_precision(field, bounds, projector, spacing, &mut out);
+    out.gradient_scale = gradient_scale(probe, &found.place, &found.areas);
+    project(probe, bounds, &mut found.place, &found.areas, spacing, &mut out);
+    measure_precision(probe, bounds, spacing, &mut out);
     if out.position.is_empty() {
         out.area = 0.0;
         out.absence = found.absence();
@@ -431,9 +420,8 @@ pub(crate) fn survey(
 /// Moves the candidates in `start` onto the surface and keeps those that converge inside the box. `areas` holds the area that
 /// each stands for, or [`NO_CROSSING`].
 fn project(
-    field: &mut dyn Field,
+    probe: &mut Probe,
     bounds: &Bounds,
-    projector: &mut Projector,
     start: &mut [Vec3],
     areas: &[f32],
     spacing: f32,
@@ -446,8 +434,7 @@ fn project(
     let mut normal = [Vec3::ZERO; BATCH];
     let mut ok = [false; BATCH];
     for (chunk, areas) in start.chunks_mut(BATCH).zip(areas.chunks(BATCH)) {
-        projector.land_along_gradient(
-            field,
+        probe.land_along_gradient(
             chunk,
             &mut normal,
             &mut ok,
@@ -468,12 +455,12 @@ fn project(
 
 /// The median |∇f| at the candidates where f changes its sign, or at all if it nowhere does. Where f is small beside its gradient without
 /// a change of sign, both may be of any size.
-fn gradient_scale(field: &mut dyn Field, projector: &mut Projector, start: &[Vec3], areas: &[f32]) -> f32 {
+fn gradient_scale(probe: &mut Probe, start: &[Vec3], areas: &[f32]) -> f32 {
     let crosses = |area: f32| area != NO_CROSSING;
     let by_crossings = areas.iter().any(|&area| crosses(area));
     let mut slopes = Vec::new();
     for (chunk, areas) in start.chunks(BATCH).zip(areas.chunks(BATCH)) {
-        let (_, gradient) = projector.evaluate_batch(field, chunk);
+        let (_, gradient) = probe.gradients(chunk);
         let counted = gradient.iter().zip(areas).filter(|(_, area)| crosses(**area) || !by_crossings);
         slopes.extend(counted.map(|(g, _)| g.length()).filter(|g| g.is_finite() && *g > 0.0));
     }
@@ -488,25 +475,19 @@ fn ulps(bounds: &Bounds) -> f32 {
 }
 
 /// Finds out how near the surface particles have to be: by rounding, by sheets near each other, and whether f only touches zero.
-fn measure_precision(
-    field: &mut dyn Field,
-    bounds: &Bounds,
-    projector: &mut Projector,
-    spacing: f32,
-    out: &mut Survey,
-) {
-    out.resolution = ulps(bounds).max(rounding(field, projector, &out.position));
+fn measure_precision(probe: &mut Probe, bounds: &Bounds, spacing: f32, out: &mut Survey) {
+    out.resolution = ulps(bounds).max(rounding(probe, &out.position));
     // A field without bounds is one through points, whose sheets are as far from each other as the points. It bends at each.
     out.crowding = f32::INFINITY;
     let mut is_facing_another = false;
-    if field.bounded().is_some() {
-        is_facing_another = look_for_near_sheets(field, out, spacing);
+    if probe.field.bounded().is_some() {
+        is_facing_another = look_for_near_sheets(probe.field, out, spacing);
         if out.nearness.is_some() {
-            land_anew(field, projector, out);
+            land_anew(probe, out);
         }
-        out.crowding = crowding(field, projector, out, spacing).min(out.crowding);
+        out.crowding = crowding(probe, out, spacing).min(out.crowding);
     }
-    out.touches = !is_facing_another && touches(field, projector, out, TOUCH_PROBE * spacing);
+    out.touches = !is_facing_another && touches(probe, out, TOUCH_PROBE * spacing);
 }
 
 /// Looks for near sheets in double precision at a selection of the points. Returns whether more than half of these have one.
@@ -530,7 +511,7 @@ fn look_for_near_sheets(field: &mut dyn Field, out: &mut Survey, spacing: f32) -
 }
 
 /// Moves the points to where near sheets are told apart, and drops those that find none.
-fn land_anew(field: &mut dyn Field, projector: &mut Projector, out: &mut Survey) {
+fn land_anew(probe: &mut Probe, out: &mut Survey) {
     /// Far from several sheets at once each step goes only a part of the way.
     const STEPS: u32 = 3 * MAX_STEPS;
     /// Longest way of a point, in residuals of the survey.
@@ -545,7 +526,7 @@ fn land_anew(field: &mut dyn Field, projector: &mut Projector, out: &mut Survey)
         let batch = first..out.position.len().min(first + BATCH);
         let limits = &mut Descent { residual: out.residual, reach, trust: 0.0 };
         let (points, normals) = (&mut out.position[batch.clone()], &mut out.normal[batch.clone()]);
-        projector.land_along_gradient(field, points, normals, &mut is_landed, least, limits, STEPS);
+        probe.land_along_gradient(points, normals, &mut is_landed, least, limits, STEPS);
         for k in batch.clone().filter(|k| is_landed[k - first]) {
             out.position[kept] = out.position[k];
             out.normal[kept] = out.normal[k];
@@ -614,10 +595,10 @@ impl Survey {
 
     /// Whether f comes to zero at survey point `i` and not to a pole, where |f|/|∇f| vanishes too: |f| grows away from a
     /// zero and falls away from a pole.
-    pub(crate) fn is_zero(&self, field: &mut dyn Field, projector: &mut Projector, i: usize) -> bool {
+    pub(crate) fn is_zero(&self, probe: &mut Probe, i: usize) -> bool {
         let (p, n) = (self.position[i], self.normal[i]);
         let step = POLE_PROBE * self.residual.max(self.resolution);
-        let (value, _) = projector.evaluate_batch(field, &[p, p + n * step, p - n * step]);
+        let (value, _) = probe.gradients(&[p, p + n * step, p - n * step]);
         // NaN, where f ends, is no larger.
         value[1].abs() > value[0].abs() || value[2].abs() > value[0].abs()
     }
@@ -625,12 +606,12 @@ impl Survey {
 
 /// Whether f has the same sign on both sides of most of a selection of the points, at `distance` and nearer: farther away there may
 /// be another sheet.
-fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, distance: f32) -> bool {
+fn touches(probe: &mut Probe, survey: &Survey, distance: f32) -> bool {
     let stride = survey.position.len().div_ceil(RESOLUTION_SAMPLES).max(1);
     let (mut same, mut seen) = (0, 0);
     for (&p, &n) in survey.position.iter().zip(&survey.normal).step_by(stride) {
         let mut is_same_at = |d: f32| {
-            let (value, _) = projector.evaluate_batch(field, &[p + n * d, p - n * d]);
+            let (value, _) = probe.gradients(&[p + n * d, p - n * d]);
             value[0] * value[1] > 0.0
         };
         let mut d = distance;
@@ -648,7 +629,7 @@ fn touches(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, di
 
 /// Looks for [`Survey::crowding`] at a selection of the points: for the sign that f has beyond another sheet. Of a plate with two
 /// sides the normals tell the sheets apart; so f has to have that sign on both sides, or its own again beyond.
-fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, spacing: f32) -> f32 {
+fn crowding(probe: &mut Probe, survey: &Survey, spacing: f32) -> f32 {
     /// Distances, each half the one before, from an eighth of the grid's spacing. One of them lies between any two
     /// sheets of which the farther one is twice as far.
     const DISTANCES: usize = 14;
@@ -665,15 +646,7 @@ fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, s
         let batch = first..points.len().min(first + BATCH);
         let (normals, ok) = (&mut normals[batch.clone()], &mut ok[batch.clone()]);
         let least = survey.tolerance().min_gradient;
-        projector.land_along_gradient(
-            field,
-            &mut points[batch],
-            normals,
-            ok,
-            least,
-            &mut { limits },
-            MAX_STEPS,
-        );
+        probe.land_along_gradient(&mut points[batch], normals, ok, least, &mut { limits }, MAX_STEPS);
     }
     for (k, (&p, &n)) in points.iter().zip(&normals).enumerate() {
         if !ok[k] {
@@ -682,7 +655,7 @@ fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, s
         let mut nearest = [f32::INFINITY; 2];
         let mut is_between = false;
         for (side, nearest) in [1.0, -1.0].into_iter().zip(&mut nearest) {
-            let (value, _) = projector.evaluate_batch(field, &distances.map(|d| p + n * (side * d)));
+            let (value, _) = probe.gradients(&distances.map(|d| p + n * (side * d)));
             let mut comes_back = false;
             // From far to near; nearer than some resolutions the sign is that of rounding.
             for (&d, &value) in distances.iter().zip(value).filter(|(d, _)| **d > NOISE * survey.resolution) {
@@ -701,14 +674,14 @@ fn crowding(field: &mut dyn Field, projector: &mut Projector, survey: &Survey, s
 }
 
 /// Upper quartile of the distance between the surface in single and in double precision, doubled.
-fn rounding(field: &mut dyn Field, projector: &mut Projector, points: &[Vec3]) -> f32 {
+fn rounding(probe: &mut Probe, points: &[Vec3]) -> f32 {
     let stride = points.len().div_ceil(RESOLUTION_SAMPLES).max(1);
     let mut distance: Vec<f32> = points
         .iter()
         .step_by(stride)
         .filter_map(|&p| {
-            let (value, gradient) = projector.evaluate(field, p);
-            let exact = field.jet(p.as_dvec3());
+            let (value, gradient) = probe.gradient(p);
+            let exact = probe.field.jet(p.as_dvec3());
             let d = ((f64::from(value) - exact.value).abs() / f64::from(gradient.length())) as f32;
             d.is_finite().then_some(d)
         })
@@ -723,6 +696,7 @@ mod tests {
     use crate::field::model::MODELS;
     use crate::field::rbf::RbfField;
     use crate::pointcloud::models;
+    use crate::sampler::probe::ProbeMemory;
 
     #[test]
     fn a_dense_grid_tells_the_sign_at_every_node_and_the_value_near_the_surface() {
@@ -732,7 +706,7 @@ mod tests {
             let n = [65, 49, 57];
             let step = (fit.bounds.hi() - fit.bounds.lo()) / DVec3::new(64.0, 48.0, 56.0);
             let grid = Grid { lo: fit.bounds.lo(), step, nodes: n, spacing: step.max_element() };
-            let dense = Dense::new(&mut field, &mut Projector::new(), &grid);
+            let dense = Dense::new(&mut Probe::new(&mut field, &mut ProbeMemory::default()), &grid);
             let mut all = Vec::new();
             for k in 0..n[2] {
                 for j in 0..n[1] {

@@ -4,14 +4,13 @@
 //! children are projected onto the surface, a batch at a time. Their fates are then decided one by one in the order of the
 //! queue, and those that are placed close up over those that are not.
 
-use crate::field::Field;
 use crate::math::{Bounds, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::discovery::sheets::{SheetRule, is_near_own};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::projection::{BATCH, Projector};
+use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::settings::Settings;
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
@@ -23,16 +22,15 @@ use glam::Vec3;
 pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
 /// What a front works with and on, besides itself.
-pub(crate) struct FrontContext<'a> {
-    pub(crate) field: &'a mut dyn Field,
-    pub(crate) projector: &'a mut Projector,
+pub(crate) struct FrontContext<'a, 'f> {
+    pub(crate) probe: &'a mut Probe<'f>,
     /// The radius field, which the adaptive front needs.
     pub(crate) sizing: Option<&'a Sizing>,
     pub(crate) neighbours: &'a mut PackedNeighbours,
     pub(crate) particles: &'a mut Particles,
 }
 
-impl<'a> FrontContext<'a> {
+impl<'a> FrontContext<'a, '_> {
     /// The radius field of an adaptive run.
     pub(crate) fn sizing(&self) -> &'a Sizing {
         self.sizing.expect("an adaptive run begins with a radius field")
@@ -281,15 +279,14 @@ pub(crate) trait LevelFront {
     /// Whether a particle of the sheet of (`position`, `normal`) is so near that no front need start there.
     fn is_covered(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         (position, normal): (Vec3, Vec3),
     ) -> bool {
         let rule = self.rule();
         let found = self.gather_cover(particles, position, normal);
         let spacing = |j: usize| 2.0 * particles.radius[j];
-        is_near_own(rule, field, projector, particles, (position, normal), found, spacing)
+        is_near_own(rule, probe, particles, (position, normal), found, spacing)
     }
 
     /// Those particles, nearest first, in `near`.

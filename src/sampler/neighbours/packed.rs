@@ -1,7 +1,7 @@
 //! Neighbour lists of the relaxation, 16 bytes for each particle: every pair is stored once, with the larger index.
 
 use crate::math::push_gently;
-use crate::sampler::projection::BATCH;
+use crate::sampler::probe::BATCH;
 use core::ops::Range;
 
 /// Neighbours that a list has room for. In a lattice a particle has 6 to 12 neighbours within the reach of the

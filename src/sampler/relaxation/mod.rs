@@ -29,12 +29,12 @@ pub(crate) mod repulsion;
 mod sheets;
 mod stepper;
 
-use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::Particles;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::projection::{Accuracy, Projector, Tolerance};
+use crate::sampler::probe::Probe;
+use crate::sampler::projection::{Accuracy, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
 use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
 use crate::sampler::relaxation::stepper::{Stepper, batches};
@@ -97,14 +97,6 @@ impl RepulsionLaw {
             Self::Overlap { .. } => Overlap::STEP,
         }
     }
-}
-
-/// The surface that the particles stay on.
-pub(crate) struct SurfaceContext<'a> {
-    pub(crate) field: &'a mut dyn Field,
-    pub(crate) projector: &'a mut Projector,
-    /// The radius field of an adaptive run.
-    pub(crate) sizing: Option<&'a Sizing>,
 }
 
 /// A relaxation under way.
@@ -214,24 +206,26 @@ impl Relaxation {
 
     /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase;
     /// costly ones count for several. It returns early where a step stands, so that its particles can be looked at.
+    /// Particles of many radii need the radius field `sizing` of their run.
     ///
     /// # Panics
     ///
-    /// If particles of many radii come without the radius field of their run.
+    /// If particles of many radii come without a radius field.
     pub(crate) fn step(
         &mut self,
-        surface: &mut SurfaceContext,
+        probe: &mut Probe,
+        sizing: Option<&Sizing>,
         pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         budget: u32,
     ) -> bool {
-        match (self.law, surface.sizing) {
+        match (self.law, sizing) {
             (RepulsionLaw::Gaussian { radius, tolerance }, _) => {
-                self.run(&Gaussian::new(radius, tolerance), surface, pairs, particles, budget)
+                self.run(&Gaussian::new(radius, tolerance), probe, pairs, particles, budget)
             }
             (RepulsionLaw::Overlap { accuracy, min_gradient }, Some(sizing)) => {
                 let law = Overlap { sizing, accuracy, min_gradient };
-                self.run(&law, surface, pairs, particles, budget)
+                self.run(&law, probe, pairs, particles, budget)
             }
             (RepulsionLaw::Overlap { .. }, None) => panic!("an adaptive run has a radius field"),
         }
@@ -240,7 +234,7 @@ impl Relaxation {
     fn run<L: Repulsion>(
         &mut self,
         law: &L,
-        surface: &mut SurfaceContext,
+        probe: &mut Probe,
         pairs: &mut PackedNeighbours,
         particles: &mut Particles,
         mut budget: u32,
@@ -271,7 +265,7 @@ impl Relaxation {
                 }
                 Phase::Move | Phase::TakeBack | Phase::Polish => {
                     has_moved |= !range.is_empty();
-                    self.displace(law, surface, pairs, particles, range);
+                    self.displace(law, probe, pairs, particles, range);
                 }
                 Phase::Done => {}
             }
@@ -327,7 +321,7 @@ impl Relaxation {
     fn displace<L: Repulsion>(
         &mut self,
         law: &L,
-        surface: &mut SurfaceContext,
+        probe: &mut Probe,
         pairs: &PackedNeighbours,
         particles: &mut Particles,
         range: Range<usize>,
@@ -347,7 +341,7 @@ impl Relaxation {
                     landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
                 }
             }
-            stepper.land(law, surface, lists, particles, range, &mut landing);
+            stepper.land(law, probe, lists, particles, range, &mut landing);
         }
     }
 

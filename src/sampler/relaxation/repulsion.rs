@@ -6,7 +6,8 @@ use crate::field::Field;
 use crate::math::Sym3;
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
-use crate::sampler::projection::{Accuracy, BATCH, Descent, Descents, Projector, Tolerance};
+use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::projection::{Accuracy, Descent, Descents, Tolerance};
 use crate::sampler::sizing::Sizing;
 use glam::{Vec3, Vec4};
 
@@ -94,7 +95,7 @@ pub(crate) trait Repulsion {
 
     /// Moves the particles of `landing` onto the surface and writes their normals. Brings radii up to date: of the
     /// particles that have travelled far since that was done last, or of all.
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch);
+    fn land(&self, probe: &mut Probe, landing: &mut LandingBatch);
 }
 
 /// Gaussian repulsion after Witkin and Heckbert 1994, §4, without fission and death, and with one radius.
@@ -150,14 +151,13 @@ impl Repulsion for Gaussian {
         (Vec4::select(near, weight, Vec4::ZERO), Vec4::select(near, weight - END_ENERGY, Vec4::ZERO))
     }
 
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch) {
+    fn land(&self, probe: &mut Probe, landing: &mut LandingBatch) {
         let mut descent = Descent {
             residual: self.tolerance.residual,
             reach: MAX_MOVE * self.radius,
             trust: landing.trust * self.radius,
         };
-        projector.land_along_gradient(
-            field,
+        probe.land_along_gradient(
             &mut landing.position[..landing.count],
             &mut landing.normal,
             &mut landing.ok,
@@ -241,7 +241,7 @@ impl Repulsion for Overlap<'_> {
         (Vec4::select(parted, overlap / distance, Vec4::ZERO), share * share)
     }
 
-    fn land(&self, field: &mut dyn Field, projector: &mut Projector, landing: &mut LandingBatch) {
+    fn land(&self, probe: &mut Probe, landing: &mut LandingBatch) {
         let (n, trust) = (landing.count, landing.trust);
         // Particles whose radius is due come first: only they need a Hessian.
         let is_due =
@@ -277,15 +277,7 @@ impl Repulsion for Overlap<'_> {
             descents.needs_curvature = needs_curvature;
             let min_gradient = self.min_gradient;
             let place = &mut position[..count];
-            projector.land_along_gradient(
-                field,
-                place,
-                &mut normal,
-                &mut ok,
-                min_gradient,
-                &mut descents,
-                MAX_NEWTON,
-            );
+            probe.land_along_gradient(place, &mut normal, &mut ok, min_gradient, &mut descents, MAX_NEWTON);
             for (m, &k) in order.iter().enumerate() {
                 landing.position[k] = position[m];
                 landing.normal[k] = normal[m];

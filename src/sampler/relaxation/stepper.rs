@@ -5,8 +5,7 @@ use crate::particles::Particles;
 use crate::sampler::discovery::sheets::lift;
 use crate::sampler::neighbours::constants::MAX_TURN;
 use crate::sampler::neighbours::lists::NeighbourLists;
-use crate::sampler::projection::BATCH;
-use crate::sampler::relaxation::SurfaceContext;
+use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::relaxation::forces::Forces;
 use crate::sampler::relaxation::repulsion::{LandingBatch, MAX_MOVE, Repulsion};
 use core::ops::Range;
@@ -194,7 +193,7 @@ impl Stepper {
     pub(super) fn land<L: Repulsion>(
         &mut self,
         law: &L,
-        surface: &mut SurfaceContext,
+        probe: &mut Probe,
         lists: &mut NeighbourLists,
         particles: &mut Particles,
         range: Range<usize>,
@@ -209,9 +208,9 @@ impl Stepper {
             }
         }
         let goal = landing.position;
-        law.land(surface.field, surface.projector, landing);
+        law.land(probe, landing);
         if self.may_stray() {
-            self.land_nearer(law, surface, particles, (range.start, &goal), landing);
+            self.land_nearer(law, probe, particles, (range.start, &goal), landing);
         }
         for (k, i) in range.enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
@@ -240,7 +239,7 @@ impl Stepper {
     fn land_nearer<L: Repulsion>(
         &self,
         law: &L,
-        surface: &mut SurfaceContext,
+        probe: &mut Probe,
         particles: &Particles,
         (first, goal): (usize, &[Vec3; BATCH]),
         landing: &mut LandingBatch,
@@ -269,7 +268,7 @@ impl Stepper {
             if again.count == 0 {
                 return;
             }
-            law.land(surface.field, surface.projector, &mut again);
+            law.land(probe, &mut again);
             for (m, &k) in which[..again.count].iter().enumerate() {
                 (landing.position[k], landing.normal[k]) = (again.position[m], again.normal[m]);
                 (landing.radius[k], landing.radius_travel[k]) = (again.radius[m], again.radius_travel[m]);

@@ -10,9 +10,9 @@ mod laws;
 pub use laws::{ChordError, MaxCurvature, SumOfCurvatures};
 
 use crate::differential::{Curvature, curvatures};
-use crate::field::Field;
 use crate::math::{Bounds, SQRT_3};
 use crate::sampler::discovery::survey::Survey;
+use crate::sampler::probe::Probe;
 use crate::sampler::settings::Settings;
 use crate::sampler::sizing::envelope::Envelope;
 use crate::sampler::sizing::laws::SizingLaw;
@@ -51,17 +51,11 @@ struct SurfaceSample {
 
 impl Sizing {
     /// Makes the radius field that `settings` ask for. This evaluates a Hessian at every point of the survey.
-    pub(crate) fn new(
-        field: &mut dyn Field,
-        bounds: &Bounds,
-        settings: &Settings,
-        survey: &Survey,
-        evaluations: &mut u64,
-    ) -> Self {
+    pub(crate) fn new(probe: &mut Probe, bounds: &Bounds, settings: &Settings, survey: &Survey) -> Self {
         let n = survey.position.len();
         let mut curvature = vec![Curvature::default(); n];
-        curvatures(field, &survey.position, &mut curvature);
-        *evaluations += n as u64;
+        curvatures(probe.field, &survey.position, &mut curvature);
+        probe.count(n as u64);
         let samples = (0..n)
             .map(|i| SurfaceSample {
                 position: survey.position[i],

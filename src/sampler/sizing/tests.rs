@@ -1,16 +1,17 @@
 use super::*;
 use crate::field::gallery::{self, SURFACES, Surface};
 use crate::sampler::discovery::survey::survey;
-use crate::sampler::projection::Projector;
+use crate::sampler::probe::{Probe, ProbeMemory};
 use crate::sampler::settings::LawKind;
 
 const LAWS: [LawKind; 3] = [LawKind::ChordError, LawKind::MaxCurvature, LawKind::SumOfCurvatures];
 
 fn sizing_of(surface: &Surface, settings: &Settings) -> Sizing {
     let mut field = surface.field();
-    let mut projector = Projector::new();
-    let found = survey(&mut field, &surface.bounds, false, &mut projector);
-    Sizing::new(&mut field, &surface.bounds, settings, &found, &mut 0)
+    let mut memory = ProbeMemory::default();
+    let probe = &mut Probe::new(&mut field, &mut memory);
+    let found = survey(probe, &surface.bounds, false);
+    Sizing::new(probe, &surface.bounds, settings, &found)
 }
 
 fn smooth() -> impl Iterator<Item = &'static Surface> {

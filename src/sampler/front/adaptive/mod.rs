@@ -16,7 +16,6 @@ mod placement;
 mod prediction;
 mod vicinity;
 
-use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
 use crate::sampler::discovery::sheets::{SheetRule, lift};
@@ -30,7 +29,8 @@ use crate::sampler::front::level::{
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
-use crate::sampler::projection::{Accuracy, Projector, Tolerance, tolerance};
+use crate::sampler::probe::Probe;
+use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
@@ -139,7 +139,7 @@ impl AdaptiveFront {
 
     /// Makes a child a particle at its final place, unless another particle is in its way.
     fn settle_at(&mut self, context: &mut FrontContext, child: usize, spot: SurfacePoint) -> SlotFate {
-        let FrontContext { field, projector, particles, .. } = context;
+        let FrontContext { probe, particles, .. } = context;
         let AdaptiveChild { handle, parent, clearance, .. } = self.children.list[child];
         let parent = self.parents.level[parent as usize];
         let provisional = self.level.first_child + child;
@@ -147,8 +147,7 @@ impl AdaptiveFront {
         let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
         let room = clearance - moved - self.children.drift - self.rules.match_tolerance * grown;
         let is_clear = room > 0.0;
-        if !is_clear && self.collides(*field, projector, particles, (spot.position, spot.normal, spot.radius))
-        {
+        if !is_clear && self.collides(probe, particles, (spot.position, spot.normal, spot.radius)) {
             self.parents.note_seam(parent);
             return SlotFate::Matched;
         }
@@ -174,8 +173,7 @@ impl AdaptiveFront {
     /// Whether a settled particle of the same sheet is nearer than the match tolerance allows.
     fn collides(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         (position, normal, radius): (Vec3, Vec3, f32),
     ) -> bool {
@@ -191,20 +189,13 @@ impl AdaptiveFront {
                 && near.distance_sq <= limit * limit
                 && is_same_sheet_by_size(near, normal, particles.normal[j], both)
                 && (!sheets.is_fine()
-                    || is_on_sheet(
-                        sheets,
-                        field,
-                        projector,
-                        (position, normal),
-                        near.offset,
-                        particles.normal[j],
-                    ))
+                    || is_on_sheet(sheets, probe, (position, normal), near.offset, particles.normal[j]))
         })
     }
 
     /// Removes the particles on another sheet that faces the same way as `parent` from those found around it.
     fn drop_strangers(&self, context: &mut FrontContext, parent: usize, found: &mut Vec<Neighbour>) {
-        let FrontContext { field, projector, particles, .. } = context;
+        let FrontContext { probe, particles, .. } = context;
         let from = (particles.position[parent], particles.normal[parent]);
         let (sheets, settled) = (self.rules.sheets, self.level.settled);
         found.retain(|near| {
@@ -212,7 +203,7 @@ impl AdaptiveFront {
             j == parent
                 || j >= settled
                 || other.dot(from.1) <= 0.0
-                || is_on_sheet(sheets, *field, projector, from, near.offset, other)
+                || is_on_sheet(sheets, probe, from, near.offset, other)
         });
     }
 }
@@ -302,13 +293,13 @@ impl LevelFront for AdaptiveFront {
         problems.extend(list[children.clone()].iter().map(|child| child.proposal));
         let (rules, sizing) = (&self.rules, context.sizing());
         let tolerance = |radius| rules.tolerance(radius);
-        self.solver.land(context.field, context.projector, sizing, problems, &tolerance, solutions);
+        self.solver.land(context.probe, sizing, problems, &tolerance, solutions);
         for (k, landing) in solutions.iter_mut().enumerate() {
             if let DirectLanding::On(spot) = landing {
                 let circle = &problems[k].circle;
                 let (from, offset) = ((circle.centre, circle.normal), spot.position - circle.centre);
                 if rules.sheets.is_fine()
-                    && !is_on_sheet(rules.sheets, context.field, context.projector, from, offset, spot.normal)
+                    && !is_on_sheet(rules.sheets, context.probe, from, offset, spot.normal)
                 {
                     *landing = DirectLanding::NotConverged;
                     continue;
@@ -353,7 +344,7 @@ impl LevelFront for AdaptiveFront {
     fn add_seed(&mut self, context: &mut FrontContext, position: Vec3, normal: Vec3) -> bool {
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let sizing = context.sizing();
-        let spot = self.solver.look(context.field, context.projector, sizing, position);
+        let spot = self.solver.look(context.probe, sizing, position);
         if spot.radius.is_nan() || spot.radius <= 0.0 {
             return false;
         }
@@ -421,16 +412,8 @@ impl LevelFront for AdaptiveFront {
 
 /// Whether a particle at `offset` with the normal `other` lies on the sheet of the point `from`, which faces the same way: it is
 /// not doubtful, or the field between them says so.
-fn is_on_sheet(
-    sheets: SheetRule,
-    field: &mut dyn Field,
-    projector: &mut Projector,
-    from: (Vec3, Vec3),
-    offset: Vec3,
-    other: Vec3,
-) -> bool {
-    lift(offset, from.1, other) <= sheets.suspicious(0.0)
-        || sheets.is_one_sheet(field, projector, from, offset, other)
+fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, from: (Vec3, Vec3), offset: Vec3, other: Vec3) -> bool {
+    lift(offset, from.1, other) <= sheets.suspicious(0.0) || sheets.is_one_sheet(probe, from, offset, other)
 }
 
 /// Whether a particle with the normal `other` belongs to the sheet of a point with the normal `normal` from which it was

@@ -3,9 +3,9 @@
 //! time.
 
 use crate::differential::{Curvature, curvatures_of};
-use crate::field::Field;
 use crate::math::Sym3;
-use crate::sampler::projection::{BATCH, Circle, Landing, MIN_COS, Projector, Tolerance, turned};
+use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::projection::{Circle, Landing, MIN_COS, Tolerance, turned};
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
@@ -116,24 +116,17 @@ impl DirectPlacement {
         }
     }
 
-    fn evaluate(&mut self, field: &mut dyn Field, projector: &mut Projector) {
+    fn evaluate(&mut self, probe: &mut Probe) {
         let n = self.points.len();
-        projector.evaluations += n as u64;
-        field.hessians(&self.points, &mut self.value[..n], &mut self.gradient[..n], &mut self.hessian[..n]);
+        probe.hessians(&self.points, &mut self.value[..n], &mut self.gradient[..n], &mut self.hessian[..n]);
         curvatures_of(&self.gradient[..n], &self.hessian[..n], &mut self.curvature[..n]);
     }
 
     /// Evaluates normal, radius and curvature at one point on the surface or near it.
-    pub(crate) fn look(
-        &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
-        sizing: &Sizing,
-        position: Vec3,
-    ) -> SurfacePoint {
+    pub(crate) fn look(&mut self, probe: &mut Probe, sizing: &Sizing, position: Vec3) -> SurfacePoint {
         self.points.clear();
         self.points.push(position);
-        self.evaluate(field, projector);
+        self.evaluate(probe);
         let curvature = self.curvature[0];
         let radius = sizing.radius(position, &curvature);
         SurfacePoint { position, normal: self.gradient[0] / self.gradient[0].length(), radius, curvature }
@@ -143,8 +136,7 @@ impl DirectPlacement {
     /// search on the circle, by turns with the distance, where those do not settle. `landed[i]` belongs to `proposals[i]`.
     pub(crate) fn land(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         sizing: &Sizing,
         proposals: &[Proposal],
         tolerance: &dyn Fn(f32) -> Tolerance,
@@ -180,7 +172,7 @@ impl DirectPlacement {
             self.points.extend(active[..count].iter().map(|a| {
                 Circle { radius: a.distance, ..proposals[a.proposal as usize].circle }.point(a.turn)
             }));
-            self.evaluate(field, projector);
+            self.evaluate(probe);
             let mut kept = 0;
             for k in 0..count {
                 let mut a = active[k];
@@ -200,7 +192,7 @@ impl DirectPlacement {
             count = kept;
         }
         for &i in &unsettled[..unsettled_count] {
-            landed[i as usize] = self.search(field, projector, sizing, &proposals[i as usize], tolerance);
+            landed[i as usize] = self.search(probe, sizing, &proposals[i as usize], tolerance);
         }
     }
 
@@ -280,8 +272,7 @@ impl DirectPlacement {
     /// Solves for the root on the circle and for the distance by turns. It ends on any field.
     fn search(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         sizing: &Sizing,
         proposal: &Proposal,
         tolerance: &dyn Fn(f32) -> Tolerance,
@@ -294,7 +285,7 @@ impl DirectPlacement {
         for _ in 0..MAX_ROUNDS {
             let allowed = tolerance(circle.radius - proposal.parent_radius);
             let mut landing = core::mem::take(&mut self.landing);
-            projector.land_on_circles(field, &[circle], allowed, &mut landing);
+            probe.land_on_circles(&[circle], allowed, &mut landing);
             let result = landing[0];
             self.landing = landing;
             let position = match result {
@@ -302,7 +293,7 @@ impl DirectPlacement {
                 Landing::Undefined if best.is_none() => return DirectLanding::Undefined,
                 _ => break,
             };
-            let mut spot = self.look(field, projector, sizing, position);
+            let mut spot = self.look(probe, sizing, position);
             spot.radius = proposal.graded(spot.radius, sizing.least());
             if !(spot.radius > 0.0 && spot.normal.is_finite()) {
                 return DirectLanding::Undefined;

@@ -68,7 +68,7 @@ impl UniformFront {
 
     /// Fills the widest gap beside particle `i`, if a particle has room there.
     fn fill_beside(&mut self, context: &mut FrontContext, i: usize) {
-        let FrontContext { field, projector, neighbours, particles, .. } = context;
+        let FrontContext { probe, neighbours, particles, .. } = context;
         let (p, n) = (particles.position[i], particles.normal[i]);
         let spacing = 2.0 * self.radius;
         self.grid.gather(p, (GAUSSIAN_RANGE + GAUSSIAN_SKIN) * self.radius, &mut self.found);
@@ -91,7 +91,7 @@ impl UniformFront {
         let direction = (u * centre.x + w * centre.y) / width;
         let circle = Circle { centre: p, normal: n, direction, radius: width * spacing, guess: [1.0, 0.0] };
         let landing = &mut self.children.solutions;
-        projector.land_on_circles(*field, &[circle], self.tolerance, landing);
+        probe.land_on_circles(&[circle], self.tolerance, landing);
         let Landing::On { position, normal } = landing[0] else { return };
         if !self.level.bounds.contains(position) || normal.dot(n) <= 0.0 {
             return;

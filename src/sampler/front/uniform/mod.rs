@@ -28,7 +28,8 @@ use crate::sampler::neighbours::constants::{
     CELL_PER_REACH, FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE,
 };
 use crate::sampler::neighbours::packed::PackedNeighbours;
-use crate::sampler::projection::{Circle, Landing, Projector, Tolerance, tolerance};
+use crate::sampler::probe::Probe;
+use crate::sampler::projection::{Circle, Landing, Tolerance, tolerance};
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use core::ops::Range;
 use glam::Vec3;
@@ -166,8 +167,7 @@ impl UniformFront {
     /// stay in the neighbour lists of the relaxation, which tells sheets apart by the normals alone.
     fn drop_strangers(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         parent: usize,
         found: &mut Vec<Neighbour>,
@@ -179,7 +179,7 @@ impl UniformFront {
             near.index as usize >= self.level.settled
                 || other.dot(n) <= 0.0
                 || lift(near.offset, n, other) <= suspicious
-                || self.rule.is_one_sheet(field, projector, (p, n), near.offset, other)
+                || self.rule.is_one_sheet(probe, (p, n), near.offset, other)
         });
         self.around.clear();
         for near in &*found {
@@ -196,8 +196,7 @@ impl UniformFront {
     /// Whether a final particle of the same sheet is within the match radius.
     fn collides(
         &mut self,
-        field: &mut dyn Field,
-        projector: &mut Projector,
+        probe: &mut Probe,
         particles: &Particles,
         (position, normal): (Vec3, Vec3),
     ) -> bool {
@@ -209,7 +208,7 @@ impl UniformFront {
                 && is_same_sheet(offset, offset.length_squared(), normal, particles.normal[j], slack_sq)
         });
         let spacing = 2.0 * self.radius;
-        is_near_own(self.rule, field, projector, particles, (position, normal), &self.found, |_| spacing)
+        is_near_own(self.rule, probe, particles, (position, normal), &self.found, |_| spacing)
     }
 }
 
@@ -255,20 +254,20 @@ impl LevelFront for UniformFront {
     /// Paper §4.2 and §4.4.
     fn place_children(&mut self, context: &mut FrontContext, parent: usize) {
         let parent = self.parents.start + parent;
-        let FrontContext { field, projector, neighbours, particles, .. } = context;
+        let FrontContext { probe, neighbours, particles, .. } = context;
         let (p, level) = (particles.position[parent], particles.level[parent] + 1);
         let mut found = core::mem::take(&mut self.found);
         self.grid.gather(p, self.reach(), &mut found);
         let is_doubtful = self.read_surroundings(&found, neighbours, particles, parent);
         if is_doubtful {
-            self.drop_strangers(*field, projector, particles, parent, &mut found);
+            self.drop_strangers(probe, particles, parent, &mut found);
         }
         self.found = found;
 
         let frame = SlotFrame::of(particles, parent);
         let &SlotFrame { n, u, w, is_seed } = &frame;
         let form = if is_seed {
-            second_form_at(*field, p, u, w)
+            second_form_at(probe.field, p, u, w)
         } else {
             self.around.fit_second_form(self.radius, n, u, w)
         };
@@ -308,30 +307,29 @@ impl LevelFront for UniformFront {
     }
 
     fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>) {
-        let FrontContext { field, projector, particles, .. } = context;
+        let FrontContext { probe, particles, .. } = context;
         let ProvisionalChildren { list, landings, drift, problems, solutions } = &mut self.children;
         problems.clear();
         problems.extend(list[children.clone()].iter().map(|child| child.circle));
-        projector.land_on_circles(*field, problems, self.tolerance, solutions);
+        probe.land_on_circles(problems, self.tolerance, solutions);
         for (k, landing) in solutions.iter_mut().enumerate() {
             // The circle may meet the far side of a rim or of a thin sheet, which is no place for a child.
             let (rule, spacing) = (self.rule, 2.0 * self.radius);
-            let is_stranger =
-                |field: &mut dyn Field, projector: &mut Projector, position: Vec3, normal: Vec3| {
-                    let Circle { centre, normal: above, .. } = problems[k];
-                    let offset = position - centre;
-                    normal.dot(above) <= 0.0
-                        || rule.is_doubtful(offset, above, normal, spacing)
-                            && !rule.is_one_sheet(field, projector, (centre, above), offset, normal)
-                };
+            let is_stranger = |probe: &mut Probe, position: Vec3, normal: Vec3| {
+                let Circle { centre, normal: above, .. } = problems[k];
+                let offset = position - centre;
+                normal.dot(above) <= 0.0
+                    || rule.is_doubtful(offset, above, normal, spacing)
+                        && !rule.is_one_sheet(probe, (centre, above), offset, normal)
+            };
             if let Landing::On { position, normal } = *landing
-                && is_stranger(*field, projector, position, normal)
+                && is_stranger(probe, position, normal)
             {
                 *landing = Landing::NotConverged;
                 if rule.is_fine() {
-                    *landing = projector.walk(*field, &problems[k], self.tolerance);
+                    *landing = probe.walk(&problems[k], self.tolerance);
                     if let Landing::On { position, normal } = *landing
-                        && is_stranger(*field, projector, position, normal)
+                        && is_stranger(probe, position, normal)
                     {
                         *landing = Landing::NotConverged;
                     }
@@ -347,7 +345,7 @@ impl LevelFront for UniformFront {
 
     /// Paper §4.4, Algorithm 2.
     fn settle_child(&mut self, context: &mut FrontContext, child: usize) {
-        let FrontContext { field, projector, particles, .. } = context;
+        let FrontContext { probe, particles, .. } = context;
         let UniformChild { slot, handle, clearance, .. } = self.children.list[child];
         let provisional = self.level.first_child + child;
         let parent = particles.parent[provisional] as usize;
@@ -360,7 +358,7 @@ impl LevelFront for UniformFront {
                 // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all
                 // sheets, because the final normal may belong to another sheet than the provisional one.
                 let is_clear = clearance - moved - self.children.drift > self.match_radius;
-                if !is_clear && self.collides(*field, projector, particles, (position, normal)) {
+                if !is_clear && self.collides(probe, particles, (position, normal)) {
                     SlotFate::Matched
                 } else {
                     let index = self.level.settled;

@@ -1,0 +1,71 @@
+//! The field as the sampler evaluates it: in batches, with the memory that they take, and counted.
+
+use crate::field::Field;
+use crate::math::Sym3;
+use glam::Vec3;
+
+/// Largest number of points in a call of the field: large enough to hide the cost of a call, small enough for the
+/// first-level cache. The result for a point does not depend on it.
+pub(crate) const BATCH: usize = 128;
+
+/// What outlasts a [`Probe`]: the memory of a batch, and the count of all evaluations.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ProbeMemory {
+    pub(super) points: Vec<Vec3>,
+    pub(super) value: Vec<f32>,
+    pub(super) gradient: Vec<Vec3>,
+    /// Number of field evaluations so far, one for each point and call.
+    pub(crate) evaluations: u64,
+}
+
+/// A field with the memory to evaluate it at a batch of points, and the count of these evaluations.
+pub(crate) struct Probe<'a> {
+    /// The field. Evaluations made of it directly are not counted.
+    pub(crate) field: &'a mut dyn Field,
+    pub(super) memory: &'a mut ProbeMemory,
+}
+
+impl<'a> Probe<'a> {
+    pub(crate) fn new(field: &'a mut dyn Field, memory: &'a mut ProbeMemory) -> Self {
+        memory.value.resize(BATCH, 0.0);
+        memory.gradient.resize(BATCH, Vec3::ZERO);
+        Self { field, memory }
+    }
+
+    /// Number of field evaluations so far, one for each point and call.
+    pub(crate) fn evaluations(&self) -> u64 {
+        self.memory.evaluations
+    }
+
+    /// Counts evaluations that were made of the field directly.
+    pub(crate) fn count(&mut self, evaluations: u64) {
+        self.memory.evaluations += evaluations;
+    }
+
+    /// Returns value and gradient at a point.
+    pub(crate) fn gradient(&mut self, point: Vec3) -> (f32, Vec3) {
+        let (value, gradient) = self.gradients(&[point]);
+        (value[0], gradient[0])
+    }
+
+    /// Returns values and gradients at no more than [`BATCH`] points, which are evaluated in one call.
+    pub(crate) fn gradients(&mut self, points: &[Vec3]) -> (&[f32], &[Vec3]) {
+        let n = points.len();
+        let ProbeMemory { value, gradient, evaluations, .. } = &mut *self.memory;
+        *evaluations += n as u64;
+        self.field.gradients(points, &mut value[..n], &mut gradient[..n]);
+        (&value[..n], &gradient[..n])
+    }
+
+    /// Writes values, gradients and Hessians at `points`, as [`Field::hessians`] does.
+    pub(crate) fn hessians(
+        &mut self,
+        points: &[Vec3],
+        value: &mut [f32],
+        gradient: &mut [Vec3],
+        hessian: &mut [Sym3<f32>],
+    ) {
+        self.count(points.len() as u64);
+        self.field.hessians(points, value, gradient, hessian);
+    }
+}
