@@ -42,6 +42,7 @@ mod parse;
 mod periods;
 mod powers;
 mod program;
+mod registers;
 mod repair;
 mod scalar;
 #[cfg(test)]

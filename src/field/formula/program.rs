@@ -8,6 +8,7 @@
 
 use super::graph::{Graph, Id, MIN_BLEND_WIDTH, Node};
 use super::operations::{Binary, Unary};
+use super::registers::Registers;
 use crate::math::sort_few;
 use core::cmp::Reverse;
 
@@ -491,59 +492,37 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Assigns real registers to virtual ones. A register is free after the last use of its value.
+    /// Assigns real registers to virtual ones.
     fn allocate(&mut self) {
-        const NEVER: usize = usize::MAX;
-        let mut last_use = vec![0; self.code.len()];
-        for (at, instruction) in self.code.iter().enumerate().skip(3) {
-            for operand in registers(instruction) {
-                last_use[operand as usize] = at;
-            }
+        let steps = || self.code.iter().enumerate().skip(3);
+        let uses =
+            steps().flat_map(|(at, instruction)| registers(instruction).map(move |operand| (at, operand)));
+        let kept = self.program.outputs.iter().filter_map(|output| match *output {
+            Location::Register(register) => Some(register),
+            Location::Uniform(_) => None,
+        });
+        let mut real = Registers::new(self.code.len(), uses, kept);
+        for (axis, coordinate) in (0..).zip(&mut self.program.coordinates) {
+            *coordinate = real.is_used(axis).then(|| real.assign(axis));
         }
-        for output in &self.program.outputs {
-            if let Location::Register(register) = *output {
-                last_use[register as usize] = NEVER;
-            }
-        }
-        let mut real = vec![0; self.code.len()];
-        let mut free: Vec<u32> = Vec::new();
-        let mut count = 0;
-        let mut fresh = |free: &mut Vec<u32>| {
-            let lowest = (0..free.len()).min_by_key(|&at| free[at]);
-            lowest.map(|at| free.swap_remove(at)).unwrap_or_else(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        for (axis, &last) in last_use.iter().take(3).enumerate() {
-            if last > 0 {
-                real[axis] = fresh(&mut free);
-                self.program.coordinates[axis] = Some(real[axis]);
-            }
-        }
-        for (at, instruction) in self.code.iter().enumerate().skip(3) {
+        for (at, instruction) in steps() {
             let mapped = substituted(instruction, &real);
-            for operand in registers(instruction) {
-                let register = real[operand as usize];
-                if last_use[operand as usize] == at && !free.contains(&register) {
-                    free.push(register);
-                }
-            }
-            real[at] = fresh(&mut free);
+            real.free(at, registers(instruction));
+            let out = real.assign(instruction.out);
             match instruction.op {
                 Op::Second => {
                     let first = self.program.instructions.last_mut().expect("it follows its first result");
-                    first.b = real[at];
+                    first.b = out;
                 }
-                _ => self.program.instructions.push(Instruction { out: real[at], ..mapped }),
+                _ => self.program.instructions.push(Instruction { out, ..mapped }),
             }
         }
         for output in &mut self.program.outputs {
             if let Location::Register(register) = output {
-                *register = real[*register as usize];
+                *register = real.of(*register);
             }
         }
-        self.program.registers = count as usize;
+        self.program.registers = real.count();
     }
 }
 
@@ -575,9 +554,9 @@ fn registers(instruction: &Instruction) -> impl Iterator<Item = u32> {
 }
 
 /// Instruction with its register operands replaced through `real`.
-fn substituted(instruction: &Instruction, real: &[u32]) -> Instruction {
+fn substituted(instruction: &Instruction, real: &Registers) -> Instruction {
     let [a, b, c] = register_operands(instruction.op);
-    let replaced = |used: bool, operand: u32| if used { real[operand as usize] } else { operand };
+    let replaced = |used: bool, operand: u32| if used { real.of(operand) } else { operand };
     Instruction {
         a: replaced(a, instruction.a),
         b: replaced(b, instruction.b),

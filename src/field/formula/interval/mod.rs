@@ -13,6 +13,7 @@ mod rows;
 use super::derivative;
 use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
+use super::registers::Registers;
 use crate::field::Enclosure;
 use glam::DVec3;
 use range::Range;
@@ -119,46 +120,25 @@ impl BoxProgram {
         row[id as usize]
     }
 
-    /// Assigns real rows to virtual ones. A row is free after its last use.
+    /// Assigns real rows to virtual ones.
     fn allocate(&mut self, count: u32) {
-        let mut last = vec![0_usize; count as usize];
-        for (at, step) in self.steps.iter().enumerate() {
-            step.rows().for_each(|row| last[row as usize] = at);
-        }
-        for kept in self.outputs.iter().copied().chain(0..3) {
-            last[kept as usize] = usize::MAX;
-        }
-        let mut real: Vec<u32> = (0..count).collect();
-        let mut free: Vec<u32> = Vec::new();
-        let mut rows = 3;
-        for at in 0..self.steps.len() {
-            // The result is assigned before the operands are freed, so it never overwrites one of them.
-            let out = self.steps[at].out as usize;
-            real[out] = free.pop().unwrap_or_else(|| {
-                rows += 1;
-                rows - 1
-            });
-            let step = self.steps[at];
-            for operand in step.rows().filter(|&operand| last[operand as usize] == at) {
-                let row = real[operand as usize];
-                if !free.contains(&row) {
-                    free.push(row);
+        let uses = self.steps.iter().enumerate().flat_map(|(at, step)| step.rows().map(move |row| (at, row)));
+        // The coordinates are filled in anew for each batch of boxes.
+        let kept = self.outputs.iter().copied().chain(0..3);
+        let mut real = Registers::new(count as usize, uses, kept);
+        (0..3).for_each(|axis| _ = real.assign(axis));
+        for (at, step) in self.steps.iter_mut().enumerate() {
+            let used = *step;
+            for (operand, is_row) in step.operands.iter_mut().zip(step.op.row_operands()) {
+                if is_row {
+                    *operand = real.of(*operand);
                 }
             }
-            if last[out] == 0 {
-                free.push(real[out]);
-            }
-            let step = &mut self.steps[at];
-            step.out = real[out];
-            let [a, b, c] = step.op.row_operands();
-            for (operand, used) in step.operands.iter_mut().zip([a, b, c]) {
-                if used {
-                    *operand = real[*operand as usize];
-                }
-            }
+            real.free(at, used.rows());
+            step.out = real.assign(used.out);
         }
-        self.outputs.iter_mut().for_each(|row| *row = real[*row as usize]);
-        self.rows = vec![Row::ZERO; rows as usize];
+        self.outputs.iter_mut().for_each(|row| *row = real.of(*row));
+        self.rows = vec![Row::ZERO; real.count()];
     }
 
     /// Recomputes the bounds of the uniform nodes from the values of the parameters.
