@@ -142,6 +142,7 @@ pub mod sampler;
 pub mod session;
 mod slices;
 pub mod spatial;
+pub mod topology;
 #[cfg(target_arch = "wasm32")]
 pub mod web;
 

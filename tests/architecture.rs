@@ -27,10 +27,11 @@ const ROOMS: [Room; 4] = [
             // Particles, meshes of them and the search among them know no field: they hold whatever made them.
             ("spatial", &["math", "slices"]),
             ("particles", &["math"]),
-            ("mesh", &["math", "slices", "spatial", "particles"]),
+            ("topology", &["slices"]),
+            ("mesh", &["math", "slices", "spatial", "particles", "topology"]),
             ("sampler", &["math", "field", "differential", "spatial", "particles", "mesh"]),
             // Figures about a set of particles must not depend on what made them.
-            ("quality", &["math", "slices", "field", "differential", "spatial", "particles"]),
+            ("quality", &["math", "slices", "field", "differential", "spatial", "particles", "topology"]),
             ("export", &["math", "spatial", "particles", "mesh", "quality"]),
             (
                 "session",
@@ -42,6 +43,7 @@ const ROOMS: [Room; 4] = [
                     "extent",
                     "spatial",
                     "particles",
+                    "topology",
                     "mesh",
                     "sampler",
                     "quality",

@@ -1,12 +1,19 @@
 //! Small numeric building blocks that every other module may use: SIMD lanes, symmetric matrices, tangent
 //! frames, boxes and the tolerances shared across the crate.
 
+mod forest;
 pub mod functions;
 mod lanes;
 mod real;
+mod sort;
+mod table;
 
+pub(crate) use forest::Forest;
 pub use lanes::{LANES, Lanes};
 pub use real::Real;
+pub use sort::sort_few;
+pub(crate) use sort::{key, key_of, sort_by_key, sort_numbers, unkey};
+pub(crate) use table::{IndexTable, hash};
 
 use core::ops::RangeInclusive;
 use glam::{DVec3, Vec3};
@@ -223,32 +230,6 @@ pub(crate) fn push_gently<T>(items: &mut Vec<T>, item: T) {
     items.push(item);
 }
 
-/// Sorts a few items: by insertion, which keeps the order of those of which neither comes before the other.
-pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
-    for end in 1..items.len() {
-        for at in (1..=end).rev() {
-            if !before(&items[at], &items[at - 1]) {
-                break;
-            }
-            items.swap(at, at - 1);
-        }
-    }
-}
-
-/// Sorts numbers in their total order. It goes by way of whole numbers, which other modules sort too, so that there is
-/// one sorting algorithm in the program and not one per type.
-pub fn sort_numbers(numbers: &mut [f32]) {
-    // All bits of a negative number change, and the sign of a positive one.
-    let flip = |bits: u32, negative: bool| bits ^ if negative { u32::MAX } else { 1 << 31 };
-    let mut keys: Vec<u64> =
-        numbers.iter().map(|x| u64::from(flip(x.to_bits(), x.is_sign_negative()))).collect();
-    keys.sort_unstable();
-    for (number, key) in numbers.iter_mut().zip(keys) {
-        let key = key as u32;
-        *number = f32::from_bits(flip(key, key >> 31 == 0));
-    }
-}
-
 /// Two unit vectors that span the plane perpendicular to the unit vector `n`; `(u, v, n)` is right-handed.
 ///
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: no branch, no division by a small
@@ -272,7 +253,7 @@ pub fn frame_of<T: Real>([x, y, z]: [T; 3]) -> ([T; 3], [T; 3]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounds, grouped, shortest_text, sort_few, sort_numbers};
+    use super::{Bounds, grouped, shortest_text};
 
     #[test]
     fn a_text_of_a_number_is_short_and_reads_back() {
@@ -316,21 +297,5 @@ mod tests {
         for bad in [flat, open, turned, nan, huge, tiny, Bounds::cube(1e308), far(4000.0), far(1e9)] {
             assert!(!bad.is_valid(), "{bad:?}");
         }
-    }
-
-    #[test]
-    fn sorting_is_the_standard_librarys() {
-        let numbers = [3.0, -0.0, f32::NAN, 0.0, f32::NEG_INFINITY, -f32::NAN, 3.0, 1e-40, -2.5, f32::MAX];
-        let bits = |numbers: [f32; 10]| numbers.map(f32::to_bits);
-        let (mut ours, mut theirs) = (numbers, numbers);
-        sort_numbers(&mut ours);
-        theirs.sort_by(f32::total_cmp);
-        assert_eq!(bits(ours), bits(theirs));
-        let items = [(2, 'a'), (1, 'b'), (2, 'c'), (0, 'd'), (1, 'e'), (2, 'f')];
-        let (mut ours, mut theirs) = (items, items);
-        sort_few(&mut ours, |a, b| a.0 < b.0);
-        theirs.sort_by_key(|item| item.0);
-        assert_eq!(ours, theirs);
-        sort_few(&mut ours[..0], |a, b| a < b);
     }
 }

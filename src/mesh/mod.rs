@@ -6,8 +6,8 @@
 //!
 //! * [`build`]: from points with normals to triangles.
 //! * [`half_edge`]: a surface that can be changed: flips, splits, collapses, insertions, undone by a journal; subdivision.
-//! * [`topology`]: what a list of triangles adds up to: components, borders, Euler numbers, and where it is no manifold.
+//!
+//! What such a list adds up to, [`topology`](crate::topology) counts.
 
 pub mod build;
 pub mod half_edge;
-pub mod topology;

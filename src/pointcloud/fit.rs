@@ -10,7 +10,7 @@ use super::thin::check_spread;
 use super::{Cloud, CloudError, ModelInfo};
 use crate::field::Field;
 use crate::field::rbf::{Frame, RbfData, RbfField};
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -287,7 +287,7 @@ impl Fitter {
         info.condition = condition;
         let sum: f64 = residuals.iter().copied().map(f64::from).sum();
         info.residual_mean = sum / residuals.len().max(1) as f64 / diagonal;
-        residuals.sort_unstable_by(f32::total_cmp);
+        sort_numbers(&mut residuals);
         let of_share = |share: f64| {
             let at = (share * residuals.len() as f64).ceil() as usize;
             residuals.get(at.saturating_sub(1)).map_or(0.0, |&residual| f64::from(residual) / diagonal)

@@ -12,7 +12,6 @@ pub mod models;
 pub mod normals;
 pub mod read;
 mod solve;
-mod table;
 pub mod thin;
 
 pub use crate::field::model::{ModelInfo, NormalSource};

@@ -15,7 +15,8 @@
 
 use super::thin::{corners, covariance};
 use super::{Cloud, CloudError, NormalSource, eigen};
-use crate::spatial::tree::{Tree, unkey};
+use crate::math::unkey;
+use crate::spatial::tree::Tree;
 use core::cmp::Reverse;
 use glam::DVec3;
 use std::collections::BinaryHeap;

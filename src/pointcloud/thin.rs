@@ -1,9 +1,8 @@
 //! Reduction of millions of points to a few hundred that are far from each other: merging, thinning on a grid, and
 //! farthest-point sampling.
 
-use super::table::PointTable;
 use super::{Cloud, CloudError};
-use crate::math::Sym3;
+use crate::math::{IndexTable, Sym3, hash};
 use glam::DVec3;
 
 /// Maximum number of points that thinning keeps. Normals are estimated for these points, and the centres are chosen
@@ -18,9 +17,33 @@ const MIN_DISTANCE_SHARE: f64 = 1e-4;
 /// it. It is above the rounding of coordinates in single precision.
 const FLAT_SHARE: f64 = 1e-5;
 
+/// Points that a column has room for at first; it grows by half.
+const FIRST_POINTS: usize = 1024;
+
 /// Smallest and largest corner of the bounding box of `points`, which must not be empty.
 pub(super) fn corners(points: &[DVec3]) -> (DVec3, DVec3) {
     points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)))
+}
+
+/// Index in `points` of the point equal to `p`, or `fresh` if there is none.
+///
+/// In the latter case `p` must be stored at `fresh` before the next call. `points` must be the same column in every call. Returns
+/// `None` if there is not enough memory.
+fn index_of(table: &mut IndexTable, p: DVec3, fresh: usize, points: &[DVec3]) -> Option<u32> {
+    // Adding 0 maps −0 to +0, which it is equal to.
+    table.find_or_add(hash(p.to_array().map(|c| (c + 0.0).to_bits())), fresh, |k| points[k] == p)
+}
+
+/// Index in `points` of the point equal to `p`, which is appended if there is none; see [`index_of`].
+pub(super) fn find_or_add(table: &mut IndexTable, p: DVec3, points: &mut Vec<DVec3>) -> Option<u32> {
+    if points.len() == points.capacity() {
+        points.try_reserve_exact((points.len() / 2).max(FIRST_POINTS)).ok()?;
+    }
+    let index = index_of(table, p, points.len(), points)?;
+    if index as usize == points.len() {
+        points.push(p);
+    }
+    Some(index)
 }
 
 /// Merges coincident points and adds their normals. A file has a point several times where faces with different
@@ -31,14 +54,14 @@ pub struct Merger {
     cloud: Cloud,
     kept: usize,
     next: usize,
-    table: PointTable,
+    table: IndexTable,
 }
 
 impl Merger {
     /// Begins to merge the points of `cloud`.
     #[must_use]
     pub fn new(cloud: Cloud) -> Self {
-        Self { cloud, kept: 0, next: 0, table: PointTable::default() }
+        Self { cloud, kept: 0, next: 0, table: IndexTable::default() }
     }
 
     /// Looks at up to `budget` more points. Returns whether all points are done.
@@ -51,7 +74,7 @@ impl Merger {
         let end = position.len().min(self.next + budget as usize);
         for i in self.next..end {
             let p = position[i];
-            let at = self.table.index_of(p, self.kept, position).ok_or(CloudError::Memory)? as usize;
+            let at = index_of(&mut self.table, p, self.kept, position).ok_or(CloudError::Memory)? as usize;
             let fresh = at == self.kept;
             if fresh {
                 position[at] = p;
@@ -100,7 +123,7 @@ pub struct Thinner {
     lo: DVec3,
     side: f64,
     next: usize,
-    table: PointTable,
+    table: IndexTable,
     /// Cells of the current grid that hold a point.
     cells: Vec<DVec3>,
     /// First point in each of these cells.
@@ -141,7 +164,7 @@ impl Thinner {
             lo,
             side,
             next: 0,
-            table: PointTable::default(),
+            table: IndexTable::default(),
             cells: Vec::new(),
             kept: Vec::new(),
             met_limit: false,
@@ -163,7 +186,7 @@ impl Thinner {
                 Some(&p) if self.cells.len() <= KEPT => {
                     let cell = ((p - self.lo) / self.side).floor();
                     let known = self.cells.len();
-                    self.table.find_or_add(cell, &mut self.cells).ok_or(CloudError::Memory)?;
+                    find_or_add(&mut self.table, cell, &mut self.cells).ok_or(CloudError::Memory)?;
                     if self.cells.len() > known {
                         self.kept.push(self.next as u32);
                     }
@@ -191,7 +214,7 @@ impl Thinner {
         self.next = 0;
         self.cells.clear();
         self.kept.clear();
-        self.table = PointTable::default();
+        self.table = IndexTable::default();
     }
 
     /// The kept points, in the order of the file.

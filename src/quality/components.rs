@@ -2,7 +2,7 @@
 
 use super::gaps::LONG;
 use super::scene::Scene;
-use super::triangles::find;
+use crate::math::Forest;
 use crate::slices::pause;
 
 /// Points or triangles that are looked at in one slice of work.
@@ -19,12 +19,11 @@ pub(super) const NO_LABEL: u32 = u32::MAX;
 pub(super) async fn label(scene: &Scene, spacing: &[f32], mesh: &[[u32; 3]]) -> (Vec<u32>, usize) {
     let n = scene.tree.len();
     let distance = |i: usize, j: usize| scene.tree.position[i].distance(scene.tree.position[j]);
-    let mut root: Vec<u32> = (0..n as u32).collect();
+    let mut forest = Forest::new(n);
     let mut is_used = vec![false; n];
     let mut join = |i: usize, j: usize| {
         if distance(i, j) <= LONG * spacing[i].min(spacing[j]) {
-            let (a, b) = (find(&mut root, i as u32), find(&mut root, j as u32));
-            root[a.max(b) as usize] = a.min(b);
+            forest.join(i as u32, j as u32);
         }
     };
     for chunk in mesh.chunks(SLICE) {
@@ -40,7 +39,7 @@ pub(super) async fn label(scene: &Scene, spacing: &[f32], mesh: &[[u32; 3]]) -> 
     for i in (0..n).filter(|&i| !is_used[i]) {
         scene.rings.of(i).for_each(|j| join(i, j));
     }
-    let root: Vec<u32> = (0..n as u32).map(|i| find(&mut root, i)).collect();
+    let root: Vec<u32> = (0..n as u32).map(|i| forest.find(i)).collect();
 
     // At the root of each component: the number of points, and the first of them in the order given.
     let mut count = vec![0_u32; n];

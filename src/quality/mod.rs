@@ -46,6 +46,7 @@ use crate::field::Field;
 use crate::field::scaled::{Scaled, comfortable_scale};
 use crate::math::{Bounds, SQRT_3};
 use crate::slices::{self, pause, ranges};
+use crate::topology::Topology;
 use accuracy::{first_order_height, residuals};
 use border::Border;
 use figures::hexagonal_spacing;
@@ -57,7 +58,7 @@ use places::Pairs;
 use prepared::Prepared;
 use scene::Scene;
 use sizes::{EdgeRatios, Wanted};
-use triangles::{Joined, TriangleAngles, joined};
+use triangles::TriangleAngles;
 
 /// Largest number of random samples for `quant`: the error falls with the root of the number, the time grows with the
 /// number.
@@ -309,9 +310,9 @@ async fn measure_triangles(
         }
     }
     angles.figures(figures);
-    let joined = joined(n, mesh);
-    figures.euler = joined.euler;
-    let opening = opening(&joined, inner, &scene.tree.position);
+    let topology = Topology::in_slices(mesh, n).await;
+    figures.euler = topology.euler();
+    let opening = opening(&topology, mesh, inner, &scene.tree.position);
     pause().await;
     let (component, count) = components::label(scene, spacing, mesh).await;
     figures.components = count;
@@ -327,10 +328,12 @@ async fn measure_triangles(
 }
 
 /// Where the triangles are open between points that are `inner`.
-fn opening(joined: &Joined, inner: &[bool], position: &[Vec3]) -> Option<Opening> {
-    let is_inner = |i: u32| inner[i as usize];
-    let open = || joined.open.iter().filter(|edge| edge.iter().all(|&i| is_inner(i)));
-    let bare = || (0..inner.len()).filter(|&i| inner[i] && !joined.is_used[i]);
+fn opening(topology: &Topology, mesh: &[[u32; 3]], inner: &[bool], position: &[Vec3]) -> Option<Opening> {
+    let mut is_bare = inner.to_vec();
+    mesh.iter().flatten().for_each(|&i| is_bare[i as usize] = false);
+    let is_inner = |i: &u32| inner[*i as usize];
+    let open = || topology.lone_edges.iter().filter(|edge| edge.iter().all(is_inner));
+    let bare = || (0..inner.len()).filter(|&i| is_bare[i]);
     let first = open().map(|&[i, _]| i as usize).next().or_else(|| bare().next())?;
     Some(Opening { edges: open().count(), points: bare().count(), position: position[first] })
 }

@@ -4,9 +4,9 @@ use super::cell::VoronoiCell;
 use super::nearby::Nearby;
 use super::sheets::Sheets;
 use crate::field::Field;
-use crate::math::{LANES, tangent_frame};
+use crate::math::{LANES, key, tangent_frame, unkey};
 use crate::slices::pause;
-use crate::spatial::tree::{Tree, key, unkey};
+use crate::spatial::tree::Tree;
 use core::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
 

@@ -1,5 +1,6 @@
 //! Where the spacing is worst: crowded pairs and wide holes.
 
+use crate::math::{key_of, sort_by_key};
 use crate::slices::pause;
 use glam::Vec3;
 use serde::Serialize;
@@ -80,7 +81,8 @@ impl Pairs {
     }
 
     fn settle(&mut self) {
-        self.kept.sort_by(|a, b| a.ratio.total_cmp(&b.ratio).then(a.particles.cmp(&b.particles)));
+        sort_by_key(&mut self.kept, |&Pair { particles: [i, j], .. }| u64::from(i) << 32 | u64::from(j));
+        sort_by_key(&mut self.kept, |pair| key_of(pair.ratio));
         self.kept.truncate(MOST);
     }
 
@@ -97,8 +99,10 @@ impl Pairs {
 /// Several empty discs may show one hole: where the middle of one disc lies in another, only the one with the larger ratio of its
 /// radius to the ideal one counts.
 pub(super) async fn distinct(mut found: Vec<Hole>) -> (usize, Vec<Hole>) {
-    let bits = |hole: &Hole| hole.position.map(f32::to_bits);
-    found.sort_by(|a, b| b.ratio.total_cmp(&a.ratio).then_with(|| bits(a).cmp(&bits(b))));
+    let bits = |hole: &Hole| hole.position.map(|c| u64::from(c.to_bits()));
+    sort_by_key(&mut found, |hole| bits(hole)[2]);
+    sort_by_key(&mut found, |hole| bits(hole)[0] << 32 | bits(hole)[1]);
+    sort_by_key(&mut found, |hole| !key_of(hole.ratio));
     let mut holes: Vec<Hole> = Vec::new();
     for (k, hole) in found.into_iter().enumerate() {
         let at = Vec3::from(hole.position);

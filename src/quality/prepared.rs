@@ -5,7 +5,7 @@ use super::gaps::{Gaps, spacing_of};
 use super::scene::Scene;
 use super::triangles::{Triangles, area};
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, IndexTable, hash};
 use crate::slices::pause;
 use glam::Vec3;
 
@@ -65,33 +65,18 @@ impl Prepared {
 
 /// Marks every finite point that equals an earlier one in `drop`, and the earlier one in `has_duplicate`.
 fn drop_equal(position: &[Vec3], drop: &mut [bool], has_duplicate: &mut [bool]) {
-    // This is a hash table with open addressing, at most half full; a slot holds an index + 1.
-    let mut slots = vec![0_u32; (2 * position.len()).next_power_of_two()];
-    let mask = slots.len() - 1;
+    let mut table = IndexTable::default();
     for (i, p) in position.iter().enumerate() {
         if drop[i] {
             continue;
         }
-        let mut hash = 0_u64;
-        for c in p.to_array() {
-            // Adding 0 turns −0 into 0.
-            hash = (hash ^ u64::from((c + 0.0).to_bits())).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            hash ^= hash >> 29;
-        }
-        let mut slot = hash as usize & mask;
-        loop {
-            match slots[slot] {
-                0 => {
-                    slots[slot] = i as u32 + 1;
-                    break;
-                }
-                earlier if position[earlier as usize - 1] == *p => {
-                    drop[i] = true;
-                    has_duplicate[earlier as usize - 1] = true;
-                    break;
-                }
-                _ => slot = (slot + 1) & mask,
-            }
+        // Adding 0 turns −0 into 0.
+        let hash = hash(p.to_array().map(|c| u64::from((c + 0.0).to_bits())));
+        let first =
+            table.find_or_add(hash, i, |earlier| position[earlier] == *p).map_or(i, |first| first as usize);
+        if first != i {
+            drop[i] = true;
+            has_duplicate[first] = true;
         }
     }
 }

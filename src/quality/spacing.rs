@@ -4,8 +4,8 @@ use super::figures::Figures;
 use super::moments::Moments;
 use super::places::{CROWDED, Pairs};
 use super::scene::Scene;
+use crate::math::{key, unkey};
 use crate::slices::{pause, ranges};
-use crate::spatial::tree::{key, unkey};
 use serde::Serialize;
 
 /// Points whose pairs are found in one slice of work.

@@ -1,14 +1,14 @@
 //! Triangles of natural neighbours that their corners agree on, and the figures of their angles.
 //!
 //! They measure what the points show, and leave out what is in doubt. [`crate::mesh::build`] joins points to one manifold and fills such
-//! places in. The two share no code.
+//! places in. The sampler refines on those, and what measures particles must not depend on what made them: so the two find triangles
+//! each in its own way.
 
 use super::figures::Figures;
 use super::moments::{Moments, share};
 use super::one_rings::OneRings;
-use crate::math::SQRT_3;
+use crate::math::{IndexTable, SQRT_3, hash, key, unkey};
 use crate::slices::{pause, ranges};
-use crate::spatial::tree::{key, unkey};
 use glam::{DVec3, Vec3};
 
 /// Points whose triangles are found in one slice of work.
@@ -74,9 +74,12 @@ impl Triangles {
             hot[i as usize] = true;
         }
         let between = |&(a, b): &(u32, u32)| hot[a as usize] && hot[b as usize];
-        let undisputed = || self.unanimous.iter().flat_map(|&triangle| sides(triangle)).filter(between);
-        let mut taken = Sides::new(undisputed().count() + 3 * (self.majority.len() + self.single.len()));
-        undisputed().for_each(|side| taken.insert(side));
+        let mut taken = Sides::default();
+        self.unanimous
+            .iter()
+            .flat_map(|&triangle| sides(triangle))
+            .filter(between)
+            .for_each(|side| taken.insert(side));
         let longest = |triangle: [u32; 3]| {
             sides(triangle)
                 .map(|(a, b)| (position[a as usize] - position[b as usize]).length_squared())
@@ -102,38 +105,25 @@ impl Triangles {
 }
 
 /// A set of directed edges.
+#[derive(Default)]
 struct Sides {
-    /// Slots of a hash table with open addressing, at most half full.
-    slots: Vec<(u32, u32)>,
+    all: Vec<(u32, u32)>,
+    table: IndexTable,
 }
 
 impl Sides {
-    /// Marks an empty slot: no edge goes from a point to itself.
-    const EMPTY: (u32, u32) = (u32::MAX, u32::MAX);
-
-    /// Returns an empty set with room for `most` edges.
-    fn new(most: usize) -> Self {
-        Self { slots: vec![Self::EMPTY; (2 * most + 1).next_power_of_two()] }
-    }
-
-    /// Returns the slot of `side`, or the empty one where it would go.
-    fn slot(&self, side: (u32, u32)) -> usize {
-        let mask = self.slots.len() - 1;
-        let mixed = (u64::from(side.0) << 32 | u64::from(side.1)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let mut slot = (mixed >> 32) as usize & mask;
-        while self.slots[slot] != side && self.slots[slot] != Self::EMPTY {
-            slot = (slot + 1) & mask;
-        }
-        slot
+    fn hash((a, b): (u32, u32)) -> u32 {
+        hash([u64::from(a) << 32 | u64::from(b)])
     }
 
     fn contains(&self, side: (u32, u32)) -> bool {
-        self.slots[self.slot(side)] == side
+        self.table.find(Self::hash(side), |k| self.all[k] == side).is_some()
     }
 
     fn insert(&mut self, side: (u32, u32)) {
-        let slot = self.slot(side);
-        self.slots[slot] = side;
+        let fresh = self.all.len();
+        self.all.push(side);
+        self.table.find_or_add(Self::hash(side), fresh, |k| self.all[k] == side);
     }
 }
 
@@ -195,68 +185,4 @@ impl TriangleAngles {
         figures.a_lt30 = share(self.a_lt30, 3 * self.count);
         figures.a_gt90 = share(self.a_gt90, 3 * self.count);
     }
-}
-
-/// How triangles hang together.
-#[derive(Debug, Default)]
-pub(super) struct Joined {
-    /// The Euler number; points in no triangle do not count.
-    pub(super) euler: i64,
-    /// The edges that belong to one triangle alone.
-    pub(super) open: Vec<[u32; 2]>,
-    /// Whether each point is a corner of a triangle.
-    pub(super) is_used: Vec<bool>,
-}
-
-/// Returns how a set of triangles on `points` points hangs together.
-pub(super) fn joined(points: usize, triangles: &[[u32; 3]]) -> Joined {
-    // Each edge is written once, in the list of its smaller end. The lists are short, so a linear search is enough.
-    let mut start = vec![0_u32; points + 1];
-    for triangle in triangles {
-        for k in 0..3 {
-            start[triangle[k].min(triangle[(k + 1) % 3]) as usize + 1] += 1;
-        }
-    }
-    for i in 0..points {
-        start[i + 1] += start[i];
-    }
-    let mut fill: Vec<u32> = start[..points].to_vec();
-    let mut other = vec![0_u32; 3 * triangles.len()];
-    let mut is_open = vec![true; other.len()];
-    let mut edges = 0_i64;
-    let mut is_used = vec![false; points];
-    for triangle in triangles {
-        for k in 0..3 {
-            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
-            let (a, b) = (a.min(b), a.max(b));
-            let first = start[a as usize] as usize;
-            let end = fill[a as usize] as usize;
-            match other[first..end].iter().position(|&known| known == b) {
-                Some(place) => is_open[first + place] = false,
-                None => {
-                    other[end] = b;
-                    fill[a as usize] += 1;
-                    edges += 1;
-                }
-            }
-            is_used[a as usize] = true;
-            is_used[b as usize] = true;
-        }
-    }
-    let mut open = Vec::new();
-    for a in 0..points {
-        let list = start[a] as usize..fill[a] as usize;
-        open.extend(list.filter(|&k| is_open[k]).map(|k| [a as u32, other[k]]));
-    }
-    let vertices = is_used.iter().filter(|&&used| used).count();
-    Joined { euler: vertices as i64 - edges + triangles.len() as i64, open, is_used }
-}
-
-/// Returns the representative of `i` in a union–find forest, and halves the path to it.
-pub(super) fn find(root: &mut [u32], mut i: u32) -> u32 {
-    while root[i as usize] != i {
-        root[i as usize] = root[root[i as usize] as usize];
-        i = root[i as usize];
-    }
-    i
 }

@@ -1,6 +1,6 @@
 //! The radius of a run. Where a number of particles is wanted, it is corrected from attempt to attempt.
 
-use crate::math::{Bounds, SQRT_3};
+use crate::math::{Bounds, SQRT_3, sort_numbers};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine::{self, Refusal};
@@ -123,7 +123,7 @@ impl Attempt {
         let radius = (self.count_times_radius_sq() / count).sqrt();
         let most = (0..points.len()).max_by(|&i, &j| curvature[i].total_cmp(&curvature[j]));
         let bend = most.map_or(Vec3::ZERO, |i| points[i]);
-        curvature.sort_by(f64::total_cmp);
+        sort_numbers(&mut curvature);
         let largest = curvature.last().copied().unwrap_or(f64::INFINITY);
         let is_graded = self.sizing.is_some();
         let halvings_at = |curvature: f64| refine::halvings(curvature * 2.0 * radius, count, is_graded);

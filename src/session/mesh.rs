@@ -3,8 +3,8 @@
 use super::Session;
 use crate::export::{MeshFormat, rows, write_rows};
 use crate::mesh::build::{self, Options, Triangulation};
-use crate::mesh::topology::Component;
 use crate::slices::{self, Work};
+use crate::topology::Component;
 use serde::Serialize;
 use std::io;
 

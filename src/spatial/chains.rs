@@ -22,7 +22,7 @@ pub(crate) struct Chains {
     /// For each point the one after it in its list.
     next: Vec<u32>,
     /// Buffer for the heads of a visit.
-    wanted: Vec<u32>,
+    wanted: Vec<u64>,
 }
 
 impl Chains {
@@ -78,7 +78,7 @@ impl Chains {
             for z in lo[2]..=hi[2] {
                 for y in lo[1]..=hi[1] {
                     for x in lo[0]..=hi[0] {
-                        wanted.push(self.head_of(layer, x, y, z));
+                        wanted.push(u64::from(self.head_of(layer, x, y, z)));
                     }
                 }
             }
@@ -86,7 +86,7 @@ impl Chains {
         // Several cells may share a list.
         wanted.sort_unstable();
         wanted.dedup();
-        wanted.iter().for_each(|&head| self.list(head).for_each(&mut visit));
+        wanted.iter().for_each(|&head| self.list(head as u32).for_each(&mut visit));
         self.wanted = wanted;
     }
 

@@ -2,9 +2,10 @@
 //! in their columns, and a tree for points that are known from the start and spread unevenly.
 //!
 //! The cells of the grid are cubes. Eight neighbouring cells (2 × 2 × 2) form a *brick*, which a hash table with open
-//! addressing finds. A cell stores its points in blocks of eight with their coordinates, so a query reads a few
-//! contiguous blocks and compares eight distances at a time. Memory is proportional to the number of occupied cells,
-//! and a query costs the same among 10³ and 10⁶ points.
+//! addressing finds. The table holds the bricks themselves and is part of the grid, since the front asks it several times for every
+//! particle. A cell stores its points in blocks of eight with their coordinates, so a query reads a few contiguous blocks and compares
+//! eight distances at a time. Memory is proportional to the number of occupied cells, and a query costs the same among 10³ and
+//! 10⁶ points.
 
 pub(crate) mod chains;
 pub(crate) mod tree;

@@ -1,7 +1,7 @@
 //! A balanced tree of bounding boxes over points. The cost of a nearest-neighbour query depends neither on how the
 //! points are distributed nor on distant outliers.
 
-use crate::math::sort_few;
+use crate::math::{key, sort_few, unkey};
 use crate::slices::{self, pause};
 use glam::Vec3;
 
@@ -39,19 +39,6 @@ pub(crate) struct Tree {
     /// For each point in tree order, its index as given.
     pub(crate) origin: Vec<u32>,
     nodes: Vec<Node>,
-}
-
-/// Packs a squared distance and a point into a key, which is ordered by distance, and at equal distances by index.
-#[inline]
-pub(crate) fn key(distance_sq: f32, index: u32) -> u64 {
-    // Non-negative floats are ordered like their bits.
-    u64::from(distance_sq.to_bits()) << 32 | u64::from(index)
-}
-
-/// Returns the squared distance and the point of a [`key`].
-#[inline]
-pub(crate) fn unkey(key: u64) -> (f32, u32) {
-    (f32::from_bits((key >> 32) as u32), key as u32)
 }
 
 impl Tree {

@@ -5,10 +5,10 @@ use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Options, Triangulation, triangulate};
-use marching_particles::mesh::topology::Topology;
 use marching_particles::particles::{Particles, SlotFate, Slots};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Settings, SizeMode};
+use marching_particles::topology::Topology;
 use proptest::prelude::*;
 
 fn settings(method: Method, count: u32, seed: u64) -> Settings {

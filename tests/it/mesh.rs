@@ -5,9 +5,9 @@ use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::{self, Surface};
 use marching_particles::math::Bounds;
 use marching_particles::mesh::build::{Options, Triangulation, triangulate};
-use marching_particles::mesh::topology::Component;
 use marching_particles::particles::Particles;
 use marching_particles::sampler::{Sampler, Sampling, Settings, SizeMode};
+use marching_particles::topology::Component;
 
 fn particles(surface: &Surface, settings: &Settings) -> Particles {
     let mut field = surface.field();

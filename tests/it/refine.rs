@@ -3,10 +3,10 @@
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery;
 use marching_particles::math::Bounds;
-use marching_particles::mesh::topology::Topology;
 use marching_particles::particles::Particles;
 use marching_particles::quality::{self, Figures};
 use marching_particles::sampler::{Method, Phase, Refusal, Sampler, Search, Settings, SizeMode};
+use marching_particles::topology::Topology;
 
 fn refined(count: u32, seed: u64) -> Settings {
     Settings { method: Method::Refined, size_mode: SizeMode::Count, count, seed, ..Settings::default() }

@@ -1,8 +1,8 @@
 //! The points near a place, side by side in lanes, and the tangent plane that they are laid into.
 
-use crate::math::{LANES, tangent_frame};
+use crate::math::{LANES, tangent_frame, unkey};
 use crate::spatial::LANES_OF;
-use crate::spatial::tree::{Tree, unkey};
+use crate::spatial::tree::Tree;
 use glam::{Vec3, Vec4};
 
 /// Most points of a ball.

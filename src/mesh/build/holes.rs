@@ -1,7 +1,7 @@
 //! Holes: their borders are traced and the polygons are cut into triangles.
 
 use super::patch::{Gap, Patch};
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_few};
 use crate::slices::pause;
 
 /// Least cosine of the angle between the normal of a triangle that fills a hole and that of each of its corners, or of their
@@ -151,7 +151,7 @@ impl Cutter {
             if j - i > 1 {
                 let k = self.best[at(i, j)].1;
                 self.triangles.push([hole[i], hole[k], hole[j]]);
-                chords.push((hole[i].min(hole[j]), hole[i].max(hole[j])));
+                chords.push(u64::from(hole[i].min(hole[j])) << 32 | u64::from(hole[i].max(hole[j])));
                 open.extend([(i, k), (k, j)]);
             }
         }
@@ -170,7 +170,7 @@ pub(super) fn unpinch(patch: &mut Patch) {
     let mut open: Vec<u32> = patch.changed().to_vec();
     while let Some(v) = open.pop() {
         let mut fans = patch.fans(v);
-        fans.sort_by_key(Vec::len);
+        sort_few(&mut fans, |a, b| a.len() < b.len());
         fans.pop();
         for id in fans.into_iter().flatten() {
             open.extend(patch.triangle(id));

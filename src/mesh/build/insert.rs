@@ -3,7 +3,8 @@
 use super::ball::MAX_LIFT;
 use super::holes::faces_as_corners;
 use super::patch::Patch;
-use crate::spatial::tree::{Tree, unkey};
+use crate::math::unkey;
+use crate::spatial::tree::Tree;
 
 /// How many of the nearest points are looked at for the triangle below a point.
 const NEAR: usize = 32;

@@ -21,10 +21,10 @@ mod patch;
 mod settle;
 mod stars;
 
-use super::topology::Topology;
 use crate::math::Bounds;
 use crate::slices::{self, pause, ranges};
 use crate::spatial::tree::Tree;
+use crate::topology::Topology;
 use glam::Vec3;
 use holes::Borders;
 use patch::Patch;

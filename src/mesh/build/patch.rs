@@ -2,7 +2,7 @@
 
 use super::SLICE;
 use super::stars::Stars;
-use crate::math::tangent_frame;
+use crate::math::{sort_few, tangent_frame};
 use crate::slices::{pause, ranges};
 use glam::{DVec3, Vec3};
 
@@ -237,7 +237,7 @@ impl<'a> Patch<'a> {
                 let offset = self.position[gap.from as usize] - centre;
                 quarter_turns(offset.dot(x), offset.dot(y))
             };
-            gaps.sort_by(|a, b| angle(a).total_cmp(&angle(b)).then(a.from.cmp(&b.from)));
+            sort_few(gaps, |a, b| angle(a).total_cmp(&angle(b)).then(a.from.cmp(&b.from)).is_lt());
             // Each gap ends where the next fan begins.
             let starts: Vec<u32> = gaps.iter().map(|gap| gap.from).collect();
             for (k, gap) in gaps.iter_mut().enumerate() {

@@ -8,10 +8,11 @@ use crate::slices::pause;
 /// Adds the triangles that fewer than three corners see, where their directed edges are free: those that two corners see before
 /// those that one sees, the ones with short edges first.
 pub(super) async fn settle(patch: &mut Patch<'_>) {
-    for (k, (_, _, [a, b, c])) in disputed(patch).await.into_iter().enumerate() {
+    for (k, dispute) in disputed(patch).await.into_iter().enumerate() {
         if k % SLICE == SLICE - 1 {
             pause().await;
         }
+        let [a, b, c] = [64, 32, 0].map(|shift| (dispute >> shift) as u32);
         let is_free = [(a, b), (b, c), (c, a)].iter().all(|&(a, b)| patch.with_side(a, b).is_none());
         if is_free && patch.agreement([a, b, c]).1 > 0.0 {
             patch.add([a, b, c]);
@@ -20,9 +21,9 @@ pub(super) async fn settle(patch: &mut Patch<'_>) {
     holes::unpinch(patch);
 }
 
-/// Triangles that one corner sees or two, in the order in which they are tried: whether it is only one, the square of the
-/// longest side, the corners.
-async fn disputed(patch: &Patch<'_>) -> Vec<(bool, f32, [u32; 3])> {
+/// Triangles that one corner sees or two, in the order in which they are tried. From the top bit on a key has whether it is only one,
+/// the square of the longest side, and the corners with 32 bits each.
+async fn disputed(patch: &Patch<'_>) -> Vec<u128> {
     let stars = patch.stars;
     let mut triangles = Vec::new();
     for (k, &i) in patch.changed().iter().enumerate() {
@@ -38,10 +39,12 @@ async fn disputed(patch: &Patch<'_>) -> Vec<(bool, f32, [u32; 3])> {
             if !(seen_by_a && (seen_by_b || a < i) || seen_by_b && b < i) {
                 let [p, q, r] = [i, a, b].map(|v| patch.position[v as usize]);
                 let longest = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p));
-                triangles.push((!seen_by_a && !seen_by_b, longest, [i, a, b]));
+                let by_one = u32::from(!seen_by_a && !seen_by_b) << 31;
+                let words = [by_one | longest.to_bits(), i, a, b];
+                triangles.push(words.iter().fold(0, |key, &word| key << 32 | u128::from(word)));
             }
         }
     }
-    triangles.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    triangles.sort_unstable();
     triangles
 }

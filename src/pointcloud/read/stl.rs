@@ -4,7 +4,8 @@ use super::format::{STL_HEADER, STL_TRIANGLE, stl_size};
 use super::input::{Input, coordinate, coordinate_word, quoted, words};
 use super::mesh::Mesh;
 use super::{ReadError, RowReader};
-use crate::pointcloud::table::PointTable;
+use crate::math::IndexTable;
+use crate::pointcloud::thin::find_or_add;
 use glam::DVec3;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -14,7 +15,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The normals of the facets are ignored: many programs write zeros, and the order of the corners gives them.
 #[derive(Default)]
 pub(super) struct Text {
-    table: PointTable,
+    table: IndexTable,
     corners: Vec<u32>,
 }
 
@@ -38,7 +39,7 @@ impl RowReader for Text {
                         .ok_or_else(|| input.line_error("a vertex takes three numbers, x y z"))?;
                     p[k] = coordinate_word(word, axis).map_err(|message| input.line_error(message))?;
                 }
-                let corner = self.table.find_or_add(p, &mut mesh.position).ok_or(ReadError::Memory)?;
+                let corner = find_or_add(&mut self.table, p, &mut mesh.position).ok_or(ReadError::Memory)?;
                 self.corners.push(corner);
             }
             b"endloop" | b"endfacet" => {
@@ -63,7 +64,7 @@ impl RowReader for Text {
 /// Reader of the binary format: 80 arbitrary bytes, the number of triangles, and for each triangle a normal, three
 /// corners and two bytes of attributes.
 pub(super) struct Binary {
-    table: PointTable,
+    table: IndexTable,
     row: u64,
     count: u64,
 }
@@ -85,7 +86,7 @@ impl Binary {
         if needed > left {
             return Err(ReadError::Claim { element: "triangle".into(), count, needed, left });
         }
-        Ok(Self { table: PointTable::default(), row: 0, count })
+        Ok(Self { table: IndexTable::default(), row: 0, count })
     }
 }
 
@@ -110,7 +111,7 @@ impl RowReader for Binary {
                     message,
                 })?;
             }
-            *corner = self.table.find_or_add(p, &mut mesh.position).ok_or(ReadError::Memory)?;
+            *corner = find_or_add(&mut self.table, p, &mut mesh.position).ok_or(ReadError::Memory)?;
         }
         mesh.add_polygon(&corners)?;
         Ok(true)

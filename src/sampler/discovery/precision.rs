@@ -3,7 +3,7 @@
 
 use super::survey::CELLS;
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, sort_numbers};
 use glam::{DVec3, Vec3};
 
 /// Nodes along each side of the grid on which both precisions are compared.
@@ -65,7 +65,7 @@ fn scale(field: &mut dyn Field, bounds: &Bounds) -> f64 {
     let cell = (bounds.hi() - bounds.lo()).max_element() / CELLS;
     let usual = |mut sizes: Vec<f64>| {
         sizes.retain(|size| size.is_finite() && *size > 0.0);
-        sizes.sort_by(f64::total_cmp);
+        sort_numbers(&mut sizes);
         sizes.get(sizes.len() / 2).copied()
     };
     let of_slopes = usual(slopes).map(|slope| slope * cell);

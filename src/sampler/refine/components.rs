@@ -9,7 +9,7 @@ use super::refusal::Refusal;
 use super::{Count, Refinement, Target, border};
 use crate::differential::{Curvature, curvatures};
 use crate::field::Field;
-use crate::math::Bounds;
+use crate::math::{Bounds, Forest};
 use crate::mesh::build::{Options, triangulate};
 use crate::particles::Particles;
 use crate::sampler::sizing::Sizing;
@@ -211,28 +211,20 @@ fn split(particles: &Particles) -> Vec<Particles> {
     if fronts == 1 {
         return vec![particles.clone()];
     }
-    // Each particle points to one of its component with a smaller number, the first one to itself.
-    let mut first: Vec<u32> = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i)).collect();
-    let find = |first: &mut [u32], mut i: u32| {
-        while first[i as usize] != i {
-            let up = first[i as usize];
-            first[i as usize] = first[up as usize];
-            i = up;
-        }
-        i
-    };
+    // A child is on the component of its parent, which comes before it.
+    let links = (0..).zip(&particles.parent).map(|(i, &parent)| parent.min(i));
+    let mut components = Forest::with_links(links.collect());
     let joined = triangulate(&particles.position, &particles.normal, &Options::default());
     for [a, b, c] in joined.triangles {
         for other in [b, c] {
-            let (i, j) = (find(&mut first, a), find(&mut first, other));
-            first[i.max(j) as usize] = i.min(j);
+            components.join(a, other);
         }
     }
     let mut part_of: Vec<usize> = Vec::with_capacity(particles.len());
     let mut place: Vec<u32> = Vec::with_capacity(particles.len());
     let mut parts: Vec<Particles> = Vec::new();
     for i in 0..particles.len() {
-        let root = find(&mut first, i as u32) as usize;
+        let root = components.find(i as u32) as usize;
         let part = if root == i { parts.len() } else { part_of[root] };
         if root == i {
             parts.push(Particles::default());

@@ -2,6 +2,7 @@
 
 use super::frame::Planes;
 use super::layer::{Ground, Layer, Springs};
+use crate::math::sort_by_key;
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use crate::particles::Slots;
 use core::cmp::Ordering;
@@ -159,7 +160,7 @@ impl Surgeon {
         self.trial += 1;
         self.patch.iter().for_each(|&v| self.stamp[v as usize] = self.trial);
         self.add_rings(mesh, RINGS);
-        self.patch.sort_unstable();
+        sort_by_key(&mut self.patch, |&v| u64::from(v));
         core::mem::swap(&mut self.patch, particles);
     }
 

@@ -2,6 +2,7 @@
 //! the level under way, for its children and for the parents of a later filling, not for the particles behind the front.
 
 use crate::differential::Curvature;
+use crate::math::sort_by_key;
 use glam::Vec3;
 
 /// The second-order shape of the surface at a particle and the gradient of the radius there.
@@ -75,7 +76,9 @@ impl Parents {
         core::mem::swap(&mut self.level, &mut self.seams);
         self.seams.clear();
         // The local shape from the time when a particle placed its children is newer than the one from its own placement.
-        self.level.sort_unstable_by_key(|parent| (parent.particle, !parent.has_placed));
+        sort_by_key(&mut self.level, |parent| {
+            u64::from(parent.particle) << 1 | u64::from(!parent.has_placed)
+        });
         self.level.dedup_by_key(|parent| parent.particle);
         !self.level.is_empty()
     }

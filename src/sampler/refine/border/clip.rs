@@ -8,7 +8,7 @@ use super::super::frame::Planes;
 use super::super::layer::{Ground, Layer};
 use super::super::refusal::Refusal;
 use super::land_on;
-use crate::math::Bounds;
+use crate::math::{Bounds, key, unkey};
 use crate::mesh::half_edge::{HalfEdges, NONE, next, previous};
 use glam::Vec3;
 
@@ -176,16 +176,16 @@ fn tidy(layer: &mut Layer, spacing: f32) {
             let [a, b] = [layer.mesh.origin(*h), layer.mesh.target(*h)];
             layer.mesh.is_border(a) || layer.mesh.is_border(b)
         };
-        let mut short: Vec<(f32, u32)> = layer
+        let mut short: Vec<u64> = layer
             .mesh
             .edges()
             .filter(is_at_border)
-            .map(|h| (layer.length(h), h))
-            .filter(|&(length, _)| length < SHORT * spacing)
+            .filter(|&h| layer.length(h) < SHORT * spacing)
+            .map(|h| key(layer.length(h), h))
             .collect();
-        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        short.sort_unstable();
         let mut has_changed = false;
-        for (_, h) in short {
+        for (_, h) in short.into_iter().map(unkey) {
             if layer.mesh.has_half_edge(h) && layer.length(h) < SHORT * spacing {
                 let twin = layer.mesh.twin(h);
                 has_changed |= collapse(layer, h, spacing) || twin != NONE && collapse(layer, twin, spacing);

@@ -2,8 +2,9 @@
 
 use super::super::layer::Layer;
 use super::super::refusal::Refusal;
+use crate::math::unkey;
 use crate::mesh::half_edge::{next, previous};
-use crate::spatial::tree::{Tree, unkey};
+use crate::spatial::tree::Tree;
 use glam::Vec3;
 
 /// Vertices near a point whose triangles are looked at.

@@ -2,6 +2,7 @@
 //! other.
 
 use super::super::layer::Layer;
+use crate::math::{key, sort_by_key};
 
 /// Two particles of which one lies on the border are crowded if they are nearer than this share of the spacing. Without one of the
 /// two an edge of the border is no longer than 1.6 spacings, and the hole beside it no larger than one inside may be.
@@ -23,7 +24,7 @@ impl Layer {
     /// one that has another neighbour nearer. From an acute corner on this leaves particles on one curve and the other in turn.
     /// None moves.
     pub(in super::super) fn thin(&mut self, half_edges: &mut [u32], spacing: f32) {
-        half_edges.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)).then(g.cmp(&h)));
+        sort_by_key(half_edges, |&h| key(self.length(h), h));
         for &h in &*half_edges {
             if !self.is_crowded(h, spacing) {
                 continue;
@@ -50,7 +51,7 @@ impl Layer {
             return false;
         }
         let mut ways: Vec<u32> = self.mesh.around(v).collect();
-        ways.sort_by(|&g, &h| self.length(g).total_cmp(&self.length(h)).then(g.cmp(&h)));
+        sort_by_key(&mut ways, |&h| key(self.length(h), h));
         ways.into_iter().any(|h| super::clip::collapse(self, h, spacing))
     }
 }

@@ -42,6 +42,8 @@ pub struct Topology {
     pub crowded_edges: Vec<[u32; 2]>,
     /// Vertices whose triangles form more than one fan.
     pub pinched_vertices: Vec<u32>,
+    /// Edges of one triangle alone, the smaller end first.
+    pub(crate) lone_edges: Vec<[u32; 2]>,
 }
 
 /// The corners of all triangles, sorted by their vertex.
@@ -161,6 +163,7 @@ impl Topology {
             return if first == last {
                 Star { degree: count, border: 0, border_to: None }
             } else {
+                self.lone_edges.extend([first, last].into_iter().filter(|&w| v < w).map(|w| [v, w]));
                 Star { degree: count + 1, border: 1, border_to: Some(first) }
             };
         }
@@ -169,6 +172,8 @@ impl Topology {
         }
         let ends = corners.as_flattened();
         let degree = (0..ends.len()).filter(|&k| !ends[..k].contains(&ends[k])).count() as u32;
+        let is_lone = |w: &&u32| v < **w && ends.iter().filter(|end| end == w).count() == 1;
+        self.lone_edges.extend(ends.iter().filter(is_lone).map(|&w| [v, w]));
         let leaves = |corner: &&[u32; 2]| corners.iter().all(|other| other[1] != corner[0]);
         Star { degree, border: corners.iter().filter(leaves).count() as u32, border_to: None }
     }

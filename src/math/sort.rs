@@ -1,0 +1,83 @@
+//! Sorting by keys that are whole numbers.
+//!
+//! The standard library compiles its sorting algorithm anew for each type and each comparison, some 10 kB of WebAssembly a copy. So
+//! everything is sorted as `u64` (keys with `sort_unstable`) or, with the place of each item below its key, as `u128`.
+
+/// Packs a number that is not negative and an index into a key, which is ordered by the number, and at equal numbers by index.
+#[inline]
+pub(crate) fn key(number: f32, index: u32) -> u64 {
+    // Non-negative floats are ordered like their bits.
+    u64::from(number.to_bits()) << 32 | u64::from(index)
+}
+
+/// The number and the index of a [`key`].
+#[inline]
+pub(crate) fn unkey(key: u64) -> (f32, u32) {
+    (f32::from_bits((key >> 32) as u32), key as u32)
+}
+
+/// A key in the total order of floating-point numbers.
+pub(crate) fn key_of(number: f64) -> u64 {
+    let bits = number.to_bits();
+    // All bits of a negative number change, and the sign of a positive one.
+    bits ^ if number.is_sign_negative() { u64::MAX } else { 1 << 63 }
+}
+
+/// Sorts by a key. Items with equal keys stay in their order.
+pub(crate) fn sort_by_key<T: Copy>(items: &mut [T], key: impl Fn(&T) -> u64) {
+    let mut order: Vec<u128> =
+        (0..).zip(&*items).map(|(place, item)| u128::from(key(item)) << 32 | place).collect();
+    order.sort_unstable();
+    let old = items.to_vec();
+    for (item, place) in items.iter_mut().zip(order) {
+        *item = old[place as u32 as usize];
+    }
+}
+
+/// Sorts numbers in their total order.
+pub(crate) fn sort_numbers<T: Copy + Into<f64>>(numbers: &mut [T]) {
+    sort_by_key(numbers, |&number| key_of(number.into()));
+}
+
+/// Sorts a few items: by insertion, which keeps the order of those of which neither comes before the other.
+pub fn sort_few<T>(items: &mut [T], before: impl Fn(&T, &T) -> bool) {
+    for end in 1..items.len() {
+        for at in (1..=end).rev() {
+            if !before(&items[at], &items[at - 1]) {
+                break;
+            }
+            items.swap(at, at - 1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sorting_is_the_standard_librarys() {
+        let numbers = [3.0, -0.0, f32::NAN, 0.0, f32::NEG_INFINITY, -f32::NAN, 3.0, 1e-40, -2.5, f32::MAX];
+        let bits = |numbers: [f32; 10]| numbers.map(f32::to_bits);
+        let (mut ours, mut theirs) = (numbers, numbers);
+        sort_numbers(&mut ours);
+        theirs.sort_by(f32::total_cmp);
+        assert_eq!(bits(ours), bits(theirs));
+        let mut keys = numbers.map(|x| key(x.abs(), 7));
+        keys.sort_unstable();
+        theirs = numbers.map(f32::abs);
+        theirs.sort_by(f32::total_cmp);
+        assert_eq!(keys.map(unkey).map(|(x, i)| (x.to_bits(), i)), bits(theirs).map(|bits| (bits, 7)));
+    }
+
+    #[test]
+    fn items_with_equal_keys_stay_in_their_order() {
+        let items = [(2, 'a'), (1, 'b'), (2, 'c'), (0, 'd'), (1, 'e'), (2, 'f')];
+        let (mut by_key, mut by_insertion, mut theirs) = (items, items, items);
+        theirs.sort_by_key(|item| item.0);
+        sort_by_key(&mut by_key, |item| item.0);
+        sort_few(&mut by_insertion, |a, b| a.0 < b.0);
+        assert_eq!((by_key, by_insertion), (theirs, theirs));
+        sort_few(&mut by_insertion[..0], |a, b| a < b);
+    }
+}
