@@ -10,6 +10,21 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
+/// Where the declarations of the bundle find the types of the values.
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r"import type {
+  Answer,
+  Description,
+  Fault,
+  FieldAnswer,
+  FieldRequest,
+  MeshAnswer,
+  Progress,
+  Report,
+  SolvedModel,
+  Start,
+} from '../../engine/core-types.js';";
+
 /// A sampling session. Requests and answers are plain objects; columns are copies, three floats a vector.
 #[wasm_bindgen]
 pub struct Core {
@@ -31,12 +46,17 @@ impl Core {
     }
 
     /// Everything there is to choose and to read: `Description`.
+    #[wasm_bindgen(unchecked_return_type = "Description")]
     pub fn describe(&self) -> JsValue {
         to_js(&describe())
     }
 
     /// Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
-    pub fn set_field(&mut self, request: JsValue) -> JsValue {
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_field(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Partial<FieldRequest>")] request: JsValue,
+    ) -> JsValue {
         answer(read::<FieldRequest>(request, FaultKind::Request).and_then(|request| {
             let formula = request.formula.as_deref().unwrap_or_default();
             self.session.set_field(&request).map_err(|error| Fault::in_field(error, formula))
@@ -50,7 +70,12 @@ impl Core {
 
     /// Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
     /// of it, `SolvedModel`; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
-    pub fn set_points(&mut self, system: &[u8], about: JsValue) -> JsValue {
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault>")]
+    pub fn set_points(
+        &mut self,
+        system: &[u8],
+        #[wasm_bindgen(unchecked_param_type = "SolvedModel")] about: JsValue,
+    ) -> JsValue {
         answer(read::<SolvedModel>(about, FaultKind::Request).and_then(|SolvedModel { info, bounds }| {
             let data = RbfData::from_bytes(system).map_err(|error| Fault::new(FaultKind::Points, &error))?;
             self.session.set_points(data, info, bounds).map_err(|error| Fault::in_field(error, ""))
@@ -59,7 +84,13 @@ impl Core {
 
     /// Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
     /// it is known, nothing before. While a slider moves the box `only_grows`.
-    pub fn fit(&mut self, settings: JsValue, only_grows: bool, budget: u32) -> Option<JsValue> {
+    #[wasm_bindgen(unchecked_return_type = "Answer<FieldAnswer, Fault> | undefined")]
+    pub fn fit(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+        only_grows: bool,
+        budget: u32,
+    ) -> Option<JsValue> {
         let field = match read(settings, FaultKind::Settings) {
             Ok(settings) => Ok(self.session.fit(&settings, only_grows, budget)?),
             Err(fault) => Err(fault),
@@ -68,13 +99,18 @@ impl Core {
     }
 
     /// Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.
-    pub fn start(&mut self, settings: JsValue) -> JsValue {
+    #[wasm_bindgen(unchecked_return_type = "Answer<Start, Fault>")]
+    pub fn start(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "Record<string, number | string>")] settings: JsValue,
+    ) -> JsValue {
         answer(read(settings, FaultKind::Settings).and_then(|settings| {
             self.session.start(&settings).map_err(|error| Fault::new(FaultKind::Settings, &error))
         }))
     }
 
     /// Does up to `budget` units of work: `Progress`.
+    #[wasm_bindgen(unchecked_return_type = "Progress")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         to_js(&self.session.step(budget))
     }
@@ -85,6 +121,7 @@ impl Core {
     }
 
     /// Ends the run and keeps the particles: `Progress`.
+    #[wasm_bindgen(unchecked_return_type = "Progress")]
     pub fn cancel(&mut self) -> JsValue {
         to_js(&self.session.cancel())
     }
@@ -140,6 +177,7 @@ impl Core {
     }
 
     /// Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
+    #[wasm_bindgen(unchecked_return_type = "Report | undefined")]
     pub fn measure(&mut self, budget: u32) -> Option<JsValue> {
         self.session.measure(budget).map(|report| to_js(&report))
     }
@@ -175,6 +213,7 @@ impl Core {
     }
 
     /// Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
+    #[wasm_bindgen(unchecked_return_type = "MeshAnswer | undefined")]
     pub fn join(&mut self, budget: u32) -> Option<JsValue> {
         self.session.join(budget).map(|answer| to_js(&answer))
     }
@@ -186,6 +225,7 @@ impl Core {
 
     /// The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
     /// undefined before; null for another extension or if it is too large.
+    #[wasm_bindgen(unchecked_return_type = "Uint8Array<ArrayBuffer> | null | undefined")]
     pub fn mesh_file(&mut self, extension: &str, budget: u32) -> JsValue {
         let Some(format) = MeshFormat::of_extension(extension) else { return JsValue::NULL };
         match self.session.mesh_file(format, budget) {

@@ -12,6 +12,22 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
+/// Where the declarations of the bundle find the types of the values.
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r"import type {
+  Answer,
+  Bounds,
+  Fault,
+  LessonChapter,
+  LessonEvent,
+  LessonField,
+  LessonIterate,
+  LessonLife,
+  LessonProgress,
+  LessonPush,
+  LessonSettings,
+} from '../../engine/core-types.js';";
+
 /// The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
 #[wasm_bindgen]
 #[derive(Default)]
@@ -83,30 +99,44 @@ impl Lesson {
 
     /// Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`, of which what is missing has its
     /// default; to an `Answer` with `LessonProgress`.
-    pub fn start(&mut self, field: JsValue, settings: JsValue) -> JsValue {
+    #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
+    pub fn start(
+        &mut self,
+        #[wasm_bindgen(unchecked_param_type = "LessonField")] field: JsValue,
+        #[wasm_bindgen(unchecked_param_type = "Partial<LessonSettings>")] settings: JsValue,
+    ) -> JsValue {
         let field = read::<LessonField>(field, FaultKind::Request);
         self.begin(field.and_then(|field| Ok((formula(&field)?, field.bounds))), settings)
     }
 
     /// Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `bounds` its `Bounds`; to an
     /// `Answer` with `LessonProgress`.
-    pub fn start_points(&mut self, system: &[u8], bounds: JsValue, settings: JsValue) -> JsValue {
+    #[wasm_bindgen(unchecked_return_type = "Answer<LessonProgress, Fault>")]
+    pub fn start_points(
+        &mut self,
+        system: &[u8],
+        #[wasm_bindgen(unchecked_param_type = "Bounds")] bounds: JsValue,
+        #[wasm_bindgen(unchecked_param_type = "Partial<LessonSettings>")] settings: JsValue,
+    ) -> JsValue {
         let bounds = read::<Bounds>(bounds, FaultKind::Request);
         self.begin(bounds.and_then(|bounds| Ok((points(system)?, bounds))), settings)
     }
 
     /// Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
+    #[wasm_bindgen(unchecked_return_type = "LessonProgress | null")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         to_js(&self.run.as_mut().map(|run| run.step(budget)))
     }
 
     /// The chapters from number `first` on: an array of `LessonChapter`.
+    #[wasm_bindgen(unchecked_return_type = "LessonChapter[]")]
     pub fn chapters(&self, first: usize) -> JsValue {
         let chapters = self.run.as_ref().map(Reference::chapters).unwrap_or_default();
         to_js(&chapters.get(first..).unwrap_or_default())
     }
 
     /// Up to `count` events from number `first` on: an array of `LessonEvent`.
+    #[wasm_bindgen(unchecked_return_type = "LessonEvent[]")]
     pub fn events(&mut self, first: u32, count: u32) -> JsValue {
         to_js(&self.run.as_mut().map(|run| run.events(first, count)).unwrap_or_default())
     }
@@ -117,11 +147,13 @@ impl Lesson {
     }
 
     /// When a particle was added, treated and done: `LessonLife`; null if there is none.
+    #[wasm_bindgen(unchecked_return_type = "LessonLife | null")]
     pub fn life(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().and_then(|run| run.life(particle)))
     }
 
     /// Returns the repulsion of a particle by each of its neighbours at the moment that was sought: an array of `LessonPush`.
+    #[wasm_bindgen(unchecked_return_type = "LessonPush[]")]
     pub fn pushes(&self, particle: u32) -> JsValue {
         to_js(&self.run.as_ref().map(|run| run.pushes(particle)).unwrap_or_default())
     }
@@ -179,6 +211,7 @@ impl Lesson {
     }
 
     /// The steps of Newton's method in space from a point: an array of `LessonIterate`.
+    #[wasm_bindgen(unchecked_return_type = "LessonIterate[]")]
     pub fn newton(&mut self, start: &[f64], reach: f64) -> JsValue {
         let run = self.run.as_mut().zip(vector(start));
         to_js(&run.map(|(run, start)| run.newton(start, reach)).unwrap_or_default())

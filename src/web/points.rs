@@ -6,6 +6,15 @@ use crate::pointcloud::job::{DEFAULT_CENTRES, Fault, Job, JobError, Progress};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
+/// Where the declarations of the bundle find the types of the values.
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r"import type {
+  Answer,
+  PointsFault,
+  PointsProgress,
+  SolvedModel,
+} from '../../engine/core-types.js';";
+
 /// From a built-in model or a file to a field. Answers are plain objects.
 #[wasm_bindgen]
 #[derive(Default)]
@@ -24,12 +33,14 @@ impl Points {
 
     /// Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`. 0 centres are the default number
     /// of them.
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn model(&mut self, id: &str, centres: u32) -> JsValue {
         self.begin(Job::model(id, if centres == 0 { DEFAULT_CENTRES } else { centres }))
     }
 
     /// Begins a file, and gives up what was begun before: an `Answer` with `Progress`. `name` is for reports. 0 centres are the
     /// default number of them.
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn file(&mut self, name: &str, bytes: Vec<u8>, centres: u32) -> JsValue {
         // Room for the old one's points goes before that for the new one's is taken.
         self.job = None;
@@ -37,6 +48,7 @@ impl Points {
     }
 
     /// Does up to `budget` slices of work: an `Answer` with `Progress`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<PointsProgress, PointsFault>")]
     pub fn step(&mut self, budget: u32) -> JsValue {
         let job = self.job.as_mut().ok_or_else(|| nothing("no model and no file was begun"));
         answer(job.and_then(|job| job.step(budget).map_err(|error| Fault::from(&error))))
@@ -48,6 +60,7 @@ impl Points {
     }
 
     /// What there is to know of the field: an `Answer` with `SolvedModel`.
+    #[wasm_bindgen(unchecked_return_type = "Answer<SolvedModel, PointsFault>")]
     pub fn info(&self) -> JsValue {
         let fit = self.job.as_ref().and_then(Job::fit).ok_or_else(|| nothing("there is no field yet"));
         answer(fit.map(|fit| SolvedModel { info: fit.info.clone(), bounds: fit.bounds }))

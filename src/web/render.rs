@@ -65,8 +65,8 @@ impl Renderer {
     /// Throws an `Error` where the canvas, the adapter or the device cannot be had.
     pub async fn create(
         canvas: HtmlCanvasElement,
-        on_lost: Function,
-        on_error: Function,
+        #[wasm_bindgen(unchecked_param_type = "(reason: string, message: string) => void")] on_lost: Function,
+        #[wasm_bindgen(unchecked_param_type = "(message: string) => void")] on_error: Function,
     ) -> Result<Renderer, JsError> {
         console_error_panic_hook::set_once();
         let callbacks = Callbacks {
@@ -274,6 +274,7 @@ impl Renderer {
     /// Draws the picture into a texture of `picture_size(width_px, height_px)`, with every particle fully shown, and
     /// resolves to its pixels: rows from top to bottom, red, green, blue, opacity (not multiplied in), sRGB. Rejects
     /// where the device is lost.
+    #[wasm_bindgen(unchecked_return_type = "Promise<Uint8Array<ArrayBuffer>>")]
     pub fn read_pixels(&self, width_px: u32, height_px: u32, transparent: bool) -> Promise {
         let inner = Rc::clone(&self.inner);
         future_to_promise(async move {

@@ -1,6 +1,7 @@
 //! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer for WebGPU and for WebGL2.
 //!
-//! One bundle is: cargo (release, SIMD) → wasm-bindgen → wasm-opt → `www/src/wasm/NAME/`. A bundle is skipped when a
+//! One bundle is: cargo (release, SIMD) → wasm-bindgen → wasm-opt → `www/src/wasm/NAME/`. Its declarations are checked in, since the
+//! page's types are those of `src/web/`; the rest is not. A bundle is skipped when a
 //! hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding and
 //! optimising are skipped as well.
 
@@ -151,6 +152,7 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
             fs::remove_dir_all(&stage)?;
         }
         bind(project, bundle, &module, &stage)?;
+        declare(project, bundle, &stage, &out_dir)?;
         optimise(project, bundle, &stage)?;
         publish(&stage, &out_dir)?;
     }
@@ -275,6 +277,41 @@ fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Resul
         bail!("{} exports no class `{}`: is it still in src/web/?", script.display(), bundle.class());
     }
     Ok(())
+}
+
+/// Holds the declarations that are checked in to those of the bundle. The module's own exports are left out: the page calls the
+/// class, and their names change from build to build.
+fn declare(project: &Project, bundle: Bundle, stage: &Path, out_dir: &Path) -> Result<()> {
+    let file = format!("{}.d.ts", bundle.out_name());
+    let mut text = String::new();
+    let mut is_of_module = false;
+    for line in fs::read_to_string(stage.join(&file))?.lines() {
+        is_of_module =
+            if is_of_module { line != "}" } else { line.starts_with("export interface InitOutput") };
+        if !is_of_module || line.ends_with('{') || line.contains("readonly memory:") {
+            // What a method returns is a copy outside of the module's memory.
+            text += &line.replace("Array;", "Array<ArrayBuffer>;");
+            text += "\n";
+        }
+    }
+    fs::write(stage.join(&file), &text)?;
+    fs::remove_file(stage.join(format!("{}_bg.wasm.d.ts", bundle.out_name())))?;
+    let page = out_dir.join(&file);
+    let is_update = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    let known = fs::read_to_string(&page).unwrap_or_default();
+    if !is_update && without_comments(&known) != without_comments(&text) {
+        bail!(
+            "{} declares another class than src/web/: UPDATE_GOLDEN=1 cargo xtask wasm {}",
+            project.relative(&page).display(),
+            bundle.folder()
+        );
+    }
+    Ok(())
+}
+
+/// The declarations alone: what differs only in its comments is the same.
+fn without_comments(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.trim_start().starts_with(['/', '*'])).collect()
 }
 
 /// Optimises the bound module in place.

@@ -15,9 +15,8 @@ export class Framing {
    * @param {import('./store.js').Store} parts.store
    * @param {import('./columns.js').Columns} parts.columns
    * @param {import('./view/viewer.js').Viewer} parts.viewer
-   * @param {import('./look.js').Look} parts.look
    */
-  constructor({ store, columns, viewer, look }) {
+  constructor({ store, columns, viewer }) {
     this.store = store;
     this.columns = columns;
     this.viewer = viewer;
@@ -43,10 +42,7 @@ export class Framing {
         const rests = !store.busy.value && !store.progress.value.live;
         if (!rests || none === boxShown) return;
         boxShown = none;
-        queueMicrotask(() => {
-          look.show();
-          this.fit();
-        });
+        queueMicrotask(() => this.fit());
       }),
     ];
   }

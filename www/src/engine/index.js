@@ -4,21 +4,19 @@
  *
  * @module
  */
-import { Address } from './address.js';
 import { Columns } from './columns.js';
 import { runCommands } from './commands/run.js';
 import { fetchExports, shareCommands } from './commands/share.js';
 import { inputCommands, surfaceCommands } from './commands/surface.js';
 import { viewCommands } from './commands/view.js';
-import { installConsole } from './console.js';
+import { createDebug } from './debug.js';
 import { Framing } from './framing.js';
-import { Look } from './look.js';
+import { keepLook } from './look.js';
 import { createPicture } from './picture.js';
 import { Runs } from './runs.js';
 import { coreFetched } from './sampling/spawn.js';
-import { mergeState, surfaceOf } from './share/state.js';
-import { createStore, description } from './store.js';
-import { BACKENDS } from './view/backends.js';
+import { surfaceOf } from './share/state.js';
+import { createStore } from './store.js';
 
 /**
  * The parts of the engine, on which its commands act.
@@ -27,54 +25,56 @@ import { BACKENDS } from './view/backends.js';
  * @property {Columns} columns
  * @property {import('./picture.js').Picture} picture
  * @property {Runs} runs
- * @property {Look} look
  * @property {Framing} framing
- * @property {Address} address
+ * @property {(state: import('./types.js').State) => void} adopt  takes over a whole valid state and samples it
  */
 
 /**
- * @param {{canvasHost: HTMLElement}} options  `canvasHost` must be positioned; a canvas fills it
+ * Creates an engine that draws in an element of the page and begins with a state. It knows neither the page's address nor another
+ * engine, so that several can be on one page.
+ * @param {object} options
+ * @param {HTMLElement} options.host  must be positioned; a canvas fills it
+ * @param {string} [options.link]  the state to begin with, as {@link Engine.link} gives it
+ * @param {Record<string, unknown>} [options.state]  what differs from it
+ * @param {import('./view/backends.js').BackendKind | null} [options.backend]  the back end to try first
  * @returns {import('./types.js').Engine}
  */
-export function createEngine({ canvasHost }) {
+export function createEngine({ host, link = '', state = {}, backend = null }) {
   const store = createStore();
   const columns = new Columns();
-  const wanted = new URLSearchParams(location.search).get('backend');
-  const first = BACKENDS.find((kind) => kind === wanted) ?? null;
-
-  const picture = createPicture({ host: canvasHost, store, columns, first });
+  const picture = createPicture({ host, store, columns, first: backend });
   const { viewer } = picture;
   const runs = new Runs({
     store,
     columns,
     picture: viewer,
     onReady() {
-      // A link brings its own camera.
-      viewer.opening = location.hash === '';
-      void address.load(location.hash, true);
+      // A state from outside brings its own camera.
+      viewer.opening = link === '' && Object.keys(state).length === 0;
+      void engine.openLink(link, { initial: true, patch: state });
       fetchExports().catch(() => {});
     },
   });
-  const address = new Address({ store, hasFile: () => runs.loader.hasFile, apply: applyState });
-  const look = new Look({ store, viewer, runs });
-  const framing = new Framing({ store, columns, viewer, look });
+  const framing = new Framing({ store, columns, viewer });
 
-  /** Adopts a whole state and samples it. @param {import('./types.js').State} state  a valid state */
-  function applyState(state) {
-    store.state.value = state;
-    const bounds = state.bounds ?? surfaceOf(store.description.value, state.surface)?.bounds;
+  /** @type {Parts['adopt']} */
+  function adopt(whole) {
+    const bounds = whole.bounds ?? surfaceOf(store.description.value, whole.surface)?.bounds;
     if (bounds) viewer.setBounds(bounds);
-    const { camera } = state.view;
+    const { camera } = whole.view;
     viewer.camera.set(camera);
+    store.state.value = whole;
     if (camera.fit && runs.loader.ready()) viewer.fit(true);
-    look.show();
-    // If the link's surface cannot be sampled, the camera fits the surface that stays.
+    // If the surface cannot be sampled, the camera fits the one that stays.
     framing.written({ typed: false });
     runs.choose({ grow: true, fit: camera.fit });
   }
 
   /** @type {Parts} */
-  const parts = { store, columns, picture, runs, look, framing, address };
+  const parts = { store, columns, picture, runs, framing, adopt };
+  let isOver = false;
+  const closeLook = keepLook({ store, viewer, runs });
+  /** @type {import('./types.js').Engine} */
   const engine = {
     ...store,
     columns,
@@ -83,7 +83,6 @@ export function createEngine({ canvasHost }) {
     ...runCommands(parts),
     ...viewCommands(parts),
     ...shareCommands(parts),
-    /** @type {import('./types.js').EngineCommands['openLesson']} */
     async openLesson(options) {
       const { LessonClient } = await import('./lesson/client.js');
       return new LessonClient(options);
@@ -96,25 +95,15 @@ export function createEngine({ canvasHost }) {
       const solved = runs.loader.client.get(runs.loader.key());
       return solved ? { system: solved.field, bounds } : null;
     },
+    debug: createDebug(parts),
     destroy() {
-      for (const part of [address, look, framing, picture, runs]) part.close();
+      isOver = true;
+      closeLook();
+      for (const part of [framing, picture, runs]) part.close();
     },
   };
-  installConsole({
-    engine,
-    viewer,
-    sampling: runs.sampling,
-    columns,
-    applyState(patch) {
-      const { state, reset } = mergeState(store.state.value, patch, description(store), runs.loader.hasFile);
-      applyState(state);
-      return reset;
-    },
-  });
-  // The theme is applied before the first frame, so that a dark page does not flash.
-  look.show();
   runs.sampling.start();
   // Nothing can be drawn before the first particles, so the renderer does not share the connection with the core.
-  void coreFetched().then(() => viewer.start());
+  void coreFetched().then(() => (isOver ? undefined : viewer.start()));
   return engine;
 }

@@ -5,7 +5,7 @@
  */
 import { batch } from '@preact/signals-core';
 import { NO_PARENT } from './columns.js';
-import { CAMERA_MS } from './console.js';
+import { CAMERA_MS } from './debug.js';
 import { changeView } from './store.js';
 import { attachControls } from './view/controls.js';
 import { Viewer } from './view/viewer.js';

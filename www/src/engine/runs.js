@@ -4,7 +4,7 @@
  * @module
  */
 import { ModelLoader } from './points/loader.js';
-import { SamplingClient } from './sampling/client.js';
+import { Sampler } from './sampling/sampler.js';
 import { spawnSampler } from './sampling/spawn.js';
 import { completeSettings, fieldRequest, validSetting } from './share/state.js';
 import { change, description } from './store.js';
@@ -38,7 +38,7 @@ export class Runs {
      */
     this.timer = undefined;
     this.loader = new ModelLoader({ store, spawn: spawnSolver, sample: (options) => this.resample(options) });
-    this.sampling = new SamplingClient({
+    this.sampling = new Sampler({
       store,
       columns,
       picture,
@@ -161,6 +161,6 @@ export class Runs {
   close() {
     this.forgetLater();
     this.loader.cancel();
-    this.sampling.supervisor.stop();
+    this.sampling.close();
   }
 }

@@ -80,6 +80,12 @@ export function changeView(store, patch) {
   change(store, { view: { ...store.state.value.view, ...patch } });
 }
 
+/** Shows all generation levels again, because a new surface is shown as it grows. @param {Store} store */
+export function showAll(store) {
+  const { level, step } = store.state.value.view;
+  if (level !== null || step !== null) changeView(store, { level: null, step: null });
+}
+
 /** Returns the core's description of itself. @param {Store} store @throws before the core has loaded */
 export function description({ description }) {
   if (!description.value) throw new Error('The core is not there yet.');

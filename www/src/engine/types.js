@@ -288,8 +288,12 @@
  * @property {(dxRad: number, dyRad: number) => void} orbit
  * @property {(insets: {left: number, right: number, top: number, bottom: number}) => void} setInsets  pixels of the
  *   canvas host covered by panels; the surface is centred in the rest
- * @property {() => Promise<string>} shareUrl
- * @property {(hash: string) => Promise<void>} loadUrl
+ * @property {() => Promise<string>} link  the state as the fragment of an address, with `#`; empty for the default state. Not before
+ *   the core has loaded
+ * @property {(link: string, options?: {initial?: boolean, patch?: object}) => Promise<void>} openLink  adopts the state of such a
+ *   fragment with what `patch` changes; `initial`: what cannot be read is the default state
+ * @property {(patch: Record<string, unknown>) => string[]} set  changes a part of the state and samples; returns what of it was not
+ *   valid, in words
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<ImageData>} picture  without panels;
  *   the surface fills its shorter side as it fills that of the window
  * @property {(options?: {width?: number, height?: number, transparent?: boolean}) => Promise<Blob>} savePng
@@ -304,10 +308,21 @@
  *   Promise<import('./lesson/client.js').LessonClient>} openLesson  the paper's algorithms, event by event; its worker and its
  *   bundle are loaded with the first run
  * @property {() => import('./lesson/protocol.js').Surface | null} lessonSurface  returns the present surface for such a run
- * @property {() => void} destroy
+ * @property {() => void} destroy  frees all that the engine holds: its workers, its device and its canvas
  */
 /** File formats for a mesh. @typedef {'glb' | 'obj' | 'stl' | 'ply'} MeshFormat */
-/** @typedef {EngineSignals & EngineCommands} Engine */
+/**
+ * What tests need of an engine.
+ * @typedef {object} EngineDebug
+ * @property {(fault: 'panic' | 'overflow' | 'hang') => void} provoke  traps the core in its worker, overflows the worker's stack, or
+ *   sends it into an endless loop
+ * @property {(reason?: string) => void} loseDevice
+ * @property {(id: number) => void} stale  delivers a message of another run
+ * @property {() => Promise<void>} still  resolves once the picture stands still and the state has the camera
+ * @property {() => boolean} isOff  whether no sampler is there or coming
+ * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number, dimmed: boolean}} counts
+ */
+/** @typedef {EngineSignals & EngineCommands & {debug: EngineDebug}} Engine */
 
 /** Value of `State.surface` for a surface from a file. */
 export const FILE_SURFACE = 'file';

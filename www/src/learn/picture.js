@@ -2,12 +2,12 @@
  * A picture of particles, drawn by the page's own 2-D painter at twice its size, so that the browser smooths the edges. A page of
  * figures would run out of contexts of the graphics card.
  */
-import { effect, signal } from '@preact/signals-core';
+import { signal } from '@preact/signals-core';
 import { ballOf, Camera, projected, viewOf } from '../engine/view/camera.js';
 import { rgbFromPacked } from '../engine/view/oklab.js';
 import { Painter } from '../engine/view/painter.js';
 import { CYCLE, PALETTES, RAMP } from '../engine/view/palettes.js';
-import { h } from '../ui/dom.js';
+import { endsWith, h, live } from '../ui/dom.js';
 
 /**
  * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
@@ -110,8 +110,10 @@ export class Picture {
     this.painter = context ? new Painter(this.canvas, context) : null;
     this.size = signal({ width: 0, height: 0 });
     this.frame = 0;
-    new ResizeObserver(() => this.measure()).observe(this.element);
-    effect(() => {
+    const observer = new ResizeObserver(() => this.measure());
+    observer.observe(this.element);
+    endsWith(this.element, () => observer.disconnect());
+    live(this.element, () => {
       void [this.scene.value, this.size.value, this.orbit.turned.value, isDark.value];
       // Printing does not wait for a frame.
       if (printing.value) this.draw();

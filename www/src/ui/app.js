@@ -9,7 +9,6 @@ import { createHistory } from './history.js';
 import { icon } from './icons.js';
 import { mountLayout } from './layout.js';
 import { createMotion } from './motion.js';
-import { mountOffline } from './offline.js';
 import { mountReport } from './report/panel.js';
 import { mountSampling } from './sampling/panel.js';
 import { COMMAND_KEY, mountShortcuts } from './shortcuts.js';
@@ -21,7 +20,7 @@ import { createToolbar } from './view/toolbar.js';
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
 
-/** @param {Engine} engine */
+/** @param {Engine} engine @returns {import('./toasts.js').Toast}  shows a notice of the page */
 export function mountInterface(engine) {
   const [shell, view, stage] = [byId('shell'), byId('view'), byId('stage')];
   const [field, levels, sampling, report] = ['field', 'levels', 'sampling', 'report'].map((id) => byId(`panel-${id}`));
@@ -75,7 +74,6 @@ export function mountInterface(engine) {
       historyButton('redo', 'Redo', `${COMMAND_KEY} Shift Z`, history.canRedo, history.redo),
     );
   mountDrop(engine, toast);
-  mountOffline(engine, toast);
   mountOverlay(view, engine, { stage, poster: byId('poster'), start: byId('start'), told });
   // What is said where there is no surface does not hide the box.
   layout.follow(/** @type {HTMLElement} */ (view.querySelector('.empty')));
@@ -120,6 +118,7 @@ export function mountInterface(engine) {
       },
     );
   });
+  return toast;
 }
 
 /** Has the link to the lesson carry the surface over. Without that it leads to the lesson all the same. @param {Engine} engine */
@@ -281,11 +280,9 @@ function goButton(engine) {
     if (active.peek()) engine.stop();
     else engine.run();
   });
-  const button = h('button', { type: 'button', class: 'button primary go', on: { click: press } });
-  effect(() => {
-    button.textContent = active.value ? 'Stop' : 'Run';
-  });
-  return button;
+  return h('button', { type: 'button', class: 'button primary go', on: { click: press } }, () =>
+    active.value ? 'Stop' : 'Run',
+  );
 }
 
 /**
@@ -302,6 +299,7 @@ function historyButton(name, label, keys, can, act) {
       type: 'button',
       class: 'button plain square',
       'aria-label': label,
+      'aria-disabled': () => String(!can.value),
       on: {
         click: () => {
           if (can.peek()) act();
@@ -310,7 +308,6 @@ function historyButton(name, label, keys, can, act) {
     },
     icon(name),
   );
-  effect(() => button.setAttribute('aria-disabled', String(!can.value)));
   explain(button, () => ({ title: label, text: `Surface, formula, clip box and settings. Keys ${keys}.` }));
   return button;
 }

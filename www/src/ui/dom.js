@@ -5,28 +5,56 @@
 import { effect } from '@preact/signals-core';
 
 /** @typedef {Node | string | number | null | undefined | false} Child */
+/** What an element may be given: itself, or a function of signals whose text is kept up to date. @typedef {Child | (() => Child)} Given */
 /** @typedef {{ [name: string]: any }} Props */
+
+/** What ends with a node. @type {WeakMap<Node, (() => void)[]>} */
+const endings = new WeakMap();
+
+/** Has `end` called once the node is taken out of the page by {@link fill} or {@link release}. @param {Node} node @param {() => void} end */
+export function endsWith(node, end) {
+  const ends = endings.get(node);
+  if (ends) ends.push(end);
+  else endings.set(node, [end]);
+}
+
+/** Runs `act` now and after every change of the signals that it reads, as long as the node lasts. @param {Node} node @param {() => void} act */
+export const live = (node, act) => endsWith(node, effect(act));
+
+/** Ends what belongs to a node and to all within it. @param {Node} node */
+export function release(node) {
+  for (const end of endings.get(node) ?? []) end();
+  endings.delete(node);
+  for (const child of node.childNodes) release(child);
+}
 
 /**
  * Creates an element.
  *
- * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All
- * others are attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none.
+ * In `props`, `on` holds event listeners, `data` the data attributes and `prop` the properties of the object. All others are
+ * attributes: `true` gives an empty attribute; `false`, `null` and `undefined` give none. A function in the place of an attribute, a
+ * data attribute or a child is read anew after every change of the signals that it reads, as long as the element lasts.
  *
  * @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag
  * @param {Props | null} [props]
- * @param {...(Child | Child[])} children
+ * @param {...(Given | Given[])} children
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function h(tag, props, ...children) {
   const element = document.createElement(tag);
+  const set = (/** @type {unknown} */ value, /** @type {(value: any) => void} */ act) => {
+    if (typeof value === 'function') live(element, () => act(value()));
+    else act(value);
+  };
   for (const [name, value] of Object.entries(props ?? {})) {
     if (name === 'on') {
       for (const [type, listener] of Object.entries(value)) element.addEventListener(type, listener);
-    } else if (name === 'data') Object.assign(element.dataset, value);
-    else if (name === 'prop') Object.assign(element, value);
-    else setAttribute(element, name, value);
+    } else if (name === 'data') {
+      for (const [key, datum] of Object.entries(value))
+        set(datum, (now) => Object.assign(element.dataset, { [key]: now }));
+    } else if (name === 'prop') Object.assign(element, value);
+    else set(value, (now) => setAttribute(element, name, now));
   }
   append(element, children);
   return element;
@@ -45,36 +73,36 @@ export function setAttribute(element, name, value) {
 
 /**
  * @param {Node} parent
- * @param {(Child | Child[])[]} children
+ * @param {(Given | Given[])[]} children
  */
 function append(parent, children) {
   for (const child of children.flat()) {
     if (child === null || child === undefined || child === false) continue;
-    parent.appendChild(child instanceof Node ? child : document.createTextNode(String(child)));
+    if (typeof child === 'function') parent.appendChild(textOf(child));
+    else parent.appendChild(child instanceof Node ? child : document.createTextNode(String(child)));
   }
 }
 
-/**
- * Replaces the children of `parent`.
- * @param {Element} parent
- * @param {...(Child | Child[])} children
- */
-export function fill(parent, ...children) {
-  parent.replaceChildren();
-  append(parent, children);
+/** Returns a text that is kept equal to what `read` returns. The node is only changed when the text changes. @param {() => Child} read */
+function textOf(read) {
+  const node = document.createTextNode('');
+  live(node, () => {
+    const text = String(read() ?? '');
+    if (node.data !== text) node.data = text;
+  });
+  return node;
 }
 
 /**
- * Keeps the text of `element` equal to `read()`. The node is only changed when the text changes.
- * @param {Element} element
- * @param {() => string} read
- * @returns {() => void} ends the binding
+ * Replaces the children of `parent`, and ends what belongs to those that go.
+ * @param {Element} parent
+ * @param {...(Given | Given[])} children
  */
-export function bindText(element, read) {
-  return effect(() => {
-    const text = read();
-    if (element.textContent !== text) element.textContent = text;
-  });
+export function fill(parent, ...children) {
+  const old = [...parent.childNodes];
+  parent.replaceChildren();
+  append(parent, children);
+  for (const node of old) if (!parent.contains(node)) release(node);
 }
 
 /** Returns the element with this id from the page's markup. @param {string} id @returns {HTMLElement} */
@@ -103,22 +131,6 @@ let last = 0;
 export function uniqueId(stem) {
   last += 1;
   return `${stem}-${last}`;
-}
-
-/**
- * Collects the cleanup functions of a part of the page, to be called when that part is replaced.
- * @returns {{ add(end: () => void): void, end(): void }}
- */
-export function createScope() {
-  /** @type {(() => void)[]} */
-  let ends = [];
-  return {
-    add: (end) => void ends.push(end),
-    end() {
-      for (const end of ends) end();
-      ends = [];
-    },
-  };
 }
 
 /** Whether the last input was a key other than a modifier. */

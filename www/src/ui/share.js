@@ -1,4 +1,5 @@
 /** Copies a link or exports a file. */
+import { FILE_SURFACE } from '../engine/types.js';
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
 /** @typedef {import('./toasts.js').Toast} Toast */
@@ -6,7 +7,11 @@
 /** @param {Engine} engine @param {Toast} toast */
 export async function copyLink(engine, toast) {
   try {
-    const url = await engine.shareUrl();
+    const url = location.origin + location.pathname + (await engine.link());
+    if (engine.state.peek().surface === FILE_SURFACE) {
+      const text = `A link cannot hold the points of ${engine.model.peek()?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`;
+      toast({ id: 'share-file', kind: 'info', text });
+    }
     history.replaceState(null, '', url);
     try {
       await navigator.clipboard.writeText(url);

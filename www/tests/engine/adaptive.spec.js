@@ -128,7 +128,7 @@ test('a link holds every setting of an adaptive run', async ({ page }) => {
     grading: 0.3,
   };
   const before = await set(page, { ...spindle, settings, view: { colour: 'radius' } });
-  const shared = String(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl()));
+  const shared = String(await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link()));
   await page.goto('about:blank');
   await open(page, `/${new URL(shared).hash}`);
   const state = /** @type {any} */ (await page.evaluate(() => /** @type {any} */ (window).marchingParticles.state));

@@ -211,5 +211,14 @@ export function fakeCore({
     nearest: () => new Float32Array(count),
     residual: () => new Float32Array(count),
     energy: () => new Float32Array(count).fill(1),
+    // The loop leaves these to others.
+    describe: () => {
+      throw new Error('a core of a few lines does not describe itself');
+    },
+    digest: () => 'd',
+    limit_memory() {},
+    mesh_file: () => null,
+    free() {},
+    [Symbol.dispose]() {},
   };
 }

@@ -191,7 +191,7 @@ test.describe('links', () => {
     });
     const report = /** @type {any} */ (await on(page, 'p.report()'));
     expect(report.quality.euler).toBe(0);
-    const shared = String(await on(page, 'p.engine.shareUrl()'));
+    const shared = String(await on(page, 'p.link()'));
     await page.evaluate(() => history.replaceState(null, '', '#'));
     await page.evaluate((hash) => {
       location.hash = hash;

@@ -99,7 +99,7 @@ test('the points of a model stay on it when it turns, and keep their size when i
 test('a model goes through a link, with its settings', async ({ page }) => {
   await open(page);
   const before = await set(page, { ...bunny, view: { colour: 'curvature', points: false } });
-  const shared = String(await on(page, 'p.engine.shareUrl()'));
+  const shared = String(await on(page, 'p.link()'));
   expect((await status(page)).notice).toBe(null);
   await page.goto('about:blank');
   await open(page, `/${new URL(shared).hash}`);
@@ -217,8 +217,7 @@ test.describe('a file', () => {
   test('is not in a link: the page says so, and opens the standard surface with the settings', async ({ page }) => {
     await open(page);
     await openFile(page, 'ball.ply', spherePly(200, 1));
-    const shared = String(await on(page, 'p.engine.shareUrl()'));
-    expect((await status(page)).notice).toMatchObject({ id: 'share-file', text: expect.stringContaining('ball.ply') });
+    const shared = String(await on(page, 'p.link()'));
     await page.goto('about:blank');
     await open(page, `/${new URL(shared).hash}`);
     expect((await status(page)).notice).toMatchObject({ id: 'link', text: expect.stringContaining('file') });

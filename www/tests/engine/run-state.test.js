@@ -28,12 +28,11 @@ const wish = (formula, more = {}) => ({
   fit: true,
   ...more,
 });
-/** @param {number} id @param {SampleRequest} request @returns {RunEvent} */
-const sent = (id, request) => ({ type: 'sent', id, request, nowMs: 0 });
-/** @param {number} id @param {number} of @param {number} steps @returns {RunEvent} */
-const relax = (id, of, steps) => ({
+/** @param {SampleRequest} request @returns {RunEvent} */
+const sent = (request) => ({ type: 'sent', request, nowMs: 0 });
+/** @param {number} of @param {number} steps @returns {RunEvent} */
+const relax = (of, steps) => ({
   type: 'sent',
-  id,
   request: { kind: 'relax', of, steps, live: false, grow: true, fit: false },
   nowMs: 0,
 });
@@ -48,7 +47,7 @@ const done = (outcome, n, reportFollows = false) => ({ type: 'done', outcome, pa
 const stateAfter = (...events) => events.reduce((state, event) => Object.freeze(reduce(state, event)), IDLE);
 
 /** A whole run of x, with its report. */
-const whole = () => [sent(1, wish('x')), accepted(1), particles, done('complete', 7, true), { type: 'reported' }];
+const whole = () => [sent(wish('x')), accepted(1), particles, done('complete', 7, true), { type: 'reported' }];
 /** @type {(...more: RunEvent[]) => RunState} */
 const afterWhole = (...more) => stateAfter(.../** @type {RunEvent[]} */ (whole()), ...more);
 
@@ -57,7 +56,7 @@ describe('a run', () => {
     /** @type {import('../../src/engine/types.js').Bounds} */
     const found = { min: [-9, -9, -9], max: [9, 9, 9] };
     expect(stateAfter({ type: 'boxed', bounds: found }).current).toBeNull();
-    const state = stateAfter(sent(1, wish('x')), accepted(1), { type: 'boxed', bounds: found });
+    const state = stateAfter(sent(wish('x')), accepted(1), { type: 'boxed', bounds: found });
     expect(state.current?.bounds).toEqual(found);
     expect(state.current?.stage).toBe('seeding');
   });
@@ -77,13 +76,13 @@ describe('a run', () => {
   });
 
   test('is on the page from its first particle on, and held by the worker from its end on', () => {
-    const state = stateAfter(sent(1, wish('x')), accepted(1), particles);
+    const state = stateAfter(sent(wish('x')), accepted(1), particles);
     expect(state).toMatchObject({ held: 0, shown: { request: wish('x'), reported: false } });
     expect(afterWhole()).toMatchObject({ held: 1, shown: { reported: true }, astray: false });
   });
 
   test('takes over when its field is accepted, and those asked before it are forgotten', () => {
-    const state = stateAfter(sent(1, wish('x')), sent(2, wish('y')), sent(3, wish('z')), accepted(2));
+    const state = stateAfter(sent(wish('x')), sent(wish('y')), sent(wish('z')), accepted(2));
     expect(state.current).toMatchObject({ id: 2, bounds, stage: 'seeding' });
     expect(state.asked.map((run) => run.id)).toEqual([3]);
     expect(state.accepted).toEqual(wish('y'));
@@ -92,39 +91,39 @@ describe('a run', () => {
   });
 
   test('whose field is refused leaves the one before as it is', () => {
-    const before = stateAfter(sent(1, wish('x')), accepted(1), particles);
-    const state = reduce(reduce(before, sent(2, wish('x+'))), { type: 'refused', id: 2 });
-    expect(state).toEqual(before);
+    const before = stateAfter(sent(wish('x')), accepted(1), particles);
+    const state = reduce(reduce(before, sent(wish('x+'))), { type: 'refused', id: 2 });
+    expect(state).toEqual({ ...before, lastId: 2 });
   });
 
   test('without a surface leaves nothing held or shown', () => {
-    expect(afterWhole(sent(2, wish('y')), accepted(2), done('complete', 0))).toMatchObject({ held: 0, shown: null });
+    expect(afterWhole(sent(wish('y')), accepted(2), done('complete', 0))).toMatchObject({ held: 0, shown: null });
   });
 });
 
 describe('the surface on the page is not the one asked for', () => {
   test.each(/** @type {const} */ (['ask', 'refused', 'lost']))('after a run that ended with %s', (outcome) => {
-    const state = afterWhole(sent(2, wish('x')), accepted(2), done(outcome, 0));
+    const state = afterWhole(sent(wish('x')), accepted(2), done(outcome, 0));
     expect(state).toMatchObject({ astray: true, held: 0, shown: { reported: true } });
     // The next that is accepted is on its way.
-    expect(reduce(reduce(state, sent(3, wish('z'))), accepted(3)).astray).toBe(false);
+    expect(reduce(reduce(state, sent(wish('z'))), accepted(3)).astray).toBe(false);
   });
 
   test('after another was stopped before its first particle, and not after the same was', () => {
-    expect(afterWhole(sent(2, wish('y')), accepted(2), done('stopped', 0)).astray).toBe(true);
-    expect(afterWhole(sent(2, wish('x')), accepted(2), done('stopped', 0)).astray).toBe(false);
+    expect(afterWhole(sent(wish('y')), accepted(2), done('stopped', 0)).astray).toBe(true);
+    expect(afterWhole(sent(wish('x')), accepted(2), done('stopped', 0)).astray).toBe(false);
   });
 
   test('while it is only restored', () => {
-    const restoring = sent(3, wish('x', { restoring: true }));
-    const state = afterWhole(sent(2, wish('y')), accepted(2), done('refused', 0), restoring, accepted(3));
+    const restoring = sent(wish('x', { restoring: true }));
+    const state = afterWhole(sent(wish('y')), accepted(2), done('refused', 0), restoring, accepted(3));
     expect(state.astray).toBe(true);
     expect(reduce(state, done('stopped', 0)).astray).toBe(true);
   });
 
   test('after the worker failed on another for good', () => {
     const input = inputOf(wish('y'));
-    const lost = afterWhole(sent(2, wish('y')), { type: 'lost' });
+    const lost = afterWhole(sent(wish('y')), { type: 'lost' });
     expect(reduce(lost, { type: 'crashed', input, again: true }).astray).toBe(false);
     expect(reduce(lost, { type: 'crashed', input, again: false })).toMatchObject({ astray: true, crashedInput: input });
     expect(reduce(lost, { type: 'crashed', input: '', again: false }).astray).toBe(false);
@@ -133,7 +132,7 @@ describe('the surface on the page is not the one asked for', () => {
 
 describe('a relaxation', () => {
   test('has no field to wait for, and makes what is shown a run of as many steps more', () => {
-    const begun = afterWhole(relax(2, 1, 5));
+    const begun = afterWhole(relax(1, 5));
     expect(begun.current).toMatchObject({ id: 2, stage: 'seeding' });
     expect(begun.shown?.request.settings.relax_steps).toBe(10);
     const moved = reduce(begun, particles);
@@ -150,35 +149,41 @@ describe('a relaxation', () => {
 
 describe('when the worker goes', () => {
   test('nothing is under way, and what is shown stays', () => {
-    const state = afterWhole(sent(2, wish('y')), accepted(2), sent(3, wish('z')), { type: 'lost' });
+    const state = afterWhole(sent(wish('y')), accepted(2), sent(wish('z')), { type: 'lost' });
     expect(state).toMatchObject({ asked: [], current: null, held: 0, shown: { reported: true } });
     expect(awaitsWorker(state)).toBe(false);
   });
 
   test('the run it was at is lost', () => {
-    expect(lostRun(afterWhole(sent(2, wish('y'))), wish('y'), description)).toEqual(wish('y'));
+    expect(lostRun(afterWhole(sent(wish('y'))), description)).toEqual(wish('y'));
   });
 
   test('nothing is lost with a worker that was idle', () => {
-    expect(lostRun(afterWhole(), null, description)).toBe(null);
-    expect(lostRun(IDLE, null, description)).toBe(null);
+    expect(lostRun(afterWhole(), description)).toBe(null);
+    expect(lostRun(IDLE, description)).toBe(null);
   });
 
   test('a report that is owed is made with its run', () => {
-    const state = stateAfter(sent(1, wish('x')), accepted(1), particles, done('complete', 7, true));
-    expect(lostRun(state, null, description)).toEqual(wish('x', { grow: false, fit: false }));
+    const state = stateAfter(sent(wish('x')), accepted(1), particles, done('complete', 7, true));
+    expect(lostRun(state, description)).toEqual(wish('x', { grow: false, fit: false }));
   });
 
   test('a relaxation is made with the run that it goes on with, and its steps count once', () => {
-    const { request } = /** @type {Extract<RunEvent, {type: 'sent'}>} */ (relax(2, 1, 5));
-    const before = afterWhole(relax(2, 1, 5));
-    expect(lostRun(before, request, description)?.settings.relax_steps).toBe(15);
-    expect(lostRun(reduce(before, particles), request, description)?.settings.relax_steps).toBe(15);
+    const before = afterWhole(relax(1, 5));
+    expect(lostRun(before, description)?.settings.relax_steps).toBe(15);
+    expect(lostRun(reduce(before, particles), description)?.settings.relax_steps).toBe(15);
   });
 });
 
+test('what waits is lost first, and once', () => {
+  const live = (/** @type {string} */ formula) => wish(formula, { live: true });
+  const state = stateAfter(sent(live('x')), { type: 'waits', request: live('y') });
+  expect(lostRun(state, description)).toEqual(live('y'));
+  expect(lostRun(reduce(state, { type: 'lost' }), description)).toBe(null);
+});
+
 test('a stop holds for every job sent before it', () => {
-  expect(stateAfter(sent(1, wish('x')), { type: 'stopped', lastId: 1 }).stoppedUpTo).toBe(1);
+  expect(stateAfter(sent(wish('x')), { type: 'stopped' }).stoppedUpTo).toBe(1);
 });
 
 test('a worker started again by hand may be sent what the last failed on', () => {

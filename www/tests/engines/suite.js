@@ -99,7 +99,7 @@ test('a link brings the same particles back', async () => {
     const report = await /** @type {any} */ (window).marchingParticles.set(state);
     return {
       digest: report.digest,
-      hash: new URL(await /** @type {any} */ (window).marchingParticles.engine.shareUrl()).hash,
+      hash: new URL(await /** @type {any} */ (window).marchingParticles.link()).hash,
     };
   }, given);
   assert.equal((await open(hash)).digest, digest);

@@ -88,7 +88,7 @@ test('the plane is dragged and turned in the picture, undone, and kept in links'
   expect(turned.normal[2]).toBeGreaterThan(0.3);
   await expect(panel.getByRole('radio', { name: 'Free' })).toBeChecked();
 
-  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   await page.keyboard.press('ControlOrMeta+z');
   await expect.poll(async () => (await state(page)).plane).toEqual(moved);
   await page.keyboard.press('ControlOrMeta+z');

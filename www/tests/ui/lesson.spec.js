@@ -139,7 +139,7 @@ test('the place is part of the link, and one that is not there leads to the near
   await expect(range(page)).toHaveAttribute('aria-valuetext', /particle 1: taken/);
   for (const key of ['ArrowRight', 'ArrowRight']) await page.keyboard.press(key);
   await expect(range(page)).toHaveAttribute('aria-valuetext', /^Level 1 of \d+, particle 1, child 1: starts/);
-  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   expect(JSON.parse(Buffer.from(new URL(link).hash.split('.')[2], 'base64url').toString()).view).toMatchObject({
     grain: 'event',
     follow: [1, 2],
@@ -210,7 +210,7 @@ test('in a relaxation step the panel shows who pushes the particle, and where it
     panel(page).getByRole('button', { name: 'Save transcript' }).click(),
   ]);
   expect((await readFile(await file.path(), 'utf8')).match(/^Step \d+ of 10: /gm)).toHaveLength(10);
-  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   await panel(page).getByRole('button', { name: 'Its events' }).click();
   await expect(panel(page).getByRole('list', { name: 'Slots' })).toBeVisible();
   await page.goto('about:blank');

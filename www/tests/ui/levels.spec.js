@@ -122,7 +122,7 @@ test('the level travels in the link, and a new run shows all of its particles', 
   await open(page);
   await press(page, 'First level');
   for (let k = 0; k < 4; k += 1) await press(page, 'Level forward');
-  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   expect(JSON.parse(Buffer.from(new URL(link).hash.split('.')[2], 'base64url').toString()).view.level).toBe(4);
   await page.getByRole('button', { name: 'Run', exact: true }).first().click();
   await settled(page);

@@ -208,7 +208,7 @@ test('another number of points is fitted on request, kept in links, and taken ba
   // The address bar follows after a pause.
   const isInAddress = () =>
     page.evaluate(async () => {
-      const shared = await /** @type {any} */ (window).marchingParticles.engine.shareUrl();
+      const shared = await /** @type {any} */ (window).marchingParticles.link();
       return new URL(shared).hash === location.hash;
     });
   await expect.poll(isInAddress).toBe(true);

@@ -67,7 +67,7 @@ test('two particles are measured by pointer and by keyboard, and a link keeps th
   await page.keyboard.press('Enter');
   await expect.poll(async () => (await state(page)).view.measured.length).toBe(2);
   await expect(page.locator('.marks .cross')).toHaveCount(2);
-  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.engine.shareUrl());
+  const link = await page.evaluate(() => /** @type {any} */ (window).marchingParticles.link());
   const kept = (await state(page)).view.measured;
   expect((await scan(page)).violations).toEqual([]);
 

@@ -8,7 +8,7 @@ it('every style comes through the one sheet that the page links', () => {
   const scripts = readdirSync(sources, { recursive: true, encoding: 'utf8' }).filter(
     (name) => name.endsWith('.js') && !name.startsWith('wasm/'),
   );
-  expect(scripts).toContain('main.js');
+  expect(scripts).toContain('main/index.js');
   const importing = scripts.filter((name) =>
     /import\s*\(?\s*['"`][^'"`]*\.css/.test(readFileSync(new URL(name, sources), 'utf8')),
   );

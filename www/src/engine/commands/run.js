@@ -4,7 +4,7 @@
  * @module
  */
 import { completeSettings } from '../share/state.js';
-import { description } from '../store.js';
+import { description, showAll } from '../store.js';
 
 /** Largest number of relaxation steps of one command. */
 const MOST_STEPS = 1000;
@@ -12,10 +12,10 @@ const MOST_STEPS = 1000;
 /** @typedef {Pick<import('../types.js').EngineCommands, 'run' | 'stop' | 'generateOnly' | 'relax'>} RunCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {RunCommands} */
-export function runCommands({ store, runs, look }) {
+export function runCommands({ store, runs }) {
   return {
     run() {
-      look.allLevels();
+      showAll(store);
       runs.resample({ grow: true });
     },
     stop: () => runs.stop(),

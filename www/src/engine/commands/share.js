@@ -3,9 +3,9 @@
  *
  * @module
  */
-import { surfaceOf } from '../share/state.js';
+import { decode, encode } from '../share/codec.js';
+import { mergeState, surfaceOf } from '../share/state.js';
 import { description } from '../store.js';
-import { FILE_SURFACE } from '../types.js';
 
 /** Largest width or height of a saved picture. */
 const LARGEST_PICTURE_PX = 8192;
@@ -13,10 +13,10 @@ const LARGEST_PICTURE_PX = 8192;
 /** Fetches the code that writes files. The first picture does not need it, so it loads after the sampler. */
 export const fetchExports = () => import('../share/exports.js');
 
-/** @typedef {Pick<import('../types.js').EngineCommands, 'shareUrl' | 'loadUrl' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh'>} ShareCommands */
+/** @typedef {Pick<import('../types.js').EngineCommands, 'link' | 'openLink' | 'set' | 'picture' | 'savePng' | 'exportFile' | 'exportMesh'>} ShareCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {ShareCommands} */
-export function shareCommands({ store, columns, picture: { viewer }, runs, address }) {
+export function shareCommands({ store, columns, picture: { viewer }, runs, adopt }) {
   /** @type {import('../types.js').EngineCommands['picture']} */
   async function picture({ width, height, transparent = false } = {}) {
     const side = (/** @type {number | undefined} */ wanted, /** @type {number} */ own) =>
@@ -27,17 +27,25 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, addre
   }
 
   return {
-    async shareUrl() {
-      if (store.state.value.surface === FILE_SURFACE) {
-        store.notice.value = {
-          id: 'share-file',
-          kind: 'info',
-          text: `A link cannot hold the points of ${store.model.value?.name ?? 'a file'}: it shows the standard surface with these settings. Send the file along.`,
-        };
+    link: () => encode(store.state.value, description(store)),
+    async openLink(link, { initial = false, patch = {} } = {}) {
+      const about = description(store);
+      const { state, reset, problem } = await decode(link, about, runs.loader.hasFile);
+      if (problem) {
+        const outcome = initial ? 'This is the standard surface instead.' : 'Nothing was changed.';
+        store.notice.value = { id: 'link', kind: 'warn', text: `${problem} ${outcome}` };
+        if (!initial) return;
+      } else if (reset.length) {
+        const what = [...new Set(reset)].join(', ');
+        store.notice.value = { id: 'link', kind: 'warn', text: `The link was read, except for: ${what}.` };
       }
-      return address.url();
+      adopt(mergeState(state, { ...patch }, about, runs.loader.hasFile).state);
     },
-    loadUrl: (hash) => address.load(hash),
+    set(patch) {
+      const { state, reset } = mergeState(store.state.value, patch, description(store), runs.loader.hasFile);
+      adopt(state);
+      return reset;
+    },
     picture,
     async savePng(options) {
       const { png } = await fetchExports();
@@ -52,7 +60,7 @@ export function shareCommands({ store, columns, picture: { viewer }, runs, addre
       return format === 'csv' ? csv(columns, all) : ply(columns, all, { comment: `Marching Particles, ${what}` });
     },
     async exportMesh(format) {
-      const bytes = await runs.sampling.meshFile(format);
+      const bytes = await runs.sampling.client.meshFile(format);
       return new Blob([bytes], { type: format === 'glb' ? 'model/gltf-binary' : 'application/octet-stream' });
     },
   };

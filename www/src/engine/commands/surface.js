@@ -14,7 +14,7 @@ import {
   validPlane,
   validSetting,
 } from '../share/state.js';
-import { change, description } from '../store.js';
+import { change, description, showAll } from '../store.js';
 import { FILE_SURFACE } from '../types.js';
 
 /** Pause in typing after which a name counts as finished, although it could be the beginning of a longer one. */
@@ -28,14 +28,14 @@ const sampledOf = ({ surface, formula, parameters, declared, centres, bounds, se
   JSON.stringify([surface, formula, parameters, declared, centres, bounds, settings]);
 
 /** @param {import('../index.js').Parts} parts @returns {SurfaceCommands} */
-export function surfaceCommands({ store, runs, look, framing }) {
+export function surfaceCommands({ store, runs, framing }) {
   const { state } = store;
   return {
     setSurface(id) {
       const about = store.description.value;
       const surface = surfaceOf(about, id);
       if (!surface && !modelOf(about, id) && !(id === FILE_SURFACE && runs.loader.hasFile)) return;
-      look.allLevels();
+      showAll(store);
       change(store, shapeOf(id, surface?.formula));
       runs.choose({ grow: true, fit: true });
     },
@@ -65,16 +65,15 @@ export function surfaceCommands({ store, runs, look, framing }) {
     restore(shape) {
       const another = shape.surface !== state.value.surface;
       const sampled = sampledOf(shape) !== sampledOf(state.value);
-      if (another) look.allLevels();
+      if (another) showAll(store);
       change(store, shape);
-      look.show();
       if (sampled) runs.choose({ grow: another, fit: another });
     },
   };
 }
 
 /** @param {import('../index.js').Parts} parts @returns {InputCommands} */
-export function inputCommands({ store, runs, look }) {
+export function inputCommands({ store, runs }) {
   const { state } = store;
   /** @param {boolean} live */
   const resample = (live) => (live ? runs.resampleLive() : runs.resample());
@@ -99,19 +98,16 @@ export function inputCommands({ store, runs, look }) {
       const valid = bounds === null ? null : validBounds(bounds, description(store).limits);
       if (valid === undefined) return;
       change(store, { bounds: valid });
-      look.show();
       resample(live);
     },
     setPlane(plane) {
       const valid = plane === null ? null : validPlane(plane);
       if (valid === undefined) return;
       change(store, { plane: valid });
-      look.show();
     },
     fitBox() {
       const { box_mode: _, ...settings } = state.value.settings;
       change(store, { bounds: null, settings });
-      look.show();
       resample(false);
     },
     setSetting(name, value, { live = false } = {}) {

@@ -9,14 +9,13 @@ import { change } from '../store.js';
 /** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */
 
 /** @param {import('../index.js').Parts} parts @returns {ViewCommands} */
-export function viewCommands({ store, picture, look }) {
+export function viewCommands({ store, picture }) {
   const { viewer } = picture;
   return {
     setView(patch) {
       const view = validView(/** @type {Record<string, unknown>} */ (patch), store.state.value.view);
       if (patch.camera) viewer.camera.set(view.camera);
       change(store, { view });
-      look.show();
       // What is switched on around the surface is brought into view.
       if ((patch.box !== undefined || patch.axes !== undefined) && viewer.camera.state.fit) viewer.fit();
       if (store.hover.value && store.hover.value.level > (view.level ?? Infinity)) picture.hover(null, 0, 0);

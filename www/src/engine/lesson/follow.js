@@ -11,8 +11,7 @@ import { nextBudget } from '../bundle/budget.js';
  * @typedef {import('./protocol.js').FromLesson} FromLesson
  * @typedef {import('./protocol.js').Particles} Particles
  * @typedef {import('./protocol.js').Advanced} Advanced
- * @typedef {import('./protocol.js').LessonProgress} LessonProgress
- * @typedef {InstanceType<typeof import('../../wasm/lesson/lesson.js').Lesson>} Lesson
+ * @typedef {import('../../wasm/lesson/lesson.js').Lesson} Lesson
  */
 
 /** Target duration of a slice, so that a question does not wait long. */
@@ -41,7 +40,7 @@ export function follow(lesson, env) {
     if (holds) return env.post({ type: 'ended', id, progress: answer });
     for (let budget = FIRST_BUDGET; ; ) {
       const before = env.nowMs();
-      const progress = /** @type {LessonProgress} */ (lesson.step(budget));
+      const progress = step(budget);
       if (progress.is_done) return env.post({ type: 'ended', id, progress });
       budget = nextBudget(budget, env.nowMs() - before, SLICE_MS);
       env.post({ type: 'progress', id, progress });
@@ -52,10 +51,17 @@ export function follow(lesson, env) {
     }
   }
 
+  /** @param {number} units */
+  function step(units) {
+    const progress = lesson.step(units);
+    if (!progress) throw new Error('No run was begun.');
+    return progress;
+  }
+
   /** @param {number} units @returns {Advanced} */
   function advance(units) {
     const before = env.nowMs();
-    return { progress: lesson.step(units), workMs: env.nowMs() - before };
+    return { progress: step(units), workMs: env.nowMs() - before };
   }
 
   /** @returns {Particles} */

@@ -10,41 +10,12 @@ import { join } from './joining.js';
 import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
 
 /**
+ * @typedef {import('../../wasm/core/core.js').Core} Core
  * @typedef {import('./protocol.js').Job} Job
  * @typedef {import('./protocol.js').FromWorker} FromWorker
  * @typedef {import('./protocol.js').DoneMessage} DoneMessage
  * @typedef {import('../types.js').CoreProgress} CoreProgress
  * @typedef {import('../types.js').Seconds} Seconds
- */
-/**
- * The part of the core's class that the loop uses.
- * @typedef {object} CoreLike
- * @property {(request: import('../types.js').FieldRequest) => import('../types.js').FieldAnswer} set_field
- * @property {(system: Uint8Array, about: import('../types.js').SolvedModel) => import('../types.js').FieldAnswer} set_points
- * @property {(settings: import('../types.js').Settings, onlyGrows: boolean, budget: number) => import('../types.js').FieldAnswer | undefined} fit  the
- *   field with its box once it is found, else undefined
- * @property {(settings: import('../types.js').Settings) => import('../types.js').StartAnswer} start
- * @property {(budget: number) => CoreProgress} step
- * @property {(steps: number) => void} relax
- * @property {() => CoreProgress} cancel
- * @property {() => number} count
- * @property {(from: number) => Float32Array} positions
- * @property {(from: number) => Float64Array} exact_positions
- * @property {(from: number) => Float32Array} normals
- * @property {(from: number) => Float32Array} radii
- * @property {(from: number) => Uint32Array} levels
- * @property {(from: number) => Uint32Array} parents
- * @property {(from: number) => Uint32Array} slots
- * @property {(from: number) => Float32Array} curvature  two per particle
- * @property {(budget: number) => import('../types.js').CoreReport | undefined} measure  the report once it is complete, else undefined
- * @property {(budget: number) => import('../types.js').MeshAnswer | undefined} join  joins the particles to a mesh: what it
- *   adds up to once it is complete, else undefined
- * @property {() => Uint32Array} triangles  of the complete mesh, three particles each
- * @property {() => Uint8Array} valence
- * @property {() => Float32Array} nearest
- * @property {() => Float32Array} residual
- * @property {() => Float32Array} energy
- * @property {() => Uint32Array} component
  */
 /**
  * @typedef {object} Env
@@ -79,7 +50,7 @@ function clockOf(phase) {
 
 /**
  * Returns a message without columns, about particles that the page already has.
- * @param {CoreLike} core @param {number} id
+ * @param {Core} core @param {number} id
  * @returns {import('./protocol.js').ColumnsMessage}
  */
 const bare = (core, id) => ({
@@ -102,7 +73,7 @@ const bare = (core, id) => ({
 
 /**
  * Returns a message with the curvature of all particles, which the page already has.
- * @param {CoreLike} core @param {number} id
+ * @param {Core} core @param {number} id
  * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
  */
 export function curvatureColumn(core, id) {
@@ -112,14 +83,14 @@ export function curvatureColumn(core, id) {
 
 /**
  * Returns a message with the mesh over all particles, which the page already has.
- * @param {CoreLike} core @param {number} id @param {import('./protocol.js').Mesh} mesh
+ * @param {Core} core @param {number} id @param {import('./protocol.js').Mesh} mesh
  * @returns {[import('./protocol.js').ColumnsMessage, Transferable[]]}
  */
 export const meshColumn = (core, id, mesh) => [{ ...bare(core, id), mesh }, [mesh.triangles.buffer]];
 
 /**
  * Runs a job to its end, or until it is interrupted.
- * @param {CoreLike} core
+ * @param {Core} core
  * @param {Job} job
  * @param {Env} env
  * @param {Memory} memory
@@ -145,7 +116,7 @@ export async function runJob(core, job, env, memory) {
 
 /** A job in progress: its times, its latest progress, and what the page has received. */
 class JobRun {
-  /** @param {CoreLike} core @param {Job} job @param {Env} env */
+  /** @param {Core} core @param {Job} job @param {Env} env */
   constructor(core, job, env) {
     this.core = core;
     this.job = job;

@@ -9,14 +9,14 @@
 /**
  * @typedef {import('./protocol.js').Job} Job
  * @typedef {import('./protocol.js').FromWorker} FromWorker
- * @typedef {import('./job.js').CoreLike} CoreLike
+ * @typedef {import('../../wasm/core/core.js').Core} Core
  */
 /** A job that has not started. @typedef {{job: Job, stopped: boolean}} Pending */
 
 /**
  * Sets the field of a job in the core. A model is passed again for every job: it has a few kilobytes, and tracking
  * which model the core holds would cost more.
- * @param {CoreLike} core @param {import('./protocol.js').SampleJob} job
+ * @param {Core} core @param {import('./protocol.js').SampleJob} job
  * @returns {import('../types.js').FieldAnswer}
  */
 function setField(core, { field, points }) {
@@ -36,7 +36,9 @@ export class Jobs {
      * @type {Pending | null}
      */
     this.accepted = null;
-    /** Whether the running job must stop. */
+    /** The job that runs. @type {Job | null} */
+    this.running = null;
+    /** Whether it must stop. */
     this.stopped = false;
   }
 
@@ -52,18 +54,19 @@ export class Jobs {
     if (this.accepted) this.accepted.stopped = true;
   }
 
-  /** Returns the next job, with its field set in the core. @param {CoreLike} core @returns {Job | null} */
+  /** Begins and returns the next job, with its field set in the core. @param {Core} core @returns {Job | null} */
   take(core) {
     this.ask(core);
     const next = this.accepted;
     this.accepted = null;
     this.stopped = next?.stopped ?? false;
-    return next?.job ?? null;
+    this.running = next?.job ?? null;
+    return this.running;
   }
 
   /**
    * Returns what the running job must do. The job calls this between two steps.
-   * @param {CoreLike} core
+   * @param {Core} core
    * @returns {'stop' | 'replace' | null}
    */
   interrupt(core) {
@@ -72,7 +75,7 @@ export class Jobs {
     return this.stopped ? 'stop' : null;
   }
 
-  /** @param {CoreLike} core */
+  /** @param {Core} core */
   ask(core) {
     const next = this.waiting;
     if (!next) return;

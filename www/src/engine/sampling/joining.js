@@ -11,7 +11,7 @@ const FIRST_SLICES = 32;
 const FIRST_ROWS = 4;
 
 /**
- * @typedef {import('./job.js').CoreLike} CoreLike
+ * @typedef {import('../../wasm/core/core.js').Core} Core
  * @typedef {Pick<import('./job.js').Env, 'nowMs' | 'pause' | 'post' | 'interrupt'>} Env
  */
 
@@ -42,7 +42,7 @@ async function inSlices(step, slices, { nowMs, pause, post, interrupt }) {
 
 /**
  * Returns the mesh, or null if another job replaces the particles before it is complete.
- * @param {Pick<CoreLike, 'join' | 'triangles'>} core
+ * @param {Pick<Core, 'join' | 'triangles'>} core
  * @param {Env} env
  * @returns {Promise<import('./protocol.js').Mesh | null>}
  */
@@ -54,7 +54,7 @@ export async function join(core, env) {
 /**
  * Returns the complete mesh as a file: its bytes, null inside if it cannot be written; or null if another job replaces the particles
  * before it is.
- * @param {import('../../wasm/core/core.js').Core} core
+ * @param {Pick<Core, 'mesh_file'>} core
  * @param {string} format
  * @param {Env} env
  * @returns {Promise<{bytes: Uint8Array<ArrayBuffer> | null} | null>}

@@ -6,6 +6,9 @@
  */
 import { clampSettings } from '../share/state.js';
 
+/** Time after which a live job is replaced by one with newer values. Until then it continues; otherwise no job would finish. */
+const PATIENCE_MS = 150;
+
 /**
  * @typedef {import('../types.js').Bounds} Bounds
  * @typedef {import('../types.js').Description} Description
@@ -41,7 +44,10 @@ import { clampSettings } from '../share/state.js';
  */
 /** @typedef {{request: SampleRequest, reported: boolean}} Shown */
 /**
+ * Which jobs there are: at most one waits here, those that are asked wait at the worker, and one is current.
  * @typedef {object} RunState
+ * @property {number} lastId  id of the job sent last, 0 before the first
+ * @property {RunRequest | null} waiting  the request that is sent once the worker has ended a job
  * @property {readonly Run[]} asked  jobs whose field has not been answered yet, in the order sent
  * @property {Run | null} current  the job whose messages count: the last one whose field was accepted
  * @property {number} held  the job whose particles the worker holds, 0 for none
@@ -54,14 +60,15 @@ import { clampSettings } from '../share/state.js';
 /**
  * The events. `particles`: the first particles of the current run have arrived; `lost`: the worker and its jobs are
  * gone; `crashed`: the worker failed on `input`, which is sent `again` or given up.
- * @typedef {{type: 'sent', id: number, request: RunRequest, nowMs: number}
+ * @typedef {{type: 'waits', request: RunRequest}
+ *   | {type: 'sent', request: RunRequest, nowMs: number}
  *   | {type: 'accepted', id: number, bounds: Bounds}
  *   | {type: 'boxed', bounds: Bounds}
  *   | {type: 'refused', id: number}
  *   | {type: 'particles', description: Description | null}
  *   | {type: 'done', outcome: import('./protocol.js').Outcome, particles: number, reportFollows: boolean}
  *   | {type: 'reported'}
- *   | {type: 'stopped', lastId: number}
+ *   | {type: 'stopped'}
  *   | {type: 'lost'}
  *   | {type: 'crashed', input: string, again: boolean}
  *   | {type: 'revived'}} RunEvent
@@ -69,6 +76,8 @@ import { clampSettings } from '../share/state.js';
 
 /** @type {RunState} */
 export const IDLE = Object.freeze({
+  lastId: 0,
+  waiting: null,
   asked: [],
   current: null,
   held: 0,
@@ -82,12 +91,16 @@ export const IDLE = Object.freeze({
 /** @param {RunState} state @param {RunEvent} event @returns {RunState} */
 export function reduce(state, event) {
   switch (event.type) {
+    case 'waits':
+      return { ...state, waiting: event.request };
     case 'sent': {
-      const { id, request, nowMs } = event;
+      const { request, nowMs } = event;
+      const id = state.lastId + 1;
       /** @type {Run} */
       const run = { id, request, bounds: null, stage: 'seeding', sinceMs: nowMs };
+      const next = { ...state, lastId: id, waiting: null };
       // A relaxation sets no field, so it is current at once.
-      return request.kind === 'relax' ? { ...state, current: run } : { ...state, asked: [...state.asked, run] };
+      return request.kind === 'relax' ? { ...next, current: run } : { ...next, asked: [...state.asked, run] };
     }
     case 'accepted': {
       const run = askedRun(state, event.id);
@@ -113,9 +126,9 @@ export function reduce(state, event) {
     case 'reported':
       return { ...atStage(state, 'over'), shown: state.shown && { ...state.shown, reported: true } };
     case 'stopped':
-      return { ...state, stoppedUpTo: event.lastId };
+      return { ...state, waiting: null, stoppedUpTo: state.lastId };
     case 'lost':
-      return { ...state, asked: [], current: null, held: 0 };
+      return { ...state, waiting: null, asked: [], current: null, held: 0 };
     case 'crashed':
       return { ...state, crashedInput: event.input, astray: state.astray || (event.input !== '' && !event.again) };
     case 'revived':
@@ -160,9 +173,29 @@ const after = (asked, id) => asked.filter((run) => run.id > id);
 /** Returns the job with this id if its field has not been answered. @param {RunState} state @param {number} id */
 export const askedRun = ({ asked }, id) => asked.find((run) => run.id === id);
 
+/**
+ * Returns the job that the worker has or is about to have: the one sent last, or the one that goes on because its field was refused.
+ * It ends before its report.
+ * @param {RunState} state
+ * @returns {Run | null}
+ */
+export function runningOf({ asked, current }) {
+  if (asked.length > 0) return asked[asked.length - 1];
+  return current?.stage === 'seeding' || current?.stage === 'growing' ? current : null;
+}
+
+/**
+ * Returns whether a request waits for the job that runs. The latest one wins, and otherwise replaces that job.
+ * @param {RunState} state @param {RunRequest} request @param {number} nowMs
+ */
+export function isToWait(state, request, nowMs) {
+  const running = runningOf(state);
+  if (!running?.request.live || !request.live) return false;
+  return nowMs - running.sinceMs < PATIENCE_MS;
+}
+
 /** Returns whether the page waits for particles. @param {RunState} state */
-export const awaitsParticles = ({ asked, current }) =>
-  asked.length > 0 || current?.stage === 'seeding' || current?.stage === 'growing';
+export const awaitsParticles = (state) => runningOf(state) !== null;
 
 /** Returns whether the worker has work. @param {RunState} state */
 export const awaitsWorker = ({ asked, current }) => asked.length > 0 || (current !== null && current.stage !== 'over');
@@ -198,10 +231,12 @@ export function relaxed({ request }, steps, description) {
 /**
  * Returns the run that is lost with the worker: its current run, or, for a pending report or a relaxation, the run that
  * leads to the same particles again.
- * @param {RunState} state @param {RunRequest | null} atWorker @param {Description | null} description
+ * @param {RunState} state @param {Description | null} description
  * @returns {SampleRequest | null}
  */
-export function lostRun({ shown, current }, atWorker, description) {
+export function lostRun(state, description) {
+  const { shown, current, waiting } = state;
+  const atWorker = waiting ?? runningOf(state)?.request ?? null;
   if (atWorker?.kind === 'sample') return atWorker;
   if (!shown || (!atWorker && shown.reported)) return null;
   return relaxed(shown, atWorker && current?.stage === 'seeding' ? atWorker.steps : 0, description);

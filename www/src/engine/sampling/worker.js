@@ -14,7 +14,6 @@ import { BEAT_MS } from './protocol.js';
 /**
  * @typedef {import('./protocol.js').FromWorker} FromWorker
  * @typedef {import('./protocol.js').ToWorker} ToWorker
- * @typedef {import('./protocol.js').Job} Job
  */
 
 /** Largest memory of a run and its report. Browsers end pages that use much more, on phones much earlier. */
@@ -28,8 +27,6 @@ const onPhone = ({ userAgentData, deviceMemory = 8, userAgent }) =>
 const post = (message, transfer = []) => self.postMessage(message, { transfer });
 
 const jobs = new Jobs(post);
-/** @type {Job | null} */
-let running = null;
 /** Number of column messages that the page has not drawn yet. */
 let undrawn = 0;
 /** @type {import('./protocol.js').Fault | null} */
@@ -111,17 +108,17 @@ async function pump() {
   while (core && !dead) {
     const ours = core;
     try {
-      running = jobs.take(ours);
-      if (running) {
+      const job = jobs.take(ours);
+      if (job) {
         undrawn = 0;
-        await runJob(ours, running, surroundings(ours), memory);
+        await runJob(ours, job, surroundings(ours), memory);
       } else if (!(await serve(ours))) {
         break;
       }
     } catch (error) {
-      crashed(running?.id ?? 0, error);
+      crashed(jobs.running?.id ?? 0, error);
     }
-    running = null;
+    jobs.running = null;
   }
   pumping = false;
 }
@@ -174,7 +171,7 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       break;
     case 'curvature':
       curvature = data.on;
-      if (curvature && core && !running && memory.held > 0) {
+      if (curvature && core && !jobs.running && memory.held > 0) {
         try {
           post(...curvatureColumn(core, memory.held));
         } catch (error) {
@@ -194,11 +191,11 @@ self.onmessage = (/** @type {MessageEvent<ToWorker>} */ { data }) => {
       jobs.stop();
       break;
     case 'drawn':
-      if (running && data.id === running.id) undrawn = Math.max(0, undrawn - 1);
+      if (data.id === jobs.running?.id) undrawn = Math.max(0, undrawn - 1);
       break;
     case 'provoke':
       provoked = data.fault;
-      if (!running) {
+      if (!jobs.running) {
         try {
           provoke();
         } catch (error) {

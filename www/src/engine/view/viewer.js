@@ -168,6 +168,7 @@ export class Viewer {
   set(patch) {
     const before = this.look;
     this.look = { ...before, ...patch };
+    if (Object.entries(before).every(([name, value]) => this.look[/** @type {keyof Look} */ (name)] === value)) return;
     const { colour, theme, level, marks } = this.look;
     if (colour !== before.colour || theme !== before.theme) this.recolour(0, this.columns.count);
     if (marks !== before.marks) this.faces.recolour();

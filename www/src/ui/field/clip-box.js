@@ -67,8 +67,12 @@ export function createClipBox(engine) {
   const show = h('input', { type: 'checkbox', on: { change: () => engine.setView({ box: show.checked }) } });
   const reset = h(
     'button',
-    { type: 'button', class: 'button plain small', on: { click: () => engine.fitBox() } },
-    'Reset',
+    {
+      type: 'button',
+      class: () => (own.value ? 'button plain small' : 'button plain small invisible'),
+      on: { click: () => engine.fitBox() },
+    },
+    () => (kept.value ? 'Reset' : 'Fit'),
   );
   const details = h(
     'details',
@@ -95,10 +99,6 @@ export function createClipBox(engine) {
   });
   effect(() => {
     show.checked = drawn.value;
-  });
-  effect(() => {
-    reset.classList.toggle('invisible', !own.value);
-    reset.textContent = kept.value ? 'Reset' : 'Fit';
   });
   return [createCut(engine), details];
 }

@@ -42,7 +42,7 @@ export function createFormula(engine, description) {
   );
   const section = h(
     'div',
-    { class: 'section formula' },
+    { class: 'section formula', hidden: () => engine.field.value?.kind === 'points' },
     h('div', { class: 'section-head' }, h('h2', null, 'Formula'), help),
     input.holder,
     input.error,
@@ -52,9 +52,6 @@ export function createFormula(engine, description) {
     event.preventDefault();
     if (section.hidden) /** @type {HTMLElement | null} */ (document.querySelector('.tile :checked'))?.focus();
     else input.editor.focus();
-  });
-  effect(() => {
-    section.hidden = engine.field.value?.kind === 'points';
   });
   return section;
 }

@@ -177,11 +177,12 @@ function createGroups(sections, shown, query) {
         shown.value = name;
         query.value = '';
       });
-    const button = h('button', { type: 'button', class: 'button small plain', on: { click: show } }, name);
-    effect(() => {
-      button.setAttribute('aria-pressed', String(query.value.trim() === '' && shown.value === name));
-    });
-    return button;
+    const pressed = () => String(query.value.trim() === '' && shown.value === name);
+    return h(
+      'button',
+      { type: 'button', class: 'button small plain', 'aria-pressed': pressed, on: { click: show } },
+      name,
+    );
   });
   return h('div', { class: 'gallery-groups', role: 'group', 'aria-label': 'Groups of surfaces' }, buttons);
 }

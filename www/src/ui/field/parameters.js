@@ -1,6 +1,6 @@
 /** Creates a slider, a number box and a button that plays it for every parameter of the formula. */
 import { computed, effect } from '@preact/signals-core';
-import { createScope, fill, h } from '../dom.js';
+import { fill, h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatStep } from '../format.js';
 import { icon } from '../icons.js';
@@ -30,15 +30,13 @@ export function createParameters(engine, motion) {
     ),
   );
   const values = computed(() => engine.state.value.parameters);
-  const scope = createScope();
   effect(() => {
     void shape.value;
     const parameters = engine.field.peek()?.parameters ?? [];
     section.hidden = parameters.length === 0;
-    scope.end();
     fill(
       rows,
-      parameters.map((parameter) => createRow(engine, parameter, { values, scope, motion })),
+      parameters.map((parameter) => createRow(engine, parameter, { values, motion })),
     );
   });
   return section;
@@ -46,11 +44,12 @@ export function createParameters(engine, motion) {
 
 /** @param {Engine} engine */
 function resetAll(engine) {
-  const button = h(
+  const changed = computed(() => Object.keys(engine.state.value.parameters).length > 0);
+  return h(
     'button',
     {
       type: 'button',
-      class: 'button plain small',
+      class: () => (changed.value ? 'button plain small' : 'button plain small invisible'),
       on: {
         click: () => {
           for (const name of Object.keys(engine.state.peek().parameters)) engine.resetParameter(name);
@@ -59,11 +58,6 @@ function resetAll(engine) {
     },
     'Reset',
   );
-  const changed = computed(() => Object.keys(engine.state.value.parameters).length > 0);
-  effect(() => {
-    button.classList.toggle('invisible', !changed.value);
-  });
-  return button;
 }
 
 /**
@@ -71,10 +65,9 @@ function resetAll(engine) {
  * @param {Parameter} parameter
  * @param {object} parts
  * @param {import('@preact/signals-core').ReadonlySignal<Record<string, number>>} parts.values
- * @param {ReturnType<typeof createScope>} parts.scope
  * @param {import('../motion.js').Motion} parts.motion
  */
-function createRow(engine, { name, label, value, min, max, step }, { values, scope, motion }) {
+function createRow(engine, { name, label, value, min, max, step }, { values, motion }) {
   const title = label && label !== name ? label : `Parameter ${name}`;
   const slider = createSlider({
     // The accessible name includes the symbol, because a sampling setting may have the same label, such as the radius.
@@ -85,26 +78,20 @@ function createRow(engine, { name, label, value, min, max, step }, { values, sco
     change: (now, live) => engine.setParameter(name, now, { live }),
     reset: () => engine.resetParameter(name),
   });
-  scope.add(
-    effect(() => {
-      const held = values.value[name];
-      const answered = engine.field.value?.parameters.find((parameter) => parameter.name === name)?.value;
-      slider.set(held ?? answered ?? value);
-    }),
-  );
+  live(slider.range, () => {
+    const held = values.value[name];
+    const answered = engine.field.value?.parameters.find((parameter) => parameter.name === name)?.value;
+    slider.set(held ?? answered ?? value);
+  });
   const caption = h('span', { class: 'name' }, h('var', null, name));
-  const play = h(
-    'button',
-    { type: 'button', class: 'button plain square play', on: { click: () => motion.toggle({ name, min, max, step }) } },
-    icon('play'),
-  );
-  scope.add(
-    effect(() => {
-      const isPlaying = motion.playing.value === name;
-      play.setAttribute('aria-label', `${isPlaying ? 'Pause' : 'Play'} ${name}`);
-      play.replaceChildren(icon(isPlaying ? 'pause' : 'play'));
-    }),
-  );
+  const isPlaying = computed(() => motion.playing.value === name);
+  const play = h('button', {
+    type: 'button',
+    class: 'button plain square play',
+    'aria-label': () => `${isPlaying.value ? 'Pause' : 'Play'} ${name}`,
+    on: { click: () => motion.toggle({ name, min, max, step }) },
+  });
+  live(play, () => fill(play, icon(isPlaying.value ? 'pause' : 'play')));
   explain(play, () => ({ text: `Moves ${name} from ${formatStep(min, step)} to ${formatStep(max, step)}.` }));
   const row = h('div', { class: 'row', data: { parameter: name } }, caption, slider.range, slider.box, play);
   explain(caption, () => ({
@@ -143,9 +130,5 @@ function createCourse({ playing, course, speed }) {
   effect(() => {
     speeds.value = String(speed.value);
   });
-  const line = h('div', { class: 'course' }, courses.element, speeds);
-  effect(() => {
-    line.hidden = playing.value === null;
-  });
-  return line;
+  return h('div', { class: 'course', hidden: () => playing.value === null }, courses.element, speeds);
 }

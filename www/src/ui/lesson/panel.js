@@ -5,7 +5,7 @@
 import { computed, effect, signal, untracked } from '@preact/signals-core';
 import { momentAt } from '../../figures/moment.js';
 import { inRadii, transcript } from '../../figures/words.js';
-import { bindText, fill, h, uniqueId } from '../dom.js';
+import { fill, h, live, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { icon } from '../icons.js';
@@ -37,27 +37,28 @@ export async function mountFollow(shell, engine, { say, mount }) {
   const follower = new Follower(engine, say);
   const [particles, events] = [particleTrack(follower), eventTrack(follower)];
   const id = uniqueId('follow');
-  const title = h('h2', { id }, 'Particle');
-  const ready = h('div', { class: 'follow-ready' }, createAbout(follower), createTold(follower), createViews(follower));
-  ready.append(createFoot(follower, engine));
-  // What was pressed goes away with what it offered, so the panel itself takes the focus.
-  const held = () => element.focus({ preventScroll: true });
-  const element = h(
-    'section',
-    { class: 'panel panel-follow', 'aria-labelledby': id, tabindex: -1, hidden: true },
-    createHead({ title, follower, particles, close: () => close() }),
-    h('div', { class: 'panel-body' }, createStale(follower, engine, held), createStatus(follower, held), ready),
-  );
-  shell.append(element);
-  bindText(title, () => {
+  const title = h('h2', { id }, () => {
     const opened = follower.opened.value;
     return opened ? `Particle ${formatCount(opened.subject.particle)}` : 'Particle';
   });
   const open = signal(false);
-  effect(() => {
-    ready.hidden = follower.opened.value === null;
-    element.hidden = !open.value;
-  });
+  const ready = h(
+    'div',
+    { class: 'follow-ready', hidden: () => follower.opened.value === null },
+    createAbout(follower),
+    createTold(follower),
+    createViews(follower),
+    createFoot(follower, engine),
+  );
+  // What was pressed goes away with what it offered, so the panel itself takes the focus.
+  const held = () => element.focus({ preventScroll: true });
+  const element = h(
+    'section',
+    { class: 'panel panel-follow', 'aria-labelledby': id, tabindex: -1, hidden: () => !open.value },
+    createHead({ title, follower, particles, close: () => close() }),
+    h('div', { class: 'panel-body' }, createStale(follower, engine, held), createStatus(follower, held), ready),
+  );
+  shell.append(element);
   element.addEventListener('keydown', (event) => {
     if (event.key !== 'Escape') return;
     event.preventDefault();
@@ -159,16 +160,21 @@ function drawFront({ opened, at, run, stale }, engine) {
 function createHead({ title, follower, particles, close }) {
   const turn = (/** @type {1 | -1} */ by, /** @type {string} */ label, /** @type {'left' | 'right'} */ name) => {
     const act = () => void follower.open(follower.target.peek() + by);
+    const disabled = () => {
+      const to = particles.at.value + by;
+      return String(follower.opened.value === null || to < 0 || to > particles.last.value);
+    };
     const button = h(
       'button',
-      { type: 'button', class: 'button plain square', 'aria-label': label, on: { click: act } },
+      {
+        type: 'button',
+        class: 'button plain square',
+        'aria-label': label,
+        'aria-disabled': disabled,
+        on: { click: act },
+      },
       icon(name),
     );
-    effect(() => {
-      const to = particles.at.value + by;
-      const isThere = follower.opened.value !== null && to >= 0 && to <= particles.last.value;
-      button.setAttribute('aria-disabled', String(!isThere));
-    });
     explain(button, () => ({ title: label, text: `Key Shift ${by < 0 ? '←' : '→'}` }));
     return button;
   };
@@ -188,8 +194,7 @@ function createHead({ title, follower, particles, close }) {
 
 /** Says where the particle belongs, and which one of the picture it stands for. @param {Follower} follower */
 function createAbout(follower) {
-  const element = h('p', { class: 'quiet follow-about' });
-  bindText(element, () => {
+  return h('p', { class: 'quiet follow-about' }, () => {
     const opened = follower.opened.value;
     if (!opened) return '';
     const { subject, picture } = opened;
@@ -207,7 +212,6 @@ function createAbout(follower) {
     }
     return words.join(' ');
   });
-  return element;
 }
 
 /**
@@ -222,18 +226,16 @@ function createStale(follower, engine, held) {
   };
   const button = h(
     'button',
-    { type: 'button', class: 'button', on: { click: again } },
+    {
+      type: 'button',
+      class: 'button',
+      disabled: () => engine.busy.value || engine.empty.value || engine.loading.value !== null,
+      on: { click: again },
+    },
     'Follow the particle at the same place',
   );
-  const text = h('p');
-  const element = h('div', { class: 'follow-notice', role: 'status' }, text, button);
-  effect(() => {
-    const stale = follower.stale.value;
-    element.hidden = !stale;
-    text.textContent = stale ? words : '';
-    button.disabled = engine.busy.value || engine.empty.value || engine.loading.value !== null;
-  });
-  return element;
+  const text = h('p', null, () => (follower.stale.value ? words : ''));
+  return h('div', { class: 'follow-notice', role: 'status', hidden: () => !follower.stale.value }, text, button);
 }
 
 /**
@@ -259,7 +261,7 @@ function createStatus(follower, held) {
       },
       label,
     );
-  effect(() => {
+  live(element, () => {
     const status = follower.status.value;
     element.hidden = status.kind === 'ready';
     if (status.kind === 'running')
@@ -281,8 +283,7 @@ const coarserWords = (radius, adaptive) =>
 
 /** @param {Follower} follower @param {Engine} engine */
 function createFoot(follower, engine) {
-  const about = h('p', { class: 'quiet follow-note' });
-  bindText(about, () => {
+  const about = h('p', { class: 'quiet follow-note' }, () => {
     const run = follower.run.value;
     if (!run) return '';
     const count = formatCount(run.end.radii.length);
@@ -328,12 +329,10 @@ function createTurn({ rest }, engine) {
     const isResting = rest.status.peek() !== null;
     engine.setView(isResting ? { grain: 'event', level: null, step: null } : { grain: 'level', level: null, step: 1 });
   };
-  const button = h('button', { type: 'button', class: 'button', on: { click: turn } });
-  bindText(button, () => (rest.status.value ? 'Its events' : 'Its relaxation'));
-  effect(() => {
-    button.hidden = Number(settingOf(engine, 'relax_steps')) === 0;
-  });
-  return button;
+  const hidden = () => Number(settingOf(engine, 'relax_steps')) === 0;
+  return h('button', { type: 'button', class: 'button', hidden, on: { click: turn } }, () =>
+    rest.status.value ? 'Its events' : 'Its relaxation',
+  );
 }
 
 /** @param {Follower} follower */

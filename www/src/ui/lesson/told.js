@@ -1,7 +1,7 @@
 /** Tells the event of the timeline in words, on the panel and to assistive technology. */
 import { effect } from '@preact/signals-core';
 import { tell } from '../../figures/words.js';
-import { bindText, h } from '../dom.js';
+import { h } from '../dom.js';
 
 /** @typedef {import('./follower.js').Follower} Follower */
 
@@ -11,9 +11,8 @@ const REST_MS = 400;
 
 /** @param {Follower} follower */
 export function createTold(follower) {
-  const told = h('p', { class: 'follow-told', 'aria-hidden': 'true' });
+  const told = h('p', { class: 'follow-told', 'aria-hidden': 'true' }, () => wordsOf(follower));
   const spoken = h('p', { class: 'visually-hidden', role: 'status', 'aria-live': 'polite' });
-  bindText(told, () => wordsOf(follower));
   announce(follower, spoken);
   return h('div', { class: 'follow-stepper' }, told, spoken);
 }

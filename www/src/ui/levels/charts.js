@@ -1,6 +1,6 @@
 /** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
 import { computed, effect, signal } from '@preact/signals-core';
-import { bindText, fill, h } from '../dom.js';
+import { fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
 import { clamp } from '../scale.js';
 import { loadSheet } from '../sheet.js';
@@ -91,8 +91,7 @@ export async function createCharts(engine, player) {
     void degree.value;
     write();
   });
-  const bound = h('p', { class: 'charts-bound quiet' });
-  bindText(bound, () => boundWords(engine.report.value, engine.columns.adaptive));
+  const bound = h('p', { class: 'charts-bound quiet' }, () => boundWords(engine.report.value, engine.columns.adaptive));
   const element = h('div', { class: 'levels-charts', role: 'group', 'aria-label': 'Charts' }, charts, bound, details);
   return { element, shown };
 }

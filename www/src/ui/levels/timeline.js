@@ -3,7 +3,7 @@
  * open the lesson.
  */
 import { computed, effect } from '@preact/signals-core';
-import { fill, h } from '../dom.js';
+import { fill, h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount } from '../format.js';
 import { icon } from '../icons.js';
@@ -302,31 +302,39 @@ function buttonsOf(player) {
   const move = (/** @type {import('./keys.js').Move['to']} */ to) => () => player.move({ grain: 'chosen', to });
   const some = computed(() => track.value.some.value);
   const toggle = button({
-    shape: 'play',
-    label: () => 'Play',
+    shape: () => (playing.value ? 'pause' : 'play'),
+    label: () => (playing.value ? 'Pause' : 'Play'),
     key: 'Space',
     act: () => player.toggle(),
     enabled: some,
-  });
-  effect(() => {
-    toggle.setAttribute('aria-label', playing.value ? 'Pause' : 'Play');
-    toggle.replaceChildren(icon(playing.value ? 'pause' : 'play'));
   });
   const last = () => (name() === 'level' ? 'All levels' : `Last ${name()}`);
   return h(
     'div',
     { class: 'levels-buttons', role: 'group', 'aria-label': 'Step along the timeline' },
-    button({ shape: 'first', label: () => `First ${name()}`, key: 'Home', act: move('first'), enabled: notFirst }),
-    button({ shape: 'back', label: () => `${named(name())} back`, key: 'Page up', act: move(-1), enabled: notFirst }),
+    button({
+      shape: () => 'first',
+      label: () => `First ${name()}`,
+      key: 'Home',
+      act: move('first'),
+      enabled: notFirst,
+    }),
+    button({
+      shape: () => 'back',
+      label: () => `${named(name())} back`,
+      key: 'Page up',
+      act: move(-1),
+      enabled: notFirst,
+    }),
     toggle,
     button({
-      shape: 'forward',
+      shape: () => 'forward',
       label: () => `${named(name())} forward`,
       key: 'Page down',
       act: move(1),
       enabled: notLast,
     }),
-    button({ shape: 'last', label: last, key: 'End', act: move('last'), enabled: notLast }),
+    button({ shape: () => 'last', label: last, key: 'End', act: move('last'), enabled: notLast }),
   );
 }
 
@@ -335,7 +343,7 @@ const named = (name) => name[0].toUpperCase() + name.slice(1);
 
 /**
  * @param {object} options
- * @param {import('../icons.js').IconName} options.shape
+ * @param {() => import('../icons.js').IconName} options.shape
  * @param {() => string} options.label
  * @param {string} options.key
  * @param {() => void} options.act
@@ -345,9 +353,14 @@ function button({ shape, label, key, act, enabled }) {
   const press = () => {
     if (enabled.peek()) act();
   };
-  const element = h('button', { type: 'button', class: 'button plain square', on: { click: press } }, icon(shape));
-  effect(() => element.setAttribute('aria-label', label()));
-  effect(() => element.setAttribute('aria-disabled', String(!enabled.value)));
+  const element = h('button', {
+    type: 'button',
+    class: 'button plain square',
+    'aria-label': label,
+    'aria-disabled': () => String(!enabled.value),
+    on: { click: press },
+  });
+  live(element, () => fill(element, icon(shape())));
   explain(element, () => ({ title: element.getAttribute('aria-label') ?? '', text: `Key ${key}` }), { side: 'above' });
   return element;
 }

@@ -1,6 +1,6 @@
 /** The report panel: the quality figures, the timing, and the distribution of the nearest distances. */
 import { computed, effect } from '@preact/signals-core';
-import { bindText, fill, h } from '../dom.js';
+import { fill, h } from '../dom.js';
 import { explain } from '../explain.js';
 import { withCounts } from '../format.js';
 import { createHistogram } from './histogram.js';
@@ -43,22 +43,14 @@ export function mountReport(body, engine, description) {
       list.map((text) => h('li', null, withCounts(text))),
     );
   });
-  const whose = h('p', { class: 'quiet whose' });
-  bindText(whose, () => whoseFigures(engine));
-  effect(() => {
-    whose.hidden = report.value === null || whoseFigures(engine) === '';
-  });
-  const waiting = h('p', { class: 'quiet waiting' });
-  bindText(waiting, () =>
+  const isWhoseHidden = () => report.value === null || whoseFigures(engine) === '';
+  const whose = h('p', { class: 'quiet whose', hidden: isWhoseHidden }, () => whoseFigures(engine));
+  const waiting = h('p', { class: 'quiet waiting', hidden: () => report.value !== null }, () =>
     engine.empty.value
       ? 'Nothing to measure: there is no surface inside the box.'
       : 'The figures appear when a run is done.',
   );
-  effect(() => {
-    waiting.hidden = report.value !== null;
-  });
-  const drawn = h('button', { type: 'button', class: 'term' });
-  bindText(drawn, () => DRAWN[engine.backend.value]);
+  const drawn = h('button', { type: 'button', class: 'term' }, () => DRAWN[engine.backend.value]);
   explain(drawn, () => ({ title: 'Graphics adapter', text: engine.adapter.peek() || 'Not named by the browser.' }), {
     tap: true,
     side: 'left',

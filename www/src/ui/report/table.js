@@ -1,6 +1,6 @@
 /** Shows the report's rows as a table. Every label has an explanation of its figure. */
 import { effect } from '@preact/signals-core';
-import { bindText, h } from '../dom.js';
+import { h } from '../dom.js';
 import { explain } from '../explain.js';
 import { listOf } from './places.js';
 import { compare, figuresOf, groupRows, headingsOf, isTold, writeFigure, writeRange } from './rows.js';
@@ -22,33 +22,21 @@ export function createTable(report, rows, parts) {
   const table = h(
     'table',
     { class: 'figures', 'aria-label': 'Figures of the run' },
-    groups.map(([group, members], i) => {
-      const body = h(
+    groups.map(([group, members], i) =>
+      h(
         'tbody',
-        null,
+        { hidden: () => !members.some((row) => isTold(report.value, row)) },
         h(
           'tr',
           { class: 'group' },
           h('th', { scope: 'rowgroup' }, group),
-          [0, 1].map((column) => {
-            const heading = h('td');
-            if (i === headed) bindText(heading, () => headingsOf(report.value)[column]);
-            return heading;
-          }),
+          [0, 1].map((column) => h('td', null, i === headed && (() => headingsOf(report.value)[column]))),
         ),
         members.map((row) => createRow(report, row, parts)),
-      );
-      effect(() => {
-        body.hidden = !members.some((row) => isTold(report.value, row));
-      });
-      return body;
-    }),
+      ),
+    ),
   );
-  const section = h('div', { class: 'section' }, table);
-  effect(() => {
-    section.hidden = report.value === null;
-  });
-  return section;
+  return h('div', { class: 'section', hidden: () => report.value === null }, table);
 }
 
 /** @param {ReportRow} row */

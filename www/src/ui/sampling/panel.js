@@ -1,6 +1,6 @@
 /** The sampling panel: the kind of sampling, the actions, the progress, and the settings that the core describes. */
-import { computed, effect } from '@preact/signals-core';
-import { fill, h, once, uniqueId } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { fill, h, live, once, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { plural } from '../format.js';
 import { createSetting } from './setting.js';
@@ -44,12 +44,10 @@ function createTrack({ busy, reveal, progress, loading }) {
     'aria-label': 'Sampling',
     'aria-valuemin': 0,
     'aria-valuemax': 100,
+    'aria-valuenow': () => Math.round(fraction.value * 100),
+    data: { busy: () => growing.value },
   });
-  effect(() => {
-    track.style.setProperty('--fraction', String(fraction.value));
-    track.dataset.busy = String(growing.value);
-    track.setAttribute('aria-valuenow', String(Math.round(fraction.value * 100)));
-  });
+  live(track, () => track.style.setProperty('--fraction', String(fraction.value)));
   return track;
 }
 
@@ -98,6 +96,7 @@ function action(label, help, act, enabled, kind = '') {
     {
       type: 'button',
       class: `button ${kind}`,
+      'aria-disabled': () => (enabled.value ? null : 'true'),
       on: {
         click: () => {
           if (enabled.peek()) press();
@@ -106,10 +105,6 @@ function action(label, help, act, enabled, kind = '') {
     },
     label,
   );
-  effect(() => {
-    if (enabled.value) button.removeAttribute('aria-disabled');
-    else button.setAttribute('aria-disabled', 'true');
-  });
   explain(button, () => ({ text: help }), { side: 'above' });
   return button;
 }
@@ -128,7 +123,8 @@ function createAdvanced(engine, all, advanced, create) {
     { class: 'settings advanced', id, role: 'group', 'aria-label': 'Advanced settings', hidden: true },
     advanced.map(create),
   );
-  const changed = h('span', { class: 'unit' });
+  const count = computed(() => countChanged(advanced, all, engine.state.value.settings));
+  const changed = h('span', { class: 'unit', hidden: () => count.value === 0 }, () => `${count.value} changed`);
   const button = h(
     'button',
     {
@@ -146,11 +142,6 @@ function createAdvanced(engine, all, advanced, create) {
     'Advanced',
     changed,
   );
-  const count = computed(() => countChanged(advanced, all, engine.state.value.settings));
-  effect(() => {
-    changed.hidden = count.value === 0;
-    changed.textContent = `${count.value} changed`;
-  });
   explain(
     button,
     () => ({

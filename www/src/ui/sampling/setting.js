@@ -1,6 +1,6 @@
 /** Creates the control of one setting from the core's description. */
-import { computed, effect } from '@preact/signals-core';
-import { h, uniqueId } from '../dom.js';
+import { computed } from '@preact/signals-core';
+import { h, live, uniqueId } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatCount, formatSignificant } from '../format.js';
 import { wantsSlider } from '../scale.js';
@@ -25,17 +25,18 @@ export function createSetting(engine, all, info) {
     info.unit ? h('span', { class: 'unit' }, ` ${info.unit}`) : null,
   );
   const control = info.kind === 'choice' ? createChoice(engine, info, value) : createNumber(engine, info, value);
-  const element = h('div', { class: 'setting', data: { setting: info.name, kind: kindOf(info) } }, label, control);
+  const holds = computed(() => isShown(info, all, engine.state.value.settings));
+  const element = h(
+    'div',
+    { class: 'setting', hidden: () => !holds.value, data: { setting: info.name, kind: kindOf(info) } },
+    label,
+    control,
+  );
   const help = () => ({ title: info.label, text: info.help });
   // The popover is above, because below it would cover the next row.
   explain(element, help, { side: 'above' });
   // Touch has no hover, so a tap on the label shows the explanation.
   explain(label, help, { tap: true, side: 'above' });
-
-  const holds = computed(() => isShown(info, all, engine.state.value.settings));
-  effect(() => {
-    element.hidden = !holds.value;
-  });
   return element;
 }
 
@@ -55,7 +56,7 @@ function createChoice(engine, info, value) {
       choices: info.choices ?? [],
       change: (next) => engine.setSetting(info.name, next),
     });
-    effect(() => segmented.set(String(value.value)));
+    live(segmented.element, () => segmented.set(String(value.value)));
     return segmented.element;
   }
   const select = h(
@@ -68,7 +69,7 @@ function createChoice(engine, info, value) {
     },
     (info.choices ?? []).map((choice) => h('option', { value: choice.value }, choice.label)),
   );
-  effect(() => {
+  live(select, () => {
     select.value = String(value.value);
   });
   return select;
@@ -92,6 +93,7 @@ function createNumber(engine, info, value) {
     change: (now, live) => engine.setSetting(info.name, now, { live }),
     reset: () => engine.resetSetting(info.name),
   });
-  effect(() => slider.set(Number(value.value)));
-  return h('div', { class: 'setting-line' }, wantsSlider(info) ? slider.range : null, slider.box);
+  const line = h('div', { class: 'setting-line' }, wantsSlider(info) ? slider.range : null, slider.box);
+  live(line, () => slider.set(Number(value.value)));
+  return line;
 }

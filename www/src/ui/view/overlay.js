@@ -1,7 +1,7 @@
 /** Shows the caption, the hint and the empty state on the picture, and hides the poster. */
 import { computed, effect } from '@preact/signals-core';
 import { enlarge } from '../box.js';
-import { bindText, fill, h } from '../dom.js';
+import { fill, h } from '../dom.js';
 import { captionOf, loadingOf, revealOf } from './caption.js';
 import { NO_MESH, wordsOf } from './mesh-words.js';
 
@@ -39,14 +39,12 @@ export function mountOverlay(view, engine, { stage, poster, start, told }) {
           }),
   );
   // The field panel announces the loading.
-  const line = h('span');
-  const detail = h('span', { class: 'detail' });
-  const joined = h('span', { class: 'detail joined' });
-  caption.append(line, detail, joined);
-  bindText(line, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value));
   const mesh = computed(() => (told.value ? '' : meshOf(engine)));
-  bindText(detail, () => (engine.loading.value ? '' : (told.value?.text ?? '')));
-  bindText(joined, () => (engine.loading.value ? '' : mesh.value));
+  caption.append(
+    h('span', null, () => (engine.loading.value ? loadingOf(engine.loading.value) : text.value)),
+    h('span', { class: 'detail' }, () => (engine.loading.value ? '' : told.value?.text)),
+    h('span', { class: 'detail joined' }, () => (engine.loading.value ? '' : mesh.value)),
+  );
   announce(
     spoken,
     computed(() => [text.value, told.value?.text, mesh.value].filter(Boolean).join('. ')),

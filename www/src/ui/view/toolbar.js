@@ -1,8 +1,8 @@
 /** The toolbar beside the picture: zoom, fit, view options, link, picture, export. */
 
-import { computed, effect } from '@preact/signals-core';
+import { computed } from '@preact/signals-core';
 import { DISC_SIZE } from '../../engine/types.js';
-import { h } from '../dom.js';
+import { h, live } from '../dom.js';
 import { explain } from '../explain.js';
 import { formatShare } from '../format.js';
 import { icon } from '../icons.js';
@@ -84,11 +84,12 @@ export function createToolbar(engine, { hide, shortcuts, picture, motion, toast 
  * @param {string} label
  * @param {string} help
  * @param {() => void} [act]
+ * @param {import('../dom.js').Props} [props]
  */
-function tool(name, label, help, act) {
+function tool(name, label, help, act, props = {}) {
   const button = h(
     'button',
-    { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {} },
+    { type: 'button', class: 'button square tool', 'aria-label': label, on: act ? { click: act } : {}, ...props },
     icon(name),
   );
   explain(button, () => ({ title: label, text: help }), { side: 'left' });
@@ -98,14 +99,11 @@ function tool(name, label, help, act) {
 /** Creates the switch that shows the points of a model. @param {Engine} engine */
 function pointsToggle(engine) {
   const shown = computed(() => engine.state.value.view.points);
-  const button = tool('points', 'Show points', 'The points that the surface goes through, as dots.', () =>
-    engine.setView({ points: !shown.peek() }),
-  );
-  effect(() => {
-    button.hidden = engine.field.value?.kind !== 'points';
+  const act = () => engine.setView({ points: !shown.peek() });
+  return tool('points', 'Show points', 'The points that the surface goes through, as dots.', act, {
+    hidden: () => engine.field.value?.kind !== 'points',
+    'aria-pressed': () => String(shown.value),
   });
-  effect(() => button.setAttribute('aria-pressed', String(shown.value)));
-  return button;
 }
 
 /** @param {string} text */
@@ -135,10 +133,15 @@ function turning(engine, motion) {
   ];
   const turntable = h(
     'button',
-    { type: 'button', class: 'button square', 'aria-label': 'Turntable', on: { click: motion.toggleTurning } },
+    {
+      type: 'button',
+      class: 'button square',
+      'aria-label': 'Turntable',
+      'aria-pressed': () => String(motion.turning.value),
+      on: { click: motion.toggleTurning },
+    },
     icon('turntable'),
   );
-  effect(() => turntable.setAttribute('aria-pressed', String(motion.turning.value)));
   return h(
     'div',
     { class: 'menu-line', role: 'group', 'aria-label': 'Turn' },
@@ -175,8 +178,8 @@ function discSize(engine) {
     reset: () => engine.setView({ size: DISC_SIZE.initial }),
     number: false,
   });
-  effect(() => slider.set(size.value));
-  return h('div', { class: 'menu-line' }, h('span', null, 'Disc size'), slider.range);
+  live(slider.range, () => slider.set(size.value));
+  return slider.range;
 }
 
 /**
@@ -186,15 +189,18 @@ function discSize(engine) {
  * @param {string} name
  * @param {K} key
  * @param {[import('../../engine/types.js').ViewState[K], string][]} values
+ * @param {() => boolean} [hidden]
  */
-function choices(engine, name, key, values) {
+function choices(engine, name, key, values, hidden) {
   const chosen = computed(() => engine.state.value.view[key]);
-  const buttons = values.map(([value, label]) => {
-    const button = press(label, () => engine.setView({ [key]: value }));
-    effect(() => button.setAttribute('aria-pressed', String(chosen.value === value)));
-    return button;
-  });
-  return line(name, buttons);
+  const buttons = values.map(([value, label]) =>
+    press(
+      label,
+      () => chosen.value === value,
+      () => engine.setView({ [key]: value }),
+    ),
+  );
+  return line(name, buttons, hidden);
 }
 
 /**
@@ -202,60 +208,71 @@ function choices(engine, name, key, values) {
  * @param {Engine} engine
  * @param {string} name
  * @param {['edges' | 'marks' | 'ghost' | 'axes' | 'box' | 'bar', string, string][]} parts  key, label, explanation
+ * @param {() => boolean} [hidden]
  */
-function switches(engine, name, parts) {
+function switches(engine, name, parts, hidden) {
   const buttons = parts.map(([key, label, text]) => {
     const on = computed(() => engine.state.value.view[key]);
-    const button = press(label, () => engine.setView({ [key]: !on.peek() }));
+    const button = press(
+      label,
+      () => on.value,
+      () => engine.setView({ [key]: !on.peek() }),
+    );
     explain(button, () => ({ title: label, text }), { side: 'left' });
-    effect(() => button.setAttribute('aria-pressed', String(on.value)));
     return button;
   });
-  return line(name, buttons);
+  return line(name, buttons, hidden);
 }
 
-/** @param {string} label @param {() => void} act */
-const press = (label, act) => h('button', { type: 'button', class: 'button small', on: { click: act } }, label);
+/** @param {string} label @param {() => boolean} isOn @param {() => void} act */
+const press = (label, isOn, act) =>
+  h(
+    'button',
+    { type: 'button', class: 'button small', 'aria-pressed': () => String(isOn()), on: { click: act } },
+    label,
+  );
 
-/** @param {string} name @param {HTMLElement[]} buttons */
-const line = (name, buttons) =>
+/** @param {string} name @param {HTMLElement[]} buttons @param {() => boolean} [hidden] */
+const line = (name, buttons, hidden) =>
   h(
     'div',
-    { class: 'menu-line', role: 'group', 'aria-label': name },
+    { class: 'menu-line', role: 'group', 'aria-label': name, hidden },
     h('span', null, name),
     h('span', { class: 'pad' }, buttons),
   );
 
 /** Creates the choice of the way of drawing, with what belongs to each way. @param {Engine} engine */
 function drawing(engine) {
-  const draw = computed(() => engine.state.value.view.draw);
-  const discs = discSize(engine);
-  const faces = choices(engine, 'Faces', 'faces', [
-    ['smooth', 'Smooth'],
-    ['flat', 'Flat'],
-  ]);
-  const shown = switches(engine, 'Show', [
+  const isMesh = computed(() => engine.state.value.view.draw === 'mesh');
+  const noDiscs = () => isMesh.value;
+  const noMesh = () => !isMesh.value;
+  const defects =
+    'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.';
+  const beneath = 'The surface beneath the discs, faintly. Joining the particles takes a moment.';
+  /** @type {Parameters<typeof switches>[2]} */
+  const shown = [
     ['edges', 'Edges', 'The edges of the faces.'],
-    [
-      'marks',
-      'Defects',
-      'Dots on the vertices that do not have six neighbours, in the colours of “Neighbours”: blue for five, orange for seven.',
-    ],
-  ]);
-  const beneath = switches(engine, 'Beneath', [
-    ['ghost', 'Surface', 'The surface beneath the discs, faintly. Joining the particles takes a moment.'],
-  ]);
-  effect(() => {
-    discs.hidden = draw.value !== 'discs';
-    beneath.hidden = draw.value !== 'discs';
-    faces.hidden = draw.value !== 'mesh';
-    shown.hidden = draw.value !== 'mesh';
-  });
-  const ways = choices(engine, 'Draw', 'draw', [
-    ['discs', 'Discs'],
-    ['mesh', 'Mesh'],
-  ]);
-  return [ways, discs, beneath, faces, shown];
+    ['marks', 'Defects', defects],
+  ];
+  return [
+    choices(engine, 'Draw', 'draw', [
+      ['discs', 'Discs'],
+      ['mesh', 'Mesh'],
+    ]),
+    h('div', { class: 'menu-line', hidden: noDiscs }, h('span', null, 'Disc size'), discSize(engine)),
+    switches(engine, 'Beneath', [['ghost', 'Surface', beneath]], noDiscs),
+    choices(
+      engine,
+      'Faces',
+      'faces',
+      [
+        ['smooth', 'Smooth'],
+        ['flat', 'Flat'],
+      ],
+      noMesh,
+    ),
+    switches(engine, 'Show', shown, noMesh),
+  ];
 }
 
 /** @param {Engine} engine */

@@ -1,6 +1,6 @@
 /** Measures the distance of two particles: rings on them, a line between them, and a card with the figures. */
-import { computed, effect, signal } from '@preact/signals-core';
-import { bindText, h } from '../../dom.js';
+import { computed, signal } from '@preact/signals-core';
+import { h } from '../../dom.js';
 import { formatCount, formatSignificant } from '../../format.js';
 import { separation } from '../../space.js';
 
@@ -54,8 +54,7 @@ export function measureMark(engine, host) {
 /** Creates the card that says what to do and what was measured. @param {Engine} engine */
 export function createMeasureCard(engine) {
   const chosen = computed(() => present(engine));
-  const text = h('span', { role: 'status' });
-  bindText(text, () => {
+  const text = h('span', { role: 'status' }, () => {
     if (engine.state.value.view.measured === null) return '';
     const pair = chosen.value;
     if (pair.length === 0) return 'Press a particle, or turn it under the cross and press Enter';
@@ -69,9 +68,5 @@ export function createMeasureCard(engine) {
     { type: 'button', class: 'button small', on: { click: () => engine.setView({ measured: null }) } },
     'Done',
   );
-  const card = h('div', { class: 'measure-card' }, text, done);
-  effect(() => {
-    card.hidden = engine.state.value.view.measured === null;
-  });
-  return card;
+  return h('div', { class: 'measure-card', hidden: () => engine.state.value.view.measured === null }, text, done);
 }

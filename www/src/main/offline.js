@@ -5,7 +5,7 @@
 import { effect } from '@preact/signals-core';
 
 /** @typedef {import('../engine/types.js').Engine} Engine */
-/** @typedef {import('./toasts.js').Toast} Toast */
+/** @typedef {import('../ui/toasts.js').Toast} Toast */
 
 const SCRIPT = './service-worker.js';
 /** Longest time for which an idle moment is awaited. */
@@ -14,7 +14,7 @@ const PATIENCE_MS = 10_000;
 const ASK_MS = 3_600_000;
 
 /** @param {Engine} engine @param {Toast} toast */
-export function mountOffline(engine, toast) {
+export function keepOffline(engine, toast) {
   // The development server has its files from the sources.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const stop = effect(() => {

@@ -1,17 +1,15 @@
 /**
- * Installs `window.marchingParticles`, which drives the page from the console or from a test. See www/CONSOLE.md.
+ * Makes `window.marchingParticles`, which drives the page from the console or from a test. See www/CONSOLE.md.
  *
  * @module
  */
 import { effect } from '@preact/signals-core';
-
-/** Delay between a motion of the camera and its entry in the state. */
-export const CAMERA_MS = 120;
+import { createEngine } from '../engine/index.js';
 
 /**
- * @typedef {import('./types.js').Engine} Engine
- * @typedef {import('./types.js').Report} Report
- * @typedef {import('./types.js').State} State
+ * @typedef {import('../engine/types.js').Engine} Engine
+ * @typedef {import('../engine/types.js').Report} Report
+ * @typedef {import('../engine/types.js').State} State
  */
 /**
  * @typedef {object} Console
@@ -27,8 +25,10 @@ export const CAMERA_MS = 120;
  * @property {() => Particles} particles
  * @property {() => object} status
  * @property {(width: number, height: number, transparent?: boolean) => Promise<{width: number, height: number, pixels: Uint8Array}>} pixels
+ * @property {() => Promise<string>} link  the address that restores the present state
+ * @property {(options: Parameters<typeof createEngine>[0]) => Engine} create  another engine, in another element
  * @property {Engine} engine
- * @property {Debug} debug
+ * @property {Omit<Engine['debug'], 'provoke' | 'isOff'> & Record<'panic' | 'overflow' | 'hang', () => void>} debug
  */
 /**
  * Copies of the columns: index i of each belongs to particle i.
@@ -48,42 +48,16 @@ export const CAMERA_MS = 120;
  * @property {Float32Array | null} curvature  two per particle, only while they are shown
  */
 /**
- * Faults that the tests provoke, and what they wait for.
- * @typedef {object} Debug
- * @property {() => void} panic  traps the core in its worker
- * @property {() => void} overflow  overflows the worker's stack
- * @property {() => void} hang  sends the worker into an endless loop
- * @property {(reason?: string) => void} loseDevice
- * @property {(id: number) => void} stale  delivers a message of another run to the page
- * @property {() => Promise<void>} still  resolves once the picture stands still and the state has the camera
- * @property {() => {frames: number, uploads: number, opened: number, restarts: number, stale: number}} counts
- */
-
-/**
- * Resolves once the picture stands still and the camera is written to the state, which it is a little later.
- * @param {import('./view/viewer.js').Viewer} viewer @returns {Promise<void>}
- */
-const still = (viewer) =>
-  new Promise((resolve) => {
-    const look = () => {
-      if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(look);
-      else setTimeout(resolve, CAMERA_MS + 10);
-    };
-    // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
-    setTimeout(look);
-  });
-
-/**
  * Resolves with the report once `isOver` holds, or no sampler is there or coming. `isOver` reads signals.
- * @param {Pick<Parts, 'engine' | 'sampling'>} parts @param {() => boolean} isOver
+ * @param {Engine} engine @param {() => boolean} isOver
  */
-const once = ({ engine, sampling }, isOver) =>
+const once = (engine, isOver) =>
   new Promise((/** @type {(report: Report | null) => void} */ resolve) => {
     /** @type {() => void} */
     let stop = () => {};
     stop = effect(() => {
       // The progress is written anew when the sampler ends. The notice about it may have been dismissed since.
-      const isOff = engine.progress.value && ['failed', 'safe'].includes(sampling.supervisor.state);
+      const isOff = engine.progress.value && engine.debug.isOff();
       if (!isOff && !isOver()) return;
       resolve(engine.report.peek());
       queueMicrotask(() => stop());
@@ -97,16 +71,15 @@ const atRest = (engine) =>
   !engine.busy.value &&
   engine.progress.value.phase === 'done';
 
-/** Resolves with the report once the sampler is at rest and the picture is up to date. @param {Parts} parts */
-async function settled(parts) {
-  const { engine } = parts;
+/** Resolves with the report once the sampler is at rest and the picture is up to date. @param {Engine} engine */
+async function settled(engine) {
   const drawable = () => engine.reveal.value === null && engine.backend.value !== 'starting';
-  const report = await once(parts, () => atRest(engine) && drawable());
-  await still(parts.viewer);
+  const report = await once(engine, () => atRest(engine) && drawable());
+  await engine.debug.still();
   return report;
 }
 
-/** @param {import('./columns.js').Columns} columns @returns {Particles} */
+/** @param {import('../engine/columns.js').Columns} columns @returns {Particles} */
 function copyOf(columns) {
   const count = columns.stale ? 0 : columns.count;
   return {
@@ -126,15 +99,15 @@ function copyOf(columns) {
   };
 }
 
-/** @param {Engine} engine @param {import('./view/viewer.js').Viewer} viewer */
-const statusOf = (engine, viewer) => ({
+/** @param {Engine} engine */
+const statusOf = (engine) => ({
   backend: engine.backend.value,
   adapter: engine.adapter.value,
   busy: engine.busy.value,
   progress: { ...engine.progress.value },
   partial: engine.partial.value,
   empty: engine.empty.value,
-  dimmed: viewer.dimmer.on,
+  dimmed: engine.debug.counts().dimmed,
   fieldError: engine.fieldError.value,
   loading: engine.loading.value,
   loadingError: engine.loadingError.value,
@@ -145,82 +118,52 @@ const statusOf = (engine, viewer) => ({
   notice: engine.notice.value && { ...engine.notice.value, action: engine.notice.value.action?.label },
 });
 
-/** @param {Parts} parts @returns {Debug} */
-function debugOf({ engine, viewer, sampling }) {
-  const provoke = (/** @type {'panic' | 'overflow' | 'hang'} */ fault) =>
-    sampling.supervisor.post({ type: 'provoke', fault });
-  return {
-    panic: () => provoke('panic'),
-    overflow: () => provoke('overflow'),
-    hang: () => provoke('hang'),
-    loseDevice(reason = 'unknown') {
-      const { device } = viewer.keeper;
-      if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');
-      else device?.renderer.destroy();
-    },
-    stale(id) {
-      sampling.receive({
-        type: 'progress',
-        id,
-        progress: { ...engine.progress.value, phase: 'generation', particles: 123_456_789 },
-      });
-    },
-    still: () => still(viewer),
-    counts: () => ({
-      frames: viewer.frames.drawn,
-      uploads: viewer.upload.writes,
-      opened: viewer.keeper.opened,
-      restarts: sampling.supervisor.restarts.length,
-      stale: sampling.stale,
-    }),
-  };
-}
-
-/**
- * The parts of the engine that the console uses.
- * @typedef {object} Parts
- * @property {Engine} engine
- * @property {import('./view/viewer.js').Viewer} viewer
- * @property {import('./sampling/client.js').SamplingClient} sampling
- * @property {import('./columns.js').Columns} columns
- * @property {(patch: Record<string, unknown>) => string[]} applyState
- */
-
-/** @param {Parts} parts */
-export function installConsole(parts) {
-  const { engine, viewer, columns, applyState } = parts;
+/** @param {Engine} engine @returns {Console} */
+export function createConsole(engine) {
   /** @param {() => void} act */
   const after = (act) => {
     act();
-    return settled(parts);
+    return settled(engine);
   };
-  /** @type {Console} */
-  const face = {
+  const { debug } = engine;
+  return {
     get version() {
       return engine.description.value?.version ?? '';
     },
-    ready: settled(parts),
+    ready: settled(engine),
     get state() {
       return structuredClone(engine.state.value);
     },
     set: (patch) =>
       after(() => {
-        const reset = applyState({ ...patch });
+        const reset = engine.set({ ...patch });
         if (reset.length) console.warn(`Reset: ${reset.join(', ')}`);
       }),
     run: () => after(() => engine.run()),
     stop() {
       engine.stop();
-      return once(parts, () => atRest(engine));
+      return once(engine, () => atRest(engine));
     },
     open: (file) => after(() => void engine.openFile(file)),
     relax: (steps = 1) => after(() => engine.relax(steps)),
+    link: async () => location.origin + location.pathname + (await engine.link()),
     report: () => structuredClone(engine.report.value),
-    particles: () => copyOf(columns),
-    status: () => statusOf(engine, viewer),
-    pixels: (width, height, transparent = false) => viewer.pixels(width, height, transparent),
+    particles: () => copyOf(engine.columns),
+    status: () => statusOf(engine),
+    async pixels(width, height, transparent = false) {
+      const picture = await engine.picture({ width, height, transparent });
+      return { width: picture.width, height: picture.height, pixels: new Uint8Array(picture.data.buffer) };
+    },
+    create: (options) => createEngine(options),
     engine,
-    debug: debugOf(parts),
+    debug: {
+      panic: () => debug.provoke('panic'),
+      overflow: () => debug.provoke('overflow'),
+      hang: () => debug.provoke('hang'),
+      loseDevice: debug.loseDevice,
+      stale: debug.stale,
+      still: debug.still,
+      counts: debug.counts,
+    },
   };
-  /** @type {any} */ (window).marchingParticles = face;
 }

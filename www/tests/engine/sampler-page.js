@@ -1,7 +1,7 @@
-/** A sampling client without a worker: the tests speak for it. @module */
+/** A sampler without a worker: the tests speak for it. @module */
 import { vi } from 'vitest';
 import { Columns } from '../../src/engine/columns.js';
-import { SamplingClient } from '../../src/engine/sampling/client.js';
+import { Sampler } from '../../src/engine/sampling/sampler.js';
 import { createStore } from '../../src/engine/store.js';
 import { description } from './description.js';
 
@@ -87,12 +87,12 @@ export const reportMessage = (/** @type {number} */ id, /** @type {number} */ n)
 
 /**
  * `say` posts a message of the worker, `accept` its answer to a field, `complete` all that ends a run of n particles.
- * @returns {{client: SamplingClient, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
+ * @returns {{sampler: Sampler, store: ReturnType<typeof createStore>, columns: Columns, say: (message: any) => void, accept: (id: number, formula?: string) => void, complete: (id: number, n: number) => void, jobs: () => any[]}}
  */
 export function page() {
   const store = createStore();
   const columns = new Columns();
-  const client = new SamplingClient({
+  const sampler = new Sampler({
     store,
     columns,
     picture: {
@@ -123,12 +123,12 @@ export function page() {
     onAsk: (predicted) => asked.push(predicted),
     clock: { now: () => Date.now(), setTimeout: (f, ms) => setTimeout(f, ms), clearTimeout },
   });
-  client.start();
+  sampler.start();
   const say = (/** @type {any} */ message) => workers.at(-1).onmessage?.({ data: message });
   say({ type: 'ready', description });
   const accept = (/** @type {number} */ id, formula = 'x') => say({ type: 'field', id, answer: answer(formula) });
   return {
-    client,
+    sampler,
     store,
     columns,
     say,

@@ -1,7 +1,7 @@
 import { effect } from '@preact/signals-core';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { begin, columnsMessage, done, page, progress, reportMessage, request, told, workers } from './client-page.js';
 import { description } from './description.js';
+import { begin, columnsMessage, done, page, progress, reportMessage, request, told, workers } from './sampler-page.js';
 
 beforeEach(begin);
 afterEach(() => vi.useRealTimers());
@@ -13,12 +13,12 @@ describe('a formula with a fault', () => {
   };
 
   test('leaves the last surface, dimmed', () => {
-    const { client, store, columns, say, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
     told.length = 0;
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     expect(columns.count).toBe(7);
     expect(store.field.value?.formula).toBe('x');
@@ -28,26 +28,26 @@ describe('a formula with a fault', () => {
   });
 
   test('that is just an empty editor dims nothing', () => {
-    const { client, say } = page();
-    client.sample(request(''));
+    const { sampler, say } = page();
+    sampler.sample(request(''));
     told.length = 0;
     say({ type: 'field', id: 1, answer: { ok: false, error: { ...fault.error, kind: 'empty' } } });
     expect(told).toEqual(['clear']);
   });
 
   test('that is the first of all is the end of it', () => {
-    const { client, store, say } = page();
-    client.sample(request('x+'));
+    const { sampler, store, say } = page();
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 1, answer: fault });
     expect(store.busy.value).toBe(false);
     expect(store.progress.value.phase).toBe('done');
   });
 
   test('typed during a run lets that run go on, dimmed, with its figures', () => {
-    const { client, store, columns, say, accept, jobs } = page();
-    client.sample(request('x', { fit: true }));
+    const { sampler, store, columns, say, accept, jobs } = page();
+    sampler.sample(request('x', { fit: true }));
     accept(1);
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     // What comes before the answer is the run's too.
     say(columnsMessage(1, 3));
     say({ type: 'field', id: 2, answer: fault });
@@ -65,36 +65,36 @@ describe('a formula with a fault', () => {
   });
 
   test('dims also what comes to the page only after it', () => {
-    const { client, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     say(columnsMessage(1, 7));
     expect(told.at(-2)).toBe('dim');
   });
 
   test('typed during a measurement lets the figures come', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     expect(store.busy.value).toBe(false);
     say(reportMessage(1, 7));
     expect(store.report.value?.count).toBe(7);
     // And the surface that stayed can be relaxed on.
-    client.relax(1);
+    sampler.relax(1);
     expect(workers[0].posted.at(-1)).toMatchObject({ job: { kind: 'relax', of: 1 } });
   });
 
   test('that was followed by another that is accepted is forgotten, answered or not', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
-    client.sample(request('x+'));
-    client.sample(request('y'));
+    const { sampler, store, say, accept } = page();
+    sampler.sample(request('x'));
+    sampler.sample(request('x+'));
+    sampler.sample(request('y'));
     accept(1);
     expect(store.busy.value).toBe(true);
     accept(3, 'y');
@@ -105,21 +105,21 @@ describe('a formula with a fault', () => {
   });
 
   test('taken back while the run before it is under way is no fault any more', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(3);
     expect(store.fieldError.value).toBe(null);
   });
 
   test('and the worker’s end in the middle of the run before it: that run is made again', () => {
-    const { client, say, accept, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, say, accept, jobs } = page();
+    sampler.sample(request('x'));
     accept(1);
-    client.sample(request('x+'));
+    sampler.sample(request('x+'));
     say({ type: 'field', id: 2, answer: fault });
     say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
     expect(jobs()).toMatchObject([{ field: { formula: 'x' } }]);
@@ -129,11 +129,11 @@ describe('a formula with a fault', () => {
 describe('the surface that stays', () => {
   test('because another would need too many particles, or is refused, gets the figures it has not had', () => {
     for (const outcome of ['ask', 'refused']) {
-      const { client, store, say, accept, jobs, complete } = page();
-      client.sample(request('x'));
+      const { sampler, store, say, accept, jobs, complete } = page();
+      sampler.sample(request('x'));
       accept(1);
       say(columnsMessage(1, 7));
-      client.sample(request('y'));
+      sampler.sample(request('y'));
       accept(2, 'y');
       say(done(2, outcome, 0, { progress: null }));
       expect(told.at(-1)).toBe('dim');
@@ -144,7 +144,7 @@ describe('the surface that stays', () => {
       expect(store.report.value?.count).toBe(9);
       expect(told.slice(told.lastIndexOf('dim'))).not.toContain('clear');
       // With its figures there it is left alone.
-      client.sample(request('z'));
+      sampler.sample(request('z'));
       accept(4, 'z');
       say(done(4, outcome, 0, { progress: null }));
       expect(jobs()).toHaveLength(4);
@@ -153,28 +153,28 @@ describe('the surface that stays', () => {
   });
 
   test('is made with the relaxation that another cut off', () => {
-    const { client, say, accept, jobs, complete } = page();
-    client.sample(request('x'));
+    const { sampler, say, accept, jobs, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    client.relax(1);
+    sampler.relax(1);
     say(columnsMessage(2, 7));
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(3, 'y');
     say(done(3, 'refused', 0, { progress: null }));
     expect(jobs().at(-1)).toMatchObject({ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 11 } });
   });
 
   test('is the one asked for again where it is asked for while it is being restored', () => {
-    const { client, store, say, accept, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept, jobs } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     say(done(2, 'ask', 0, { progress: null }));
     accept(3);
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     expect(jobs()).toHaveLength(4);
     accept(4);
     say(columnsMessage(4, 7));
@@ -185,20 +185,20 @@ describe('the surface that stays', () => {
 
   test('stays dimmed where its restoring is stopped at once, or the worker fails while it is idle', () => {
     for (const end of ['stop', 'crash']) {
-      const { client, say, accept } = page();
-      client.sample(request('x'));
+      const { sampler, say, accept } = page();
+      sampler.sample(request('x'));
       accept(1);
       say(columnsMessage(1, 7));
       if (end === 'crash') {
         say(done(1, 'complete', 7, { reportFollows: true }));
         say(reportMessage(1, 7));
       }
-      client.sample(request('y'));
+      sampler.sample(request('y'));
       accept(2, 'y');
       say(done(2, 'refused', 0, { progress: null }));
       if (end === 'stop') {
         accept(3);
-        client.stop();
+        sampler.stop();
         say(done(3, 'stopped', 0));
       } else {
         say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
@@ -209,19 +209,19 @@ describe('the surface that stays', () => {
 
   test('from a drag that a mistake broke off, or a stop, gets its figures', () => {
     for (const end of ['mistake', 'mistake meanwhile', 'stop']) {
-      const { client, say, accept, jobs } = page();
+      const { sampler, say, accept, jobs } = page();
       const ended = () => {
         say(columnsMessage(1, 7));
         say(done(1, 'complete', 7));
       };
-      client.sampleLive(request('x'), 3);
+      sampler.sampleLive(request('x'), 3);
       accept(1);
       if (end !== 'mistake meanwhile') ended();
       expect(jobs()).toHaveLength(1);
       if (end === 'stop') {
-        client.stop();
+        sampler.stop();
       } else {
-        client.sample(request('x+'));
+        sampler.sample(request('x+'));
         say({
           type: 'field',
           id: 2,
@@ -237,13 +237,13 @@ describe('the surface that stays', () => {
   });
 
   test('because the sampler fails on every other is dimmed and gets its figures', () => {
-    const { client, say, accept, jobs } = page();
+    const { sampler, say, accept, jobs } = page();
     const crash = { type: 'crashed', id: 1, message: 'unreachable', stack: '' };
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     say(crash);
     accept(3, 'y');
@@ -253,11 +253,11 @@ describe('the surface that stays', () => {
   });
 
   test('because the same was sampled anew and stopped at once is not dimmed', () => {
-    const { client, columns, say, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, columns, say, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(2);
     say(done(2, 'stopped', 0));
     expect(columns.count).toBe(7);
@@ -265,13 +265,13 @@ describe('the surface that stays', () => {
   });
 
   test('because the next was stopped before its first particle is whole, and dimmed', () => {
-    const { client, store, columns, say, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
-    client.stop();
+    sampler.stop();
     say(columnsMessage(2, 0));
     say(done(2, 'stopped', 0));
     expect(columns).toMatchObject({ count: 7, stale: false });
@@ -282,11 +282,11 @@ describe('the surface that stays', () => {
   });
 
   test('keeps its figures until there are particles of another', () => {
-    const { client, store, say, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     expect(store.report.value?.count).toBe(7);
     say(columnsMessage(2, 5));
@@ -298,8 +298,8 @@ describe('a worker that fails', () => {
   const crash = { type: 'crashed', id: 1, message: 'panicked at src/x.rs', stack: 'at f' };
 
   test('is replaced, and its run made again', () => {
-    const { client, store, say, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, jobs } = page();
+    sampler.sample(request('x'));
     const rests = /** @type {boolean[]} */ ([]);
     effect(() => void rests.push(!store.busy.value && store.progress.value.phase === 'done'));
     say(crash);
@@ -313,8 +313,8 @@ describe('a worker that fails', () => {
   });
 
   test('twice on the same input is not sent it a third time', () => {
-    const { client, store, say, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, jobs } = page();
+    sampler.sample(request('x'));
     say(crash);
     say(crash);
     expect(workers).toHaveLength(3);
@@ -323,13 +323,13 @@ describe('a worker that fails', () => {
     expect(store.busy.value).toBe(false);
     expect(store.progress.value.phase).toBe('done');
     expect(store.busy.value).toBe(false);
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     expect(jobs()).toHaveLength(1);
   });
 
   test('in the middle of a measurement owes the figures: that run is made again', () => {
-    const { client, store, say, accept, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept, jobs } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7, { reportFollows: true }));
@@ -339,8 +339,8 @@ describe('a worker that fails', () => {
   });
 
   test('by silence is replaced too', () => {
-    const { client, store, jobs } = page();
-    client.sample(request('x'));
+    const { sampler, store, jobs } = page();
+    sampler.sample(request('x'));
     vi.advanceTimersByTime(2500);
     expect(workers).toHaveLength(2);
     expect(jobs()).toHaveLength(1);
@@ -348,17 +348,17 @@ describe('a worker that fails', () => {
   });
 
   test('by silence while a file is written leaves nobody waiting for it', async () => {
-    const { client, say, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, say, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     complete(1, 7);
-    const file = client.meshFile('ply');
+    const file = sampler.client.meshFile('ply');
     // Nothing else is under way that the silence would break off.
     vi.advanceTimersByTime(2500);
     await expect(file).rejects.toThrow('does not hold');
     expect(workers).toHaveLength(2);
     // A file that came is waited for no longer.
-    const next = client.meshFile('ply');
+    const next = sampler.client.meshFile('ply');
     say({ type: 'ready', description });
     say({ type: 'file', request: 2, bytes: Uint8Array.of(1) });
     expect(await next).toEqual(Uint8Array.of(1));
@@ -367,19 +367,19 @@ describe('a worker that fails', () => {
   });
 
   test('four times in a minute leaves the page in safe mode, with its state, until a person asks', () => {
-    const { client, store, columns, say, jobs, accept } = page();
-    client.sample(request('kept'));
+    const { sampler, store, columns, say, jobs, accept } = page();
+    sampler.sample(request('kept'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     for (let k = 0; k < 4; k += 1) {
-      client.sample(request(`formula ${k}`));
+      sampler.sample(request(`formula ${k}`));
       say({ ...crash, id: 0 });
     }
     expect(store.notice.value?.id).toBe('safe-mode');
     expect(store.busy.value).toBe(false);
     expect(columns.count).toBe(7);
-    client.sample(request('later'));
+    sampler.sample(request('later'));
     expect(store.busy.value).toBe(false);
     store.notice.value?.action?.run();
     expect(store.notice.value).toBe(null);
@@ -387,33 +387,37 @@ describe('a worker that fails', () => {
   });
 
   test('after it, relaxing makes the whole run again with the steps added', () => {
-    const { client, say, jobs, accept, complete } = page();
-    client.sample(request('x'));
+    const { sampler, say, jobs, accept, complete } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say({ ...done(1, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 10, relax_steps: 10 }) });
-    client.relax(5);
+    sampler.relax(5);
     expect(jobs()[1]).toMatchObject({ kind: 'relax', of: 1, steps: 5 });
     say(columnsMessage(2, 7));
     say({ ...done(2, 'complete', 7), progress: progress(7, { phase: 'done', relax_step: 15, relax_steps: 15 }) });
-    client.relax(1);
+    sampler.relax(1);
     expect(jobs()[2]).toMatchObject({ kind: 'relax', of: 2, steps: 1 });
     say(crash);
     // The relaxation that was lost cannot be made again on its own: the run that ends with it is.
     expect(jobs()).toMatchObject([{ kind: 'sample', field: { formula: 'x' }, settings: { relax_steps: 16 } }]);
-    client.store.description.value = description;
-    expect(client.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
+    sampler.store.description.value = description;
+    expect(sampler.relaxed(5000).settings.relax_steps, 'no more than the core accepts').toBe(1000);
     accept(4);
     complete(4, 7);
     say(crash);
     expect(jobs()).toHaveLength(0);
-    client.relax(2);
+    sampler.relax(2);
     expect(jobs()[0]).toMatchObject({ kind: 'sample', field: { formula: 'whole' } });
   });
 
   test('to load says why, and tries again when asked', () => {
-    const { client, store } = page();
-    client.supervisor.receive({ type: 'failed', fault: 'missing', message: 'The sampler is not on the server.' });
+    const { sampler, store } = page();
+    sampler.client.supervisor.receive({
+      type: 'failed',
+      fault: 'missing',
+      message: 'The sampler is not on the server.',
+    });
     expect(store.notice.value).toMatchObject({ id: 'load', kind: 'error', text: 'The sampler is not on the server.' });
     store.notice.value?.action?.run();
     expect(workers).toHaveLength(2);

@@ -1,4 +1,6 @@
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { runningOf } from '../../src/engine/sampling/run-state.js';
+import { description } from './description.js';
 import {
   asked,
   begin,
@@ -10,8 +12,7 @@ import {
   request,
   told,
   workers,
-} from './client-page.js';
-import { description } from './description.js';
+} from './sampler-page.js';
 
 beforeEach(begin);
 afterEach(() => vi.useRealTimers());
@@ -35,9 +36,9 @@ describe('a model from points', () => {
   };
 
   test('goes to the worker with every job, so that a new worker has it too', () => {
-    const { client, store, say, jobs } = page();
-    client.solved = (key) => (key === 'bunny' ? solved : undefined);
-    client.sample({ ...request(''), field: { points: 'bunny', surface: 'bunny' } });
+    const { sampler, store, say, jobs } = page();
+    sampler.solved = (key) => (key === 'bunny' ? solved : undefined);
+    sampler.sample({ ...request(''), field: { points: 'bunny', surface: 'bunny' } });
     expect(jobs()[0].points).toBe(solved);
     say({ type: 'field', id: 1, answer });
     expect(store.field.value).toMatchObject({ kind: 'points', surface: 'bunny' });
@@ -45,36 +46,36 @@ describe('a model from points', () => {
     say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
     say({ type: 'ready', description });
     expect(jobs()[0].points).toBe(solved);
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     say({ type: 'field', id: 3, answer: { ...answer, kind: 'formula', model: null } });
     expect(store.model.value).toBe(null);
   });
 });
 
 test('the curvature is asked for while it is shown, of a new worker again', () => {
-  const { client, say } = page();
+  const { sampler, say } = page();
   const askedFor = () =>
     workers
       .at(-1)
       .posted.filter((/** @type {any} */ m) => m.type === 'curvature')
       .map((/** @type {any} */ m) => m.on);
-  client.showCurvature(false);
-  client.showCurvature(true);
-  client.showCurvature(true);
+  sampler.client.wish('curvature', false);
+  sampler.client.wish('curvature', true);
+  sampler.client.wish('curvature', true);
   expect(askedFor()).toEqual([true]);
-  client.sample(request('x'));
+  sampler.sample(request('x'));
   say({ type: 'crashed', id: 1, message: 'unreachable', stack: '' });
   say({ type: 'ready', description });
   expect(askedFor()).toEqual([true]);
-  client.showCurvature(false);
+  sampler.client.wish('curvature', false);
   expect(askedFor()).toEqual([true, false]);
 });
 
 test('the mesh is asked for while it is drawn, of a new worker again, and shown until the particles change', () => {
-  const { client, store, columns, say, accept } = page();
-  client.showMesh(true);
-  client.showMesh(true);
-  client.sample(request('x'));
+  const { sampler, store, columns, say, accept } = page();
+  sampler.client.wish('mesh', true);
+  sampler.client.wish('mesh', true);
+  sampler.sample(request('x'));
   accept(1);
   const about = { triangles: 1, components: [{ triangles: 1, euler: 1, open_edges: 3 }], unfilled: 0, left_out: 0 };
   const mesh = { triangles: Uint32Array.of(0, 1, 2), about };
@@ -91,23 +92,23 @@ test('the mesh is asked for while it is drawn, of a new worker again, and shown 
 });
 
 test('a mesh is exported by the worker that holds it, and not by a new one', async () => {
-  const { client, say } = page();
-  const [glb, stl] = [client.meshFile('glb'), client.meshFile('stl')];
+  const { sampler, say } = page();
+  const [glb, stl] = [sampler.client.meshFile('glb'), sampler.client.meshFile('stl')];
   const [first, second] = workers.at(-1).posted.slice(-2);
   expect([first.format, second.format]).toEqual(['glb', 'stl']);
   say({ type: 'file', request: second.request, bytes: Uint8Array.of(2) });
   say({ type: 'file', request: first.request, bytes: null });
   await expect(glb).rejects.toThrow();
   expect(await stl).toEqual(Uint8Array.of(2));
-  const lost = client.meshFile('obj');
+  const lost = sampler.client.meshFile('obj');
   say({ type: 'crashed', id: 0, message: 'unreachable', stack: '' });
   await expect(lost).rejects.toThrow();
 });
 
 describe('a run', () => {
   test('goes from the wish to the figures', () => {
-    const { client, store, columns, say, jobs, accept } = page();
-    client.sample(request('x', { fit: true }));
+    const { sampler, store, columns, say, jobs, accept } = page();
+    sampler.sample(request('x', { fit: true }));
     expect(store.busy.value).toBe(true);
     expect(jobs()).toHaveLength(1);
     accept(1);
@@ -126,48 +127,48 @@ describe('a run', () => {
   });
 
   test('asked for twice is made once', () => {
-    const { client, jobs } = page();
-    client.sample(request('x'));
-    client.sample(request('x'));
+    const { sampler, jobs } = page();
+    sampler.sample(request('x'));
+    sampler.sample(request('x'));
     expect(jobs()).toHaveLength(1);
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     expect(jobs()).toHaveLength(2);
   });
 
   test('asked for again right after its stop is made anew', () => {
-    const { client, jobs } = page();
-    client.sample(request('x'));
-    client.stop();
-    client.sample(request('x'));
-    client.sample(request('x'));
+    const { sampler, jobs } = page();
+    sampler.sample(request('x'));
+    sampler.stop();
+    sampler.sample(request('x'));
+    sampler.sample(request('x'));
     expect(jobs()).toHaveLength(2);
   });
 
   test('that was overtaken is not listened to any more', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
     expect(columns.count).toBe(0);
     expect(store.field.value?.formula).toBe('y');
     expect(store.busy.value).toBe(true);
-    expect(client.stale).toBe(2);
+    expect(sampler.stale).toBe(2);
   });
 
   test('that was stopped keeps its particles and is labelled', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
-    client.stop();
+    sampler.stop();
     expect(workers[0].posted.at(-1)).toEqual({ type: 'stop' });
     say(done(1, 'stopped', 7));
     expect(columns.count).toBe(7);
     expect(store.partial.value).toBe(true);
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(2);
     say(columnsMessage(2, 9));
     say(done(2, 'complete', 9));
@@ -175,12 +176,12 @@ describe('a run', () => {
   });
 
   test('without a surface keeps the last one, dimmed and of no account, until there is another', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     // The worker sends what fates there are, also of no particle.
     say(columnsMessage(2, 0));
@@ -193,7 +194,7 @@ describe('a run', () => {
       [3, 'syntax'],
       [4, 'empty'],
     ])) {
-      client.sample(request(''));
+      sampler.sample(request(''));
       say({
         type: 'field',
         id,
@@ -206,7 +207,7 @@ describe('a run', () => {
     }
     expect(columns.stale).toBe(true);
     expect(store.empty.value).toBe(true);
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(5);
     expect(told.at(-1)).toBe('dim');
     // Whether that one has a surface is not known until its first particle, or its end.
@@ -220,11 +221,11 @@ describe('a run', () => {
   });
 
   test('of a drag says that there is no surface until it counts particles, so that the words do not flicker', () => {
-    const { client, store, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(done(1, 'complete', 0));
-    client.sample(request('y', { live: true }));
+    sampler.sample(request('y', { live: true }));
     accept(2, 'y');
     expect(store.empty.value).toBe(true);
     say({ type: 'progress', id: 2, progress: progress(0, { phase: 'seeding' }) });
@@ -234,15 +235,15 @@ describe('a run', () => {
   });
 
   test('that is stopped before its first particle counts none of the last surface where that is of no account', () => {
-    const { client, store, columns, say, accept } = page();
-    client.sample(request('x'));
+    const { sampler, store, columns, say, accept } = page();
+    sampler.sample(request('x'));
     accept(1);
     say(columnsMessage(1, 7));
     say(done(1, 'complete', 7));
-    client.sample(request('y'));
+    sampler.sample(request('y'));
     accept(2, 'y');
     say(done(2, 'complete', 0));
-    client.sample(request('z'));
+    sampler.sample(request('z'));
     accept(3, 'z');
     say(done(3, 'stopped', 0));
     expect(columns).toMatchObject({ count: 7, stale: true });
@@ -250,9 +251,9 @@ describe('a run', () => {
   });
 
   test('counts up with every range of columns that may change what is shown of the particles', () => {
-    const { client, store, say, accept } = page();
+    const { sampler, store, say, accept } = page();
     const seen = [store.revision.value];
-    client.sample(request('x'));
+    sampler.sample(request('x'));
     accept(1);
     for (const message of [columnsMessage(1, 7), done(1, 'complete', 7)]) {
       say(message);
@@ -262,23 +263,23 @@ describe('a run', () => {
   });
 
   test('that needs more particles than agreed is asked about, once', () => {
-    const { client, say, jobs, accept } = page();
-    client.sample(request('x'));
+    const { sampler, say, jobs, accept } = page();
+    sampler.sample(request('x'));
     expect(jobs()[0].askAbove).toBe(1000);
     accept(1);
     say(done(1, 'ask', 0, { predicted: 50_000 }));
     expect(asked).toEqual([50_000]);
-    client.sample(request('x', { confirmed: true }));
+    sampler.sample(request('x', { confirmed: true }));
     expect(jobs()[1].askAbove).toBeGreaterThan(1e9);
   });
 });
 
 test('a run that the core refuses is said so, with the last surface kept, dimmed', () => {
-  const { client, store, columns, say, accept, complete } = page();
-  client.sample(request('x'));
+  const { sampler, store, columns, say, accept, complete } = page();
+  sampler.sample(request('x'));
   accept(1);
   complete(1, 7);
-  client.sample(request('x'));
+  sampler.sample(request('x'));
   accept(2);
   say(
     done(2, 'refused', 0, {
@@ -295,16 +296,16 @@ test('a run that the core refuses is said so, with the last surface kept, dimmed
   expect(columns.count).toBe(7);
   expect(told.at(-1)).toBe('dim');
   // Until fewer are asked for.
-  client.sample(request('x'));
+  sampler.sample(request('x'));
   accept(3);
   expect(store.notice.value).toBe(null);
 });
 
 test('a drag is counted: what was asked for, what was shown, how late', () => {
-  const { client, store, say, accept } = page();
-  client.sampleLive(request('x'), 3);
-  client.sampleLive(request('y'), 3);
-  client.sampleLive(request('z'), 3);
+  const { sampler, store, say, accept } = page();
+  sampler.sampleLive(request('x'), 3);
+  sampler.sampleLive(request('y'), 3);
+  sampler.sampleLive(request('z'), 3);
   accept(1);
   vi.advanceTimersByTime(20);
   say(columnsMessage(1, 7));
@@ -314,4 +315,49 @@ test('a drag is counted: what was asked for, what was shown, how late', () => {
   say(columnsMessage(2, 7));
   say(done(2, 'complete', 7));
   expect(store.lastDrag.value).toMatchObject({ requested: 3, shown: 2, latency_ms: 30, particles: 7 });
+});
+
+describe('latest wins', () => {
+  const live = (/** @type {string} */ formula) => request(formula, { live: true });
+  const formulas = (/** @type {any[]} */ jobs) => jobs.map((job) => job.field.formula);
+
+  test('a slider at 120 Hz never has more than one job waiting, and the last value is always run', () => {
+    const { sampler, jobs, accept, say } = page();
+    const end = (/** @type {{id: number}} */ { id }) => {
+      accept(id);
+      say(done(id, 'complete', 5));
+    };
+    for (let k = 0; k < 1200; k += 1) {
+      vi.advanceTimersByTime(8);
+      sampler.submit(live(String(k)));
+      const running = runningOf(sampler.runs);
+      // The worker takes 40 ms for each job.
+      if (running && Date.now() - running.sinceMs >= 40) end(running);
+    }
+    for (let running = runningOf(sampler.runs); running; running = runningOf(sampler.runs)) end(running);
+    const values = formulas(jobs()).map(Number);
+    expect(values.at(-1)).toBe(1199);
+    // 10 s of dragging at one job per 40 ms or so: nothing was run in vain, nothing starved.
+    expect(values.length).toBeGreaterThan(150);
+    expect(values.length).toBeLessThan(260);
+    expect(values).toEqual([...values].sort((a, b) => a - b));
+  });
+
+  test('a drag replaces a full run at once', () => {
+    const { sampler, jobs } = page();
+    sampler.submit(request('x'));
+    sampler.submit(live('y'));
+    expect(formulas(jobs())).toEqual(['x', 'y']);
+  });
+
+  test('a live job that takes too long gives way', () => {
+    const { sampler, jobs } = page();
+    sampler.submit(live('x'));
+    vi.advanceTimersByTime(100);
+    sampler.submit(live('y'));
+    expect(formulas(jobs())).toEqual(['x']);
+    vi.advanceTimersByTime(100);
+    sampler.submit(live('z'));
+    expect(formulas(jobs())).toEqual(['x', 'z']);
+  });
 });

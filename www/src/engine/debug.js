@@ -1,0 +1,42 @@
+/**
+ * What tests need of an engine: the faults that they provoke, what they wait for, and what is counted.
+ *
+ * @module
+ */
+
+/** Delay between a motion of the camera and its entry in the state. */
+export const CAMERA_MS = 120;
+
+/** @param {import('./index.js').Parts} parts @returns {import('./types.js').EngineDebug} */
+export function createDebug({ store, picture: { viewer }, runs: { sampling } }) {
+  return {
+    provoke: (fault) => sampling.client.post({ type: 'provoke', fault }),
+    loseDevice(reason = 'unknown') {
+      const { device } = viewer.keeper;
+      if (reason === 'unknown') viewer.keeper.lost('unknown: asked for from the console');
+      else device?.renderer.destroy();
+    },
+    stale(id) {
+      const progress = /** @type {const} */ ({ phase: 'generation', particles: 123_456_789 });
+      sampling.receive({ type: 'progress', id, progress: { ...store.progress.value, ...progress } });
+    },
+    still: () =>
+      new Promise((resolve) => {
+        const look = () => {
+          if ((viewer.frames.asked !== 0 || viewer.reveal.active) && !document.hidden) requestAnimationFrame(look);
+          else setTimeout(resolve, CAMERA_MS + 10);
+        };
+        // The check is deferred, because a signal can change during a frame, before that frame requests the next one.
+        setTimeout(look);
+      }),
+    isOff: () => sampling.client.isOff,
+    counts: () => ({
+      frames: viewer.frames.drawn,
+      uploads: viewer.upload.writes,
+      opened: viewer.keeper.opened,
+      restarts: sampling.client.supervisor.restarts.length,
+      stale: sampling.stale,
+      dimmed: viewer.dimmer.on,
+    }),
+  };
+}

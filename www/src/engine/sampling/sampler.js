@@ -1,0 +1,417 @@
+/**
+ * Decides which runs the worker makes: turns requests into jobs, follows the jobs by the worker's messages, and updates the signals.
+ *
+ * @module
+ */
+import { batch } from '@preact/signals-core';
+import { clampSettings } from '../share/state.js';
+import { SamplingClient } from './client.js';
+import { loadNotice, restartNotice, safeModeNotice } from './faults.js';
+import { Pace, sizeOfRun } from './pace.js';
+import { Presenter } from './presenter.js';
+import {
+  askedRun,
+  awaitsParticles,
+  awaitsWorker,
+  IDLE,
+  inputOf,
+  isToWait,
+  lostRun,
+  reduce,
+  relaxed,
+  runningOf,
+  tookPlace,
+} from './run-state.js';
+
+/**
+ * @typedef {import('./protocol.js').FromWorker} FromWorker
+ * @typedef {import('./protocol.js').Job} Job
+ * @typedef {import('./run-state.js').Run} Run
+ * @typedef {import('./run-state.js').RunRequest} RunRequest
+ * @typedef {import('./run-state.js').SampleRequest} SampleRequest
+ * @typedef {import('./supervisor.js').Crash} Crash
+ * @typedef {import('./supervisor.js').WorkerLike} WorkerLike
+ * @typedef {import('../points/protocol.js').Solved} Solved
+ * @typedef {import('../store.js').Store} Store
+ */
+
+export class Sampler {
+  /**
+   * @param {object} options
+   * @param {Store} options.store
+   * @param {import('../columns.js').Columns} options.columns
+   * @param {import('./presenter.js').Picture} options.picture
+   * @param {() => WorkerLike} options.spawn
+   * @param {() => void} options.onReady  called when the description has arrived for the first time
+   * @param {(predicted: number, request: SampleRequest) => void} options.onAsk
+   * @param {() => SampleRequest} options.whole  returns the full run of the present state
+   * @param {(key: string) => Solved | undefined} [options.solved]  returns the solved model that a field names
+   * @param {import('./supervisor.js').Clock} [options.clock]
+   */
+  constructor({ store, columns, picture, spawn, onReady, onAsk, whole, solved = () => undefined, clock }) {
+    this.store = store;
+    this.columns = columns;
+    this.presenter = new Presenter({ store, columns, picture });
+    this.onReady = onReady;
+    this.onAsk = onAsk;
+    this.whole = whole;
+    this.solved = solved;
+    this.nowMs = clock ? clock.now : () => performance.now();
+    this.pace = new Pace(this.nowMs);
+    this.client = new SamplingClient({
+      spawn,
+      clock,
+      onMessage: (message) => this.receive(message),
+      onRestart: (crash) => this.restarted(crash),
+      onSafeMode: (crash) => this.safeMode(crash),
+      onLoadFailed: (text) => this.loadFailed(text),
+    });
+    this.runs = IDLE;
+    /** Number of messages received from runs that are over. */
+    this.stale = 0;
+  }
+
+  /** The last sampling that the core accepted. */
+  get accepted() {
+    return this.runs.accepted;
+  }
+
+  /** The sampling whose particles are on the page. */
+  get shown() {
+    return this.runs.shown;
+  }
+
+  start() {
+    this.client.start();
+  }
+
+  close() {
+    this.client.close();
+  }
+
+  // ---- requests -------------------------------------------------------------------------------------------------------
+
+  /** @param {SampleRequest} request */
+  sample(request) {
+    const running = runningOf(this.runs);
+    // A second request with the same input during the first run is ignored, because it would only restart the run. It
+    // is accepted after a fault, to clear it, and if the run only restores a surface, so that this surface becomes the
+    // requested one.
+    const same =
+      running &&
+      running.id > this.runs.stoppedUpTo &&
+      !running.request.live &&
+      !running.request.restoring &&
+      inputOf(running.request) === inputOf(request);
+    if (!same || request.live || this.store.fieldError.value) this.submit(request);
+  }
+
+  /**
+   * Starts a run for a control that is being dragged, coarse if necessary.
+   * @param {SampleRequest} request @param {number} diagonal  of the clip box
+   */
+  sampleLive(request, diagonal) {
+    const { coarse, settings } = this.pace.plan(request, diagonal);
+    const { value: description } = this.store.description;
+    const valid = description ? clampSettings(description, settings) : settings;
+    this.submit({ ...request, settings: valid, coarse, live: true, grow: false });
+  }
+
+  /**
+   * Relaxes the particles that the worker holds. If they are gone, the whole run is repeated with that many more steps.
+   * @param {number} steps
+   */
+  relax(steps) {
+    if (this.store.busy.value) return;
+    const { held } = this.runs;
+    if (held > 0 && this.columns.count > 0) {
+      this.submit({ kind: 'relax', of: held, steps, live: false, grow: true, fit: false });
+    } else {
+      const request = this.whole();
+      const done = this.store.progress.value.relax_steps;
+      this.sample({ ...request, grow: false, settings: { ...request.settings, relax_steps: done + steps } });
+    }
+  }
+
+  stop() {
+    if (!this.store.busy.value) return this.settle();
+    this.happened({ type: 'stopped' });
+    this.client.post({ type: 'stop' });
+  }
+
+  /** Completes the surface that stays on the page, with its report, after the run that interrupted it has failed. */
+  settle() {
+    const { shown, crashedInput } = this.runs;
+    if (!shown || shown.reported || awaitsWorker(this.runs)) return;
+    const request = { ...this.relaxed(0), restoring: true };
+    if (inputOf(request) !== crashedInput) this.submit(request);
+  }
+
+  /**
+   * Returns the run that repeats the present surface with that many more relaxation steps.
+   * @param {number} steps
+   * @returns {SampleRequest}
+   */
+  relaxed(steps) {
+    if (!this.runs.shown) throw new Error('There is no surface.');
+    return relaxed(this.runs.shown, steps, this.store.description.value);
+  }
+
+  /** Sends a request, or has it wait for the one that runs. @param {RunRequest} request */
+  submit(request) {
+    if (isToWait(this.runs, request, this.nowMs())) this.happened({ type: 'waits', request });
+    else this.send(request);
+  }
+
+  /** @param {RunRequest} request */
+  send(request) {
+    // In safe mode nothing is sent. The state holds the request, which is sent when the sampler is restarted.
+    if (!this.client.isThere) return this.happened({ type: 'lost' });
+    const id = this.runs.lastId + 1;
+    this.client.post({ type: 'job', job: this.jobOf(id, request) });
+    this.happened({ type: 'sent', request, nowMs: this.nowMs() });
+    if (request.kind === 'relax') this.presenter.begin(id, request);
+  }
+
+  /** @param {number} id @param {RunRequest} request @returns {Job} */
+  jobOf(id, request) {
+    if (request.kind === 'relax') {
+      return { kind: 'relax', id, of: request.of, steps: request.steps, live: false, grow: true };
+    }
+    const { field, settings, grow, live, coarse = false } = request;
+    // A run of a drag needs no confirmation: it stops at the limit.
+    const unasked = request.confirmed || live || request.restoring;
+    return {
+      kind: 'sample',
+      id,
+      field,
+      settings,
+      grow,
+      live,
+      coarse: coarse && settings.method === 'refined',
+      points: (field.points !== undefined && this.solved(field.points)) || null,
+      askAbove: unasked ? Number.MAX_SAFE_INTEGER : Number(settings.max_particles),
+    };
+  }
+
+  /** @param {import('./run-state.js').RunEvent} event */
+  happened(event) {
+    this.runs = reduce(this.runs, event);
+    this.attend();
+  }
+
+  /** Updates the busy flags: the page is busy until the particles have arrived, the worker until the report has. */
+  attend() {
+    this.store.busy.value = awaitsParticles(this.runs);
+    this.client.setBusy(awaitsWorker(this.runs));
+  }
+
+  /** Sends the request that waits, if the job that has ended was the last one sent. @param {boolean} wasRunning */
+  sendWaiting(wasRunning) {
+    const { waiting } = this.runs;
+    if (wasRunning && waiting) this.send(waiting);
+  }
+
+  // ---- what the worker sends --------------------------------------------------------------------------------------------
+
+  /** @param {FromWorker} message */
+  receive(message) {
+    switch (message.type) {
+      case 'ready':
+        return this.ready(message.description);
+      case 'field':
+        return this.fieldAnswered(message.id, message.answer);
+      default:
+    }
+    const { current } = this.runs;
+    if (!('id' in message) || message.id !== current?.id) {
+      this.stale += 1;
+      return;
+    }
+    switch (message.type) {
+      case 'box':
+        return this.boxFound(message.answer, current);
+      case 'progress':
+        return this.presenter.progress(message.progress, current);
+      case 'columns':
+        return this.takeColumns(message, current);
+      case 'past':
+        return this.presenter.past(message, current);
+      case 'done':
+        return this.ended(message, current);
+      case 'report':
+        this.presenter.report(message);
+        return this.happened({ type: 'reported' });
+      default:
+    }
+  }
+
+  /** @param {import('../types.js').Description} description */
+  ready(description) {
+    const first = this.store.description.value === null;
+    this.store.description.value = description;
+    if (first) this.onReady();
+  }
+
+  /** @param {number} id @param {import('../types.js').FieldAnswer} answer */
+  fieldAnswered(id, answer) {
+    const run = askedRun(this.runs, id);
+    if (run?.request.kind !== 'sample') return;
+    const { request } = run;
+    batch(() => {
+      if (answer.ok) this.fieldAccepted(id, request, answer);
+      else this.fieldRefused(id, answer);
+    });
+  }
+
+  /**
+   * Makes the job the current one. Messages of the previous job are ignored from now on.
+   * @param {number} id
+   * @param {SampleRequest} request
+   * @param {import('../types.js').FieldOk} answer
+   */
+  fieldAccepted(id, request, answer) {
+    this.happened({ type: 'accepted', id, bounds: answer.bounds });
+    this.presenter.begin(id, request);
+    if (!request.restoring) this.presenter.field(request.field, answer);
+  }
+
+  /**
+   * Takes the box in which a run samples, which is found after its field was accepted.
+   * @param {import('../types.js').FieldOk} answer
+   * @param {Run} run
+   */
+  boxFound(answer, { request }) {
+    if (request.kind !== 'sample') return;
+    this.happened({ type: 'boxed', bounds: answer.bounds });
+    if (!request.restoring) this.presenter.box(answer);
+  }
+
+  /** @param {number} id @param {Extract<import('../types.js').FieldAnswer, {ok: false}>} answer */
+  fieldRefused(id, answer) {
+    const wasRunning = runningOf(this.runs)?.id === id;
+    this.presenter.fault(answer);
+    if (!this.runs.current) this.presenter.idle({ run: id, phase: 'done' });
+    this.dim();
+    this.happened({ type: 'refused', id });
+    this.sendWaiting(wasRunning);
+    this.settle();
+  }
+
+  /** Dims the surface if it is not the requested one. */
+  dim() {
+    this.presenter.dim(this.runs.astray);
+  }
+
+  /** @param {import('./protocol.js').ColumnsMessage} message @param {Run} run */
+  takeColumns(message, run) {
+    const drawn = () => this.client.post({ type: 'drawn', id: message.id });
+    // An empty range does not replace the previous surface. Whether there is a new one is known at the end of the run.
+    if (message.total === 0) return drawn();
+    if (run.stage === 'seeding') {
+      this.happened({ type: 'particles', description: this.store.description.value });
+      this.presenter.first(run);
+      if (run.request.kind === 'sample') this.dim();
+    }
+    this.presenter.particles(message, run, drawn);
+  }
+
+  /** @param {import('./protocol.js').DoneMessage} message @param {Run} run */
+  ended(message, run) {
+    const { outcome, progress, reportFollows } = message;
+    const { request } = run;
+    const particles = progress?.particles ?? 0;
+    const surface = tookPlace(outcome, particles);
+    const wasRunning = runningOf(this.runs)?.id === message.id;
+    batch(() => {
+      this.happened({ type: 'done', outcome, particles, reportFollows: reportFollows });
+      if (surface) {
+        this.presenter.end(message, run, particles);
+        this.learn(message, run, particles);
+      } else {
+        this.presenter.failure(message);
+      }
+      if (!surface || particles === 0) this.dim();
+    });
+    this.sendWaiting(wasRunning);
+    if (request.kind !== 'sample') return;
+    if (outcome === 'ask') this.onAsk(message.predicted, request);
+    // If an error ended a drag, no full run follows it.
+    if ((!surface && !request.restoring) || (request.live && this.store.fieldError.value)) this.settle();
+  }
+
+  /**
+   * Updates the cost model from a finished run.
+   * @param {import('./protocol.js').DoneMessage} message
+   * @param {Run} run
+   * @param {number} particles
+   */
+  learn({ seconds, progress }, run, particles) {
+    const { store } = this;
+    const sampled = run.request.kind === 'sample' ? run.request : (this.accepted ?? this.whole());
+    const size = sizeOfRun(sampled.settings, progress?.radius ?? 0, store.field.value?.bounds);
+    const drag = this.pace.record(run, sampled, { seconds, particles, relax_steps: progress?.relax_step ?? 0, size });
+    if (drag) store.lastDrag.value = drag;
+  }
+
+  // ---- when the worker fails ----------------------------------------------------------------------------------------------
+
+  /** Version of the core; empty until the core has loaded. */
+  get version() {
+    return this.store.description.value?.version ?? '';
+  }
+
+  /**
+   * Drops all runs, because the worker is gone.
+   * @returns {SampleRequest | null} the run that is lost with the worker
+   */
+  forget() {
+    const lost = lostRun(this.runs, this.store.description.value);
+    this.client.forgetFiles();
+    batch(() => {
+      this.happened({ type: 'lost' });
+      // Before the core has described itself there has been no run that could be over.
+      this.presenter.idle({ phase: this.store.description.value ? 'done' : 'idle' });
+    });
+    return lost;
+  }
+
+  /**
+   * Makes the lost run again, in one step with the end of the old one: nothing on the page sees a sampler at rest in between.
+   * @param {Crash} crash
+   */
+  restarted(crash) {
+    batch(() => {
+      const lost = this.forget();
+      const input = lost ? inputOf(lost) : '';
+      const again = lost !== null && input !== this.runs.crashedInput;
+      this.happened({ type: 'crashed', input, again });
+      this.store.notice.value = restartNotice(crash, lost, { again, version: this.version });
+      if (again) {
+        this.submit(lost);
+      } else {
+        this.dim();
+        this.settle();
+      }
+    });
+  }
+
+  /** @param {Crash} crash */
+  safeMode(crash) {
+    const lost = this.forget();
+    this.store.notice.value = safeModeNotice(crash, lost, this.version, () => this.revive());
+  }
+
+  /** @param {string} text */
+  loadFailed(text) {
+    this.forget();
+    this.store.notice.value = loadNotice(text, () => this.revive());
+  }
+
+  revive() {
+    this.store.notice.value = null;
+    this.happened({ type: 'revived' });
+    this.client.revive();
+    if (this.store.description.value) this.submit({ ...this.whole(), grow: false });
+  }
+}

@@ -1,0 +1,172 @@
+/* tslint:disable */
+/* eslint-disable */
+import type {
+    Answer,
+    Description,
+    Fault,
+    FieldAnswer,
+    FieldRequest,
+    MeshAnswer,
+    Progress,
+    Report,
+    SolvedModel,
+    Start,
+} from '../../engine/core-types.js';
+
+
+/**
+ * A sampling session. Requests and answers are plain objects; columns are copies, three floats a vector.
+ */
+export class Core {
+    free(): void;
+    [Symbol.dispose](): void;
+    /**
+     * Ends the run and keeps the particles: `Progress`.
+     */
+    cancel(): Progress;
+    /**
+     * Component of each particle, 0 the largest, from the last report; 0xffffffff for none.
+     */
+    component(): Uint32Array<ArrayBuffer>;
+    /**
+     * Number of particles.
+     */
+    count(): number;
+    /**
+     * Principal curvatures of particles from `from` on, two each, worked out now.
+     */
+    curvature(from: number): Float32Array<ArrayBuffer>;
+    /**
+     * Everything there is to choose and to read: `Description`.
+     */
+    describe(): Description;
+    /**
+     * Digest of the particle columns, 16 hexadecimal digits.
+     */
+    digest(): string;
+    /**
+     * Energy of each particle among its natural neighbours, over that of six at the ideal distance, as of the last report.
+     */
+    energy(): Float32Array<ArrayBuffer>;
+    /**
+     * Positions from particle `from` on, where single precision does not hold them: in a box far from the origin. Elsewhere
+     * nothing.
+     */
+    exact_positions(from: number): Float64Array<ArrayBuffer>;
+    /**
+     * Finds the box of the next run with these `Settings`, up to `budget` slices of the work: an `Answer` with `FieldAnswer` once
+     * it is known, nothing before. While a slider moves the box `only_grows`.
+     */
+    fit(settings: Record<string, number | string>, only_grows: boolean, budget: number): Answer<FieldAnswer, Fault> | undefined;
+    /**
+     * Joins the particles to a mesh, up to `budget` slices of the work: `MeshAnswer` once it is complete, nothing before.
+     */
+    join(budget: number): MeshAnswer | undefined;
+    /**
+     * Generation levels from particle `from` on.
+     */
+    levels(from: number): Uint32Array<ArrayBuffer>;
+    /**
+     * Refuses runs that need more than about `megabytes` with their report.
+     */
+    limit_memory(megabytes: number): void;
+    /**
+     * Measures the particles, up to `budget` slices of the work: `Report` once it is complete, nothing before.
+     */
+    measure(budget: number): Report | undefined;
+    /**
+     * The mesh as a file, by the extension of its format, up to `budget` slices of the work: its bytes once it is complete,
+     * undefined before; null for another extension or if it is too large.
+     */
+    mesh_file(extension: string, budget: number): Uint8Array<ArrayBuffer> | null | undefined;
+    /**
+     * Distance to the nearest particle, as of the last report.
+     */
+    nearest(): Float32Array<ArrayBuffer>;
+    /**
+     * A session on the default surface, with nothing sampled.
+     */
+    constructor();
+    /**
+     * Unit normals from particle `from` on.
+     */
+    normals(from: number): Float32Array<ArrayBuffer>;
+    /**
+     * Parents from particle `from` on; 0xffffffff for a seed.
+     */
+    parents(from: number): Uint32Array<ArrayBuffer>;
+    /**
+     * Positions from particle `from` on, rounded to single precision.
+     */
+    positions(from: number): Float32Array<ArrayBuffer>;
+    /**
+     * Repulsion radii from particle `from` on.
+     */
+    radii(from: number): Float32Array<ArrayBuffer>;
+    /**
+     * Queues relaxation steps on the present particles.
+     */
+    relax(steps: number): void;
+    /**
+     * |f|/|∇f| per particle, as of the last report.
+     */
+    residual(): Float32Array<ArrayBuffer>;
+    /**
+     * Changes the field: `FieldRequest` to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     */
+    set_field(request: Partial<FieldRequest>): Answer<FieldAnswer, Fault>;
+    /**
+     * Changes the field to a model from points: the solved system as `Points.field` gives it, and what `Points.info` says
+     * of it, `SolvedModel`; to an `Answer` with `FieldAnswer`. After an error the last good field stays.
+     */
+    set_points(system: Uint8Array | number[], about: SolvedModel): Answer<FieldAnswer, Fault>;
+    /**
+     * The fates of the slots, three bits each, from particle `from` on: six, or up to ten of an adaptive particle. Bit 30 marks a
+     * singular point nearby.
+     */
+    slots(from: number): Uint32Array<ArrayBuffer>;
+    /**
+     * Starts a run: `Settings`, of which what is missing has its default; to an `Answer` with `Start`.
+     */
+    start(settings: Record<string, number | string>): Answer<Start, Fault>;
+    /**
+     * Does up to `budget` units of work: `Progress`.
+     */
+    step(budget: number): Progress;
+    /**
+     * The triangles of the mesh, three particles each, counter-clockwise seen from outside; none before it is complete.
+     */
+    triangles(): Uint32Array<ArrayBuffer>;
+    /**
+     * Natural neighbours per particle, as of the last report.
+     */
+    valence(): Uint8Array<ArrayBuffer>;
+}
+
+export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;
+
+export interface InitOutput {
+    readonly memory: WebAssembly.Memory;
+}
+
+export type SyncInitInput = BufferSource | WebAssembly.Module;
+
+/**
+ * Instantiates the given `module`, which can either be bytes or
+ * a precompiled `WebAssembly.Module`.
+ *
+ * @param {{ module: SyncInitInput }} module - Passing `SyncInitInput` directly is deprecated.
+ *
+ * @returns {InitOutput}
+ */
+export function initSync(module: { module: SyncInitInput } | SyncInitInput): InitOutput;
+
+/**
+ * If `module_or_path` is {RequestInfo} or {URL}, makes a request and
+ * for everything else, calls `WebAssembly.instantiate` directly.
+ *
+ * @param {{ module_or_path: InitInput | Promise<InitInput> }} module_or_path - Passing `InitInput` directly is deprecated.
+ *
+ * @returns {Promise<InitOutput>}
+ */
+export default function __wbg_init (module_or_path?: { module_or_path: InitInput | Promise<InitInput> } | InitInput | Promise<InitInput>): Promise<InitOutput>;

@@ -1,0 +1,135 @@
+/* tslint:disable */
+/* eslint-disable */
+import type {
+    Answer,
+    Bounds,
+    Fault,
+    LessonChapter,
+    LessonEvent,
+    LessonField,
+    LessonIterate,
+    LessonLife,
+    LessonProgress,
+    LessonPush,
+    LessonSettings,
+} from '../../engine/core-types.js';
+
+
+/**
+ * The paper's algorithms, event by event. Requests and answers are plain objects; columns are copies.
+ */
+export class Lesson {
+    free(): void;
+    [Symbol.dispose](): void;
+    /**
+     * The chapters from number `first` on: an array of `LessonChapter`.
+     */
+    chapters(first: number): LessonChapter[];
+    /**
+     * Digest of the particles at the moment that was sought, 16 hexadecimal digits.
+     */
+    digest(): string;
+    /**
+     * 1 for a particle that is done, 0 for one that waits.
+     */
+    done(): Uint8Array<ArrayBuffer>;
+    /**
+     * Up to `count` events from number `first` on: an array of `LessonEvent`.
+     */
+    events(first: number, count: number): LessonEvent[];
+    /**
+     * Numbers of the fronts.
+     */
+    fronts(): Uint32Array<ArrayBuffer>;
+    /**
+     * Generation levels.
+     */
+    levels(): Uint32Array<ArrayBuffer>;
+    /**
+     * When a particle was added, treated and done: `LessonLife`; null if there is none.
+     */
+    life(particle: number): LessonLife | null;
+    /**
+     * Nothing begun.
+     */
+    constructor();
+    /**
+     * The steps of Newton's method in space from a point: an array of `LessonIterate`.
+     */
+    newton(start: Float64Array | number[], reach: number): LessonIterate[];
+    /**
+     * Unit normals, three floats each.
+     */
+    normals(): Float32Array<ArrayBuffer>;
+    /**
+     * Parents; 0xffffffff for a seed.
+     */
+    parents(): Uint32Array<ArrayBuffer>;
+    /**
+     * Positions at the moment that was sought, three floats each.
+     */
+    positions(): Float32Array<ArrayBuffer>;
+    /**
+     * Returns the repulsion of a particle by each of its neighbours at the moment that was sought: an array of `LessonPush`.
+     */
+    pushes(particle: number): LessonPush[];
+    /**
+     * Repulsion radii.
+     */
+    radii(): Float32Array<ArrayBuffer>;
+    /**
+     * The curve f = 0 in the plane of `centre` and two perpendicular unit vectors, within `half` of the centre: segments as four
+     * floats each, x along `right` and y along `up`.
+     */
+    section(centre: Float64Array | number[], right: Float64Array | number[], up: Float64Array | number[], half: number, cells: number): Float32Array<ArrayBuffer>;
+    /**
+     * Goes to the moment before event number `event`; returns the number of events that have happened then.
+     */
+    seek(event: number): number;
+    /**
+     * Three-bit fates of the slots, as those of the sampler.
+     */
+    slots(): Uint32Array<ArrayBuffer>;
+    /**
+     * Begins a run on a formula, and gives up the one before: `LessonField` and `LessonSettings`, of which what is missing has its
+     * default; to an `Answer` with `LessonProgress`.
+     */
+    start(field: LessonField, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
+    /**
+     * Begins a run on a model from points: `system` is the solved system that `Points.field` returns, `bounds` its `Bounds`; to an
+     * `Answer` with `LessonProgress`.
+     */
+    start_points(system: Uint8Array | number[], bounds: Bounds, settings: Partial<LessonSettings>): Answer<LessonProgress, Fault>;
+    /**
+     * Goes on by up to `budget` units of work: `LessonProgress`; null before a run.
+     */
+    step(budget: number): LessonProgress | null;
+}
+
+export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;
+
+export interface InitOutput {
+    readonly memory: WebAssembly.Memory;
+}
+
+export type SyncInitInput = BufferSource | WebAssembly.Module;
+
+/**
+ * Instantiates the given `module`, which can either be bytes or
+ * a precompiled `WebAssembly.Module`.
+ *
+ * @param {{ module: SyncInitInput }} module - Passing `SyncInitInput` directly is deprecated.
+ *
+ * @returns {InitOutput}
+ */
+export function initSync(module: { module: SyncInitInput } | SyncInitInput): InitOutput;
+
+/**
+ * If `module_or_path` is {RequestInfo} or {URL}, makes a request and
+ * for everything else, calls `WebAssembly.instantiate` directly.
+ *
+ * @param {{ module_or_path: InitInput | Promise<InitInput> }} module_or_path - Passing `InitInput` directly is deprecated.
+ *
+ * @returns {Promise<InitOutput>}
+ */
+export default function __wbg_init (module_or_path?: { module_or_path: InitInput | Promise<InitInput> } | InitInput | Promise<InitInput>): Promise<InitOutput>;

@@ -1,0 +1,75 @@
+/* tslint:disable */
+/* eslint-disable */
+import type {
+    Answer,
+    PointsFault,
+    PointsProgress,
+    SolvedModel,
+} from '../../engine/core-types.js';
+
+
+/**
+ * From a built-in model or a file to a field. Answers are plain objects.
+ */
+export class Points {
+    free(): void;
+    [Symbol.dispose](): void;
+    /**
+     * Positions of the centres, three floats each; none before they are chosen.
+     */
+    centres(): Float32Array<ArrayBuffer>;
+    /**
+     * The field as `Core.set_points` takes it; nothing before it is there.
+     */
+    field(): Uint8Array<ArrayBuffer>;
+    /**
+     * Begins a file, and gives up what was begun before: an `Answer` with `Progress`. `name` is for reports. 0 centres are the
+     * default number of them.
+     */
+    file(name: string, bytes: Uint8Array | number[], centres: number): Answer<PointsProgress, PointsFault>;
+    /**
+     * What there is to know of the field: an `Answer` with `SolvedModel`.
+     */
+    info(): Answer<SolvedModel, PointsFault>;
+    /**
+     * Begins a built-in model, and gives up what was begun before: an `Answer` with `Progress`. 0 centres are the default number
+     * of them.
+     */
+    model(id: string, centres: number): Answer<PointsProgress, PointsFault>;
+    /**
+     * Nothing begun.
+     */
+    constructor();
+    /**
+     * Does up to `budget` slices of work: an `Answer` with `Progress`.
+     */
+    step(budget: number): Answer<PointsProgress, PointsFault>;
+}
+
+export type InitInput = RequestInfo | URL | Response | BufferSource | WebAssembly.Module;
+
+export interface InitOutput {
+    readonly memory: WebAssembly.Memory;
+}
+
+export type SyncInitInput = BufferSource | WebAssembly.Module;
+
+/**
+ * Instantiates the given `module`, which can either be bytes or
+ * a precompiled `WebAssembly.Module`.
+ *
+ * @param {{ module: SyncInitInput }} module - Passing `SyncInitInput` directly is deprecated.
+ *
+ * @returns {InitOutput}
+ */
+export function initSync(module: { module: SyncInitInput } | SyncInitInput): InitOutput;
+
+/**
+ * If `module_or_path` is {RequestInfo} or {URL}, makes a request and
+ * for everything else, calls `WebAssembly.instantiate` directly.
+ *
+ * @param {{ module_or_path: InitInput | Promise<InitInput> }} module_or_path - Passing `InitInput` directly is deprecated.
+ *
+ * @returns {Promise<InitOutput>}
+ */
+export default function __wbg_init (module_or_path?: { module_or_path: InitInput | Promise<InitInput> } | InitInput | Promise<InitInput>): Promise<InitOutput>;
