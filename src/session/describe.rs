@@ -135,13 +135,42 @@ pub struct Fate {
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Colour {
     /// Identifier.
-    pub id: &'static str,
+    pub id: ColourMode,
     /// Name for a person.
     pub label: &'static str,
     /// One line of explanation.
     pub help: &'static str,
     /// Unit of the legend.
     pub unit: &'static str,
+}
+
+/// What the particles are coloured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum ColourMode {
+    /// Generation level.
+    Level,
+    /// Fate of the slots.
+    Fate,
+    /// Number of neighbours.
+    Valence,
+    /// Distance to the nearest particle.
+    Nearest,
+    /// Energy among the neighbours.
+    Energy,
+    /// Distance to the surface.
+    Residual,
+    /// Repulsion radius.
+    Radius,
+    /// Mean curvature.
+    Curvature,
+    /// Connected component.
+    Component,
+    /// Direction of the normal.
+    Normal,
+    /// One colour.
+    Plain,
 }
 
 /// Describes everything there is.
@@ -466,59 +495,59 @@ const FATES: &[Fate] = &[
 
 const COLOURS: &[Colour] = &[
     Colour {
-        id: "level",
+        id: ColourMode::Level,
         label: "Generation level",
         help: "Rings in the order in which they were placed; the colours repeat every twelve levels.",
         unit: "",
     },
     Colour {
-        id: "fate",
+        id: ColourMode::Fate,
         label: "Fate of the children",
         help: "Interior, at the border of the box, or next to a place where a child found no surface.",
         unit: "",
     },
     Colour {
-        id: "valence",
+        id: ColourMode::Valence,
         label: "Neighbours",
         help: "Number of natural neighbours; six is ideal.",
         unit: "",
     },
     Colour {
-        id: "nearest",
+        id: ColourMode::Nearest,
         label: "Nearest distance",
         help: "Distance to the nearest particle over 2r.",
         unit: "× 2r",
     },
     Colour {
-        id: "energy",
+        id: ColourMode::Energy,
         label: "Energy",
         help: "Repulsion of a particle by its natural neighbours, over that by six at the ideal distance: less beside a hole, more in a crowd.",
         unit: "",
     },
     Colour {
-        id: "residual",
+        id: ColourMode::Residual,
         label: "Residual",
         help: "Distance to the surface to first order, |f|/|∇f|, over the radius. The ramp goes by powers of ten.",
         unit: "× r",
     },
     Colour {
-        id: "radius",
+        id: ColourMode::Radius,
         label: "Radius",
         help: "Repulsion radius, from the smallest particle to the largest.",
         unit: "",
     },
     Colour {
-        id: "curvature",
+        id: ColourMode::Curvature,
         label: "Mean curvature",
         help: "(κ₁ + κ₂)/2: orange where the surface bulges outward as a sphere does, blue where it is hollow, grey where it is flat or bends both ways alike.",
         unit: "1/length",
     },
     Colour {
-        id: "component",
+        id: ColourMode::Component,
         label: "Connected component",
         help: "Components of the mesh of natural neighbours, the largest first. The colours repeat after twelve.",
         unit: "",
     },
-    Colour { id: "normal", label: "Normal", help: "Direction of the outward normal.", unit: "" },
-    Colour { id: "plain", label: "Plain", help: "One colour.", unit: "" },
+    Colour { id: ColourMode::Normal, label: "Normal", help: "Direction of the outward normal.", unit: "" },
+    Colour { id: ColourMode::Plain, label: "Plain", help: "One colour.", unit: "" },
 ];

@@ -14,6 +14,11 @@ export const SINGULAR = 1 << 30;
 /** Generation level of discs that are drawn with the particles but are not particles, such as a model's points. */
 export const NO_LEVEL = 0xffffffff;
 
+/** The columns of a report, one value per particle. A core has a method of each name. */
+export const MEASURED = /** @type {const} */ (['valence', 'nearest', 'residual', 'energy', 'component']);
+
+/** @typedef {{[K in (typeof MEASURED)[number]]: NonNullable<Columns[K]>}} Figures */
+
 /**
  * A range of the columns, as the worker posts it: the attributes of particles `first … first + n`.
  * @typedef {object} ColumnRange
@@ -101,11 +106,7 @@ export class Columns {
 
   /** Drops the figures of the report and the mesh, which no longer describe the particles. */
   forget() {
-    this.valence = null;
-    this.nearest = null;
-    this.residual = null;
-    this.energy = null;
-    this.component = null;
+    for (const name of MEASURED) this[name] = null;
     this.mesh = null;
   }
 
@@ -173,16 +174,12 @@ export class Columns {
 
   /**
    * Writes the figures of the report, one value per particle. Figures for another number of particles are ignored.
-   * @param {{valence: Uint8Array, nearest: Float32Array, residual: Float32Array, energy: Float32Array,
-   *   component: Uint32Array}} figures
+   * @param {Figures} figures
    */
-  writeFigures({ valence, nearest, residual, energy, component }) {
-    if (valence.length !== this.count) return;
-    this.valence = valence;
-    this.nearest = nearest;
-    this.residual = residual;
-    this.energy = energy;
-    this.component = component.length === this.count ? component : null;
+  writeFigures(figures) {
+    if (figures.valence.length !== this.count) return;
+    const known = MEASURED.filter((name) => figures[name].length === this.count);
+    Object.assign(this, Object.fromEntries(known.map((name) => [name, figures[name]])));
   }
 
   /** Writes newer slot fates of particles from `from` on. @param {number} from @param {Uint32Array} slots */

@@ -23,7 +23,7 @@ export type Choice = {
 /** A way to colour the particles. */
 export type Colour = {
   /** Identifier. */
-  id: string,
+  id: ColourMode,
   /** Name for a person. */
   label: string,
   /** One line of explanation. */
@@ -31,6 +31,9 @@ export type Colour = {
   /** Unit of the legend. */
   unit: string,
 };
+
+/** What the particles are coloured by. */
+export type ColourMode = "level" | "fate" | "valence" | "nearest" | "energy" | "residual" | "radius" | "curvature" | "component" | "normal" | "plain";
 
 /** A column of PLY and CSV files, here and on the page. */
 export type Column = {

@@ -4,6 +4,7 @@
  * @module
  */
 import { effect, signal, untracked } from '@preact/signals-core';
+import { seenOf } from './view/style.js';
 
 /**
  * Largest number of particles at which the surface to come is drawn. They are joined to a mesh for it, which takes about 0.1 s.
@@ -43,20 +44,12 @@ export function keepLook({ store, viewer, runs: { loader, sampling } }) {
     // exact where the particles will be, and there is no second way of drawing.
     const isToCome = (view.level !== null || view.follow !== null) && viewer.columns.count <= MOST_TO_COME;
     return {
-      colour: view.colour,
-      size: view.size,
-      draw: view.draw,
-      faces: view.faces,
-      edges: view.edges,
-      marks: view.marks,
+      ...seenOf(view),
       ghost: view.ghost || isToCome,
       theme,
       box: view.box || isMissed ? (bounds ?? field?.bounds ?? null) : null,
-      axes: view.axes,
       plane,
       points: points(),
-      level: view.level,
-      step: view.step,
     };
   }
 

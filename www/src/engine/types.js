@@ -76,34 +76,14 @@
 
 // ---- the shareable state ----------------------------------------------------------------------------------------------
 
-/** @typedef {'level' | 'particle' | 'event'} Grain */
-/** @typedef {'level' | 'fate' | 'valence' | 'nearest' | 'energy' | 'residual' | 'radius' | 'curvature' | 'component' | 'normal' | 'plain'} ColourMode */
+/** @typedef {ViewState['grain']} Grain */
+/** @typedef {import('./core-types.js').ColourMode} ColourMode */
 /**
  * The camera: the eye is on a sphere around `target`, with z up. With `fit` the engine sets target and distance so that
  * the camera follows the surface. A zoom or pan by the user ends that, and the fit command starts it again.
  * @typedef {{target: Vec3, distance: number, yaw: number, pitch: number, fit: boolean}} CameraState
  */
-/**
- * @typedef {object} ViewState
- * @property {ColourMode} colour
- * @property {number} size  disc radius as a share of the repulsion radius: see {@link DISC_SIZE}
- * @property {'discs' | 'mesh'} draw  how the particles are drawn
- * @property {'smooth' | 'flat'} faces  how the faces of a mesh are lit and coloured
- * @property {boolean} edges  whether the edges of a mesh are drawn
- * @property {boolean} marks  whether vertices of a mesh without six neighbours are marked
- * @property {'auto' | 'light' | 'dark'} theme
- * @property {boolean} ghost  whether the surface is drawn faintly beneath the discs
- * @property {boolean} box  whether the clip box is drawn, with its dimensions
- * @property {boolean} axes  whether axes with ticks are drawn around the clip box
- * @property {boolean} bar  whether a scale bar is drawn
- * @property {number[] | null} measured  indices of up to two particles whose distance is measured; null while nothing is
- * @property {boolean} points  whether the points that a model interpolates are drawn
- * @property {number | null} level  the newest generation level drawn, null for all of them; a level beyond the last counts as the last
- * @property {number | null} step  the relaxation step after which the particles are drawn, null for the last one
- * @property {Grain} grain  what a step on the timeline is
- * @property {[number, number] | null} follow  the particle of the paper's run that is followed, and the number of its event
- * @property {CameraState} camera
- */
+/** The options of the view. @typedef {import('./share/view.js').ViewState} ViewState */
 /**
  * A plane that hides the part of the picture that its unit normal points to: all p with normal · p > offset. Nothing is sampled anew.
  * @typedef {{normal: Vec3, offset: number}} CuttingPlane

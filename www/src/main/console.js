@@ -4,6 +4,7 @@
  * @module
  */
 import { effect } from '@preact/signals-core';
+import { MEASURED } from '../engine/columns.js';
 import { createEngine } from '../engine/index.js';
 
 /**
@@ -30,23 +31,15 @@ import { createEngine } from '../engine/index.js';
  * @property {Engine} engine
  * @property {Omit<Engine['debug'], 'provoke' | 'isOff'> & Record<'panic' | 'overflow' | 'hang', () => void>} debug
  */
+/** @typedef {import('../engine/columns.js').Figures} Figures */
+/** The columns of the report, null before it has arrived. @typedef {{[K in keyof Figures]: Figures[K] | null}} Measured */
 /**
- * Copies of the columns: index i of each belongs to particle i.
- * @typedef {object} Particles
- * @property {number} count
- * @property {Float32Array} positions
- * @property {Float64Array | null} exact  the positions in double precision, in a box far from the origin
- * @property {Float32Array} normals
- * @property {Float32Array} radii
- * @property {Uint32Array} levels
- * @property {Uint32Array} parents
- * @property {Uint32Array} slots
- * @property {Uint8Array | null} valence
- * @property {Float32Array | null} nearest
- * @property {Float32Array | null} residual
- * @property {Uint32Array | null} component
- * @property {Float32Array | null} curvature  two per particle, only while they are shown
+ * Copies of the columns: index i of each belongs to particle i. `exact`: the positions in double precision, in a box far from the
+ * origin; `curvature`: two per particle, only while they are shown.
+ * @typedef {Measured & Pick<import('../engine/columns.js').Columns, 'count' | 'positions' | 'normals' | 'radii' | 'levels' | 'parents' | 'slots'>
+ *   & {exact: Float64Array | null, curvature: Float32Array | null}} Particles
  */
+
 /**
  * Resolves with the report once `isOver` holds, or no sampler is there or coming. `isOver` reads signals.
  * @param {Engine} engine @param {() => boolean} isOver
@@ -79,6 +72,10 @@ async function settled(engine) {
   return report;
 }
 
+/** Copies of the columns of the report. @param {import('../engine/columns.js').Columns} columns */
+const measuredOf = (columns) =>
+  /** @type {Measured} */ (Object.fromEntries(MEASURED.map((name) => [name, columns[name]?.slice() ?? null])));
+
 /** @param {import('../engine/columns.js').Columns} columns @returns {Particles} */
 function copyOf(columns) {
   const count = columns.stale ? 0 : columns.count;
@@ -91,10 +88,7 @@ function copyOf(columns) {
     levels: columns.levels.slice(0, count),
     parents: columns.parents.slice(0, count),
     slots: columns.slots.slice(0, count),
-    valence: columns.valence?.slice() ?? null,
-    nearest: columns.nearest?.slice() ?? null,
-    residual: columns.residual?.slice() ?? null,
-    component: columns.component?.slice() ?? null,
+    ...measuredOf(columns),
     curvature: count > 0 && columns.curved === count ? columns.curvature.slice(0, 2 * count) : null,
   };
 }

@@ -317,5 +317,5 @@ function nextColouring(engine) {
   const colours = engine.description.peek()?.colours ?? [];
   const at = colours.findIndex(({ id }) => id === engine.state.peek().view.colour);
   const next = colours[(at + 1) % Math.max(1, colours.length)];
-  if (next) engine.setView({ colour: /** @type {import('../engine/types.js').ColourMode} */ (next.id) });
+  if (next) engine.setView({ colour: next.id });
 }

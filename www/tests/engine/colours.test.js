@@ -202,7 +202,7 @@ describe('colours of particles', () => {
     columns.nearest = Float32Array.of(0.6, 1, 2);
     const { valence, sequential } = PALETTES.light;
     expect([...coloursOf('valence', 'light', columns, 0, 3)]).toEqual([valence.six, valence.five, valence.eight]);
-    expect(legendOf('valence', 'light', columns).pending).toBe(undefined);
+    expect(legendOf('valence', 'light', columns).pending).toBe(false);
     expect([...coloursOf('nearest', 'light', columns, 0, 3)]).toEqual([sequential[0], sequential[42], sequential[63]]);
     expect(legendOf('nearest', 'light', columns)).toMatchObject({ kind: 'sequential', mark: 1 });
   });

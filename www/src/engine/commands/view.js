@@ -3,7 +3,7 @@
  *
  * @module
  */
-import { validView } from '../share/state.js';
+import { validView } from '../share/view.js';
 import { change } from '../store.js';
 
 /** @typedef {Pick<import('../types.js').EngineCommands, 'setView' | 'fit' | 'pointOut' | 'showFirst' | 'turnTo' | 'zoom' | 'orbit' | 'setInsets' | 'pick' | 'dismissHover' | 'project' | 'rayThrough' | 'dismissNotice'>} ViewCommands */

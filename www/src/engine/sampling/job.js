@@ -6,6 +6,7 @@
  * @module
  */
 import { nextBudget } from '../bundle/budget.js';
+import { MEASURED } from '../columns.js';
 import { join } from './joining.js';
 import { BEAT_MS, MOST_REMEMBERED, PROGRESS_MS } from './protocol.js';
 
@@ -375,13 +376,9 @@ class JobRun {
       slices = nextBudget(slices, took);
       this.beat();
     } while (report === undefined);
-    const figures = {
-      valence: core.valence(),
-      nearest: core.nearest(),
-      residual: core.residual(),
-      energy: core.energy(),
-      component: core.component(),
-    };
+    const figures = /** @type {import('../columns.js').Figures} */ (
+      Object.fromEntries(MEASURED.map((name) => [name, core[name]()]))
+    );
     env.post(
       { type: 'report', id: this.job.id, report: { ...report, seconds: { ...seconds } }, ...figures },
       Object.values(figures).map((c) => c.buffer),

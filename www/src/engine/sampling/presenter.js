@@ -180,9 +180,9 @@ export class Presenter {
   }
 
   /** @param {import('./protocol.js').ReportMessage} message */
-  report({ report, valence, nearest, residual, energy, component }) {
+  report({ report, ...figures }) {
     const { store, columns } = this;
-    columns.writeFigures({ valence, nearest, residual, energy, component });
+    columns.writeFigures(figures);
     batch(() => {
       store.report.value = report;
       store.revision.value += 1;

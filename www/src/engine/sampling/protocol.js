@@ -100,17 +100,7 @@
  * @property {string} message  words for `refused`, else empty
  * @property {boolean} reportFollows
  */
-/**
- * @typedef {object} ReportMessage
- * @property {'report'} type
- * @property {number} id
- * @property {Report} report
- * @property {Uint8Array} valence
- * @property {Float32Array} nearest
- * @property {Float32Array} residual
- * @property {Float32Array} energy
- * @property {Uint32Array} component
- */
+/** @typedef {{type: 'report', id: number, report: Report} & import('../columns.js').Figures} ReportMessage */
 /** @typedef {import('../bundle/load.js').LoadFault} LoadFault */
 /**
  * @typedef {{type: 'ready', description: Description}

@@ -3,8 +3,9 @@
  *
  * @module
  */
-import { DISC_SIZE, FILE_SURFACE } from '../types.js';
-import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
+import { FILE_SURFACE } from '../types.js';
+import { finite, isRecord, vec3, within } from './valid.js';
+import { homeView, validView } from './view.js';
 
 /**
  * @typedef {import('../types.js').State} State
@@ -19,55 +20,8 @@ import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
 
 /** Largest number of parameters in a state. */
 const MOST_PARAMETERS = 64;
-/** Largest number of a camera, which the graphics card reads in single precision. */
+/** Largest number of a plane, which the graphics card reads in single precision. */
 const LARGEST_SINGLE = 3e38;
-/** Upper limit for generation levels, relaxation steps and events in a state; no run reaches it. */
-const LAST_LEVEL = 1e6;
-
-/** @type {readonly import('../types.js').ColourMode[]} */
-const COLOUR_MODES = [
-  'level',
-  'fate',
-  'valence',
-  'nearest',
-  'energy',
-  'residual',
-  'radius',
-  'curvature',
-  'component',
-  'normal',
-  'plain',
-];
-/** Parts of the view that have one of several values: key, name in words, values. */
-const CHOICES = /** @type {const} */ ([
-  ['colour', 'colour', COLOUR_MODES],
-  ['theme', 'theme', ['auto', 'light', 'dark']],
-  ['draw', 'way of drawing', ['discs', 'mesh']],
-  ['faces', 'faces of the mesh', ['smooth', 'flat']],
-  ['grain', 'grain of the timeline', ['level', 'particle', 'event']],
-]);
-
-/** @returns {import('../types.js').ViewState} */
-const homeView = () => ({
-  colour: 'level',
-  size: DISC_SIZE.initial,
-  draw: 'discs',
-  faces: 'smooth',
-  edges: true,
-  marks: true,
-  theme: 'auto',
-  ghost: false,
-  box: false,
-  axes: false,
-  bar: false,
-  measured: null,
-  points: true,
-  level: null,
-  step: null,
-  grain: 'level',
-  follow: null,
-  camera: homeCamera(),
-});
 
 /** Returns the state before the core has described its surfaces. @returns {State} */
 export const emptyState = () => ({
@@ -145,25 +99,6 @@ export function fieldRequest(state, description, points) {
   return request;
 }
 
-/**
- * Limits a number to its range; returns undefined for anything else.
- * @param {unknown} v
- * @param {number} min
- * @param {number} max
- */
-const within = (v, min, max) =>
-  typeof v === 'number' && Number.isFinite(v) ? Math.min(max, Math.max(min, v)) : undefined;
-
-/** @param {unknown} v @returns {v is Record<string, unknown>} */
-const isRecord = (v) => typeof v === 'object' && v !== null && !Array.isArray(v);
-
-/** @param {unknown} v */
-const finite = (v) => (Number.isFinite(v) ? /** @type {number} */ (v) : undefined);
-
-/** @param {unknown} v @returns {Vec3 | undefined} */
-const vec3 = (v) =>
-  Array.isArray(v) && v.length === 3 && v.every(Number.isFinite) ? /** @type {Vec3} */ (v) : undefined;
-
 /** A box that the core takes. @param {unknown} v @param {import('../types.js').Limits} limits @returns {Bounds | undefined} */
 export function validBounds(v, limits) {
   if (!isRecord(v)) return undefined;
@@ -183,23 +118,6 @@ export function validPlane(v) {
   if (!normal || offset === undefined || !(length > 0 && length < Infinity)) return undefined;
   // Adding 0 turns −0 into 0, as a link does.
   return { normal: /** @type {Vec3} */ (normal.map((c) => c / length + 0)), offset: offset / length + 0 };
-}
-
-/** Largest index of a particle in a state; no run reaches it. */
-const LAST_PARTICLE = 2 ** 32 - 1;
-
-/** Up to two different particles. @param {unknown} v @returns {number[] | null | undefined} */
-function validMeasured(v) {
-  if (v === null) return null;
-  if (!Array.isArray(v) || v.length > 2 || new Set(v).size !== v.length) return undefined;
-  return v.every((index) => Number.isInteger(index) && index >= 0 && index <= LAST_PARTICLE) ? [...v] : undefined;
-}
-
-/** A particle and an event of it. @param {unknown} v @returns {[number, number] | null | undefined} */
-function validFollow(v) {
-  if (v === null) return null;
-  if (!Array.isArray(v) || v.length !== 2 || !v.every((n) => Number.isInteger(n) && n >= 0)) return undefined;
-  return [Math.min(v[0], LAST_PARTICLE), Math.min(v[1], LAST_LEVEL)];
 }
 
 /**
@@ -369,66 +287,4 @@ export function validSetting(description, name, value) {
     return info.choices?.some((c) => c.value === value) ? /** @type {string} */ (value) : undefined;
   const v = within(value, info.min, info.max);
   return v !== undefined && info.kind === 'integer' ? Math.round(v) : v;
-}
-
-/**
- * @param {Record<string, unknown>} raw
- * @param {import('../types.js').ViewState} view
- * @param {string[]} reset
- */
-export function validView(raw, view, reset = []) {
-  const out = { ...view };
-  if (raw.size !== undefined) {
-    const size = within(raw.size, DISC_SIZE.min, DISC_SIZE.max);
-    if (size !== raw.size) reset.push('disc size');
-    out.size = size ?? out.size;
-  }
-  for (const [key, name, values] of CHOICES) {
-    if (raw[key] === undefined) continue;
-    if (/** @type {readonly unknown[]} */ (values).includes(raw[key])) /** @type {any} */ (out)[key] = raw[key];
-    else reset.push(name);
-  }
-  for (const [key, name] of /** @type {const} */ ([
-    ['ghost', 'surface beneath the discs'],
-    ['box', 'box'],
-    ['axes', 'axes'],
-    ['bar', 'scale bar'],
-    ['points', 'points of the model'],
-    ['edges', 'edges of the mesh'],
-    ['marks', 'marks on the mesh'],
-  ])) {
-    if (raw[key] === undefined) continue;
-    if (typeof raw[key] === 'boolean') out[key] = /** @type {boolean} */ (raw[key]);
-    else reset.push(name);
-  }
-  for (const [key, name] of /** @type {const} */ ([
-    ['level', 'generation level'],
-    ['step', 'relaxation step'],
-  ])) {
-    if (raw[key] === undefined) continue;
-    const place = raw[key] === null ? null : within(raw[key], 0, LAST_LEVEL);
-    if (place === undefined) reset.push(name);
-    else out[key] = place === null ? null : Math.round(place);
-  }
-  if (raw.follow !== undefined) {
-    const follow = validFollow(raw.follow);
-    if (follow === undefined) reset.push('place on the timeline');
-    else out.follow = follow;
-  }
-  if (raw.measured !== undefined) {
-    const measured = validMeasured(raw.measured);
-    if (measured === undefined) reset.push('measured distance');
-    else out.measured = measured;
-  }
-  if (raw.camera !== undefined) {
-    const c = isRecord(raw.camera) ? raw.camera : {};
-    const target = vec3(c.target);
-    const distance = within(c.distance, 1 / LARGEST_SINGLE, LARGEST_SINGLE);
-    const yaw = within(c.yaw, -2 * Math.PI, 2 * Math.PI);
-    const pitch = within(c.pitch, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
-    if (target && distance !== undefined && yaw !== undefined && pitch !== undefined) {
-      out.camera = { target, distance, yaw, pitch, fit: c.fit === true };
-    } else reset.push('camera');
-  }
-  return out;
 }

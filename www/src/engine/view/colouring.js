@@ -11,6 +11,7 @@ import { COMPONENT_COLOURS, CYCLE, PALETTES } from './palettes.js';
  * @typedef {import('../columns.js').Columns} Columns
  * @typedef {import('../types.js').ColourMode} ColourMode
  * @typedef {import('../types.js').Legend} Legend
+ * @typedef {import('./palettes.js').Palette} Palette
  * @typedef {import('./palettes.js').Theme} Theme
  */
 
@@ -64,38 +65,6 @@ const CURVATURE_QUANTILE = 0.95;
 /** Number of curvatures sampled for that quantile. */
 const CURVATURE_SAMPLES = 4096;
 
-/**
- * Returns the values at both ends of a ramp whose range depends on the particles: the smallest and largest radius, or ±
- * the 95 % quantile of the absolute mean curvature. It is null for other modes and before there is a value.
- * @param {ColourMode} mode @param {Columns} columns
- * @returns {[number, number] | null}
- */
-export function rangeOf(mode, columns) {
-  if (mode === 'radius' && columns.count > 0) {
-    let low = Infinity;
-    let high = 0;
-    for (let i = 0; i < columns.count; i += 1) {
-      const r = columns.radii[i];
-      if (r < low) low = r;
-      if (r > high) high = r;
-    }
-    return [low, high];
-  }
-  if (mode === 'curvature' && columns.curved > 0) {
-    const step = Math.ceil(columns.curved / CURVATURE_SAMPLES);
-    const sizes = [];
-    for (let i = 0; i < columns.curved; i += step) {
-      const size = Math.abs(meanCurvature(columns, i));
-      if (size < Infinity) sizes.push(size);
-    }
-    if (sizes.length === 0) return null;
-    sizes.sort((a, b) => a - b);
-    const most = sizes[Math.floor(CURVATURE_QUANTILE * (sizes.length - 1))];
-    return [-most, most];
-  }
-  return null;
-}
-
 /** @param {Columns} columns @param {number} i */
 const meanCurvature = ({ curvature }, i) => 0.5 * (curvature[2 * i] + curvature[2 * i + 1]);
 
@@ -109,77 +78,6 @@ const meanCurvature = ({ curvature }, i) => 0.5 * (curvature[2 * i] + curvature[
 function onRamp(ramp, v, low, high) {
   const t = high > low ? Math.min(1, Math.max(0, (v - low) / (high - low))) : 0.5;
   return ramp[Math.round(t * (ramp.length - 1)) || 0];
-}
-
-/**
- * Returns the colours of particles `first … last`, as `0xAABBGGRR`.
- *
- * While the figures of a mode (of the report, or the curvature) are missing, the colour is the plain one.
- * @param {ColourMode} mode
- * @param {Theme} theme
- * @param {Columns} columns
- * @param {number} first
- * @param {number} last
- * @param {[number, number] | null} [range]  from {@link rangeOf}
- */
-export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mode, columns)) {
-  const palette = PALETTES[theme];
-  const out = new Uint32Array(last - first);
-  const { levels, slots, normals, valence, nearest, energy, residual, radii, component, curved, adaptive } = columns;
-  switch (mode) {
-    case 'level':
-      for (let i = first; i < last; i += 1) out[i - first] = palette.levels[levels[i] % CYCLE];
-      return out;
-    case 'fate':
-      for (let i = first; i < last; i += 1) out[i - first] = palette.fate[classOfSlots(slots[i], adaptive)];
-      return out;
-    case 'valence':
-      if (!valence) break;
-      for (let i = first; i < last; i += 1) out[i - first] = palette.valence[classOfValence(valence[i])];
-      return out;
-    case 'nearest':
-      if (!nearest) break;
-      for (let i = first; i < last; i += 1)
-        out[i - first] = onRamp(palette.sequential, nearest[i] / (2 * radii[i]), ...NEAREST_SHARE);
-      return out;
-    case 'energy':
-      if (!energy) break;
-      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, energy[i], ...ENERGY_RANGE);
-      return out;
-    case 'residual': {
-      if (!residual) break;
-      const [low, high] = RESIDUAL_SHARE.map(Math.log10);
-      for (let i = first; i < last; i += 1)
-        out[i - first] = onRamp(palette.sequential, Math.log10(residual[i] / radii[i]), low, high);
-      return out;
-    }
-    case 'radius':
-      if (!range) break;
-      for (let i = first; i < last; i += 1) out[i - first] = onRamp(palette.sequential, radii[i], ...range);
-      return out;
-    case 'curvature':
-      if (!range) break;
-      for (let i = first; i < last; i += 1) {
-        const mean = i < curved ? meanCurvature(columns, i) : NaN;
-        out[i - first] = Number.isNaN(mean) ? palette.plain : onRamp(palette.diverging, mean, ...range);
-      }
-      return out;
-    case 'component':
-      if (!component) break;
-      for (let i = first; i < last; i += 1)
-        out[i - first] =
-          component[i] === NO_COMPONENT ? palette.plain : palette.components[component[i] % COMPONENT_COLOURS];
-      return out;
-    case 'normal':
-      for (let i = first; i < last; i += 1) {
-        // The range is 0.15 … 0.9 instead of 0 … 1, so that no direction is black or too bright.
-        const channel = (/** @type {number} */ k) => Math.round(255 * (0.525 + 0.375 * normals[3 * i + k])) & 255;
-        out[i - first] = ((255 << 24) | (channel(2) << 16) | (channel(1) << 8) | channel(0)) >>> 0;
-      }
-      return out;
-    default:
-  }
-  return out.fill(palette.plain);
 }
 
 /** Labels of the classes of slots and of valence, in the order of the legend. */
@@ -219,6 +117,216 @@ function categories(labels, colours, count, classOf) {
     .map(({ label, colour, count: n }) => ({ label, colour, count: n }));
 }
 
+/** @param {ArrayLike<number>} packed */
+const hexes = (packed) => Array.from(packed, hexFromPacked);
+
+/** The smallest and the largest radius. @param {Columns} columns @returns {[number, number] | null} */
+function radiusRange({ count, radii }) {
+  let low = Infinity;
+  let high = 0;
+  for (let i = 0; i < count; i += 1) {
+    if (radii[i] < low) low = radii[i];
+    if (radii[i] > high) high = radii[i];
+  }
+  return count > 0 ? [low, high] : null;
+}
+
+/** ± the 95 % quantile of the absolute mean curvature. @param {Columns} columns @returns {[number, number] | null} */
+function curvatureRange(columns) {
+  const step = Math.ceil(columns.curved / CURVATURE_SAMPLES);
+  const sizes = [];
+  for (let i = 0; i < columns.curved; i += step) {
+    const size = Math.abs(meanCurvature(columns, i));
+    if (size < Infinity) sizes.push(size);
+  }
+  if (sizes.length === 0) return null;
+  sizes.sort((a, b) => a - b);
+  const most = sizes[Math.floor(CURVATURE_QUANTILE * (sizes.length - 1))];
+  return [-most, most];
+}
+
+/** What a colouring works with. @typedef {{palette: Palette, columns: Columns, range: [number, number] | null}} Context */
+/**
+ * A way to colour the particles. A colour is packed as `0xAABBGGRR`.
+ * @typedef {object} Colouring
+ * @property {(columns: Columns) => [number, number] | null} [range]  the values at both ends of a ramp, where they depend on the
+ *   particles; null before there is a value
+ * @property {(context: Context) => ((i: number) => number) | null} colour  null while what it shows is not known
+ * @property {(context: Context) => Omit<Legend, 'unit'> & {unit?: string}} legend
+ */
+
+/**
+ * A colouring by classes. `classOf` returns the class of a particle, or is null while the classes are not known.
+ * @template {string} K
+ * @param {string} title @param {readonly (readonly [K, string])[]} labels
+ * @param {(palette: Palette) => Record<K, number>} coloursOf
+ * @param {(columns: Columns) => ((i: number) => K) | null} classesOf
+ * @returns {Colouring}
+ */
+const classes = (title, labels, coloursOf, classesOf) => ({
+  colour({ palette, columns }) {
+    const [colours, classOf] = [coloursOf(palette), classesOf(columns)];
+    return classOf && ((i) => colours[classOf(i)]);
+  },
+  legend({ palette, columns }) {
+    const classOf = classesOf(columns);
+    return byEntries(title, palette, classOf && categories(labels, coloursOf(palette), columns.count, classOf));
+  },
+});
+
+/**
+ * A legend of entries, pending while they are not known.
+ * @param {string} title @param {Palette} palette @param {import('../types.js').LegendEntry[] | null} entries
+ */
+const byEntries = (title, palette, entries) => ({
+  title,
+  kind: /** @type {const} */ ('categories'),
+  entries: entries ?? [],
+  colours: entries ? entries.map(({ colour }) => colour) : [hexFromPacked(palette.plain)],
+});
+
+/**
+ * A colouring by a sequential ramp. `valuesIn` returns the value of a particle, or is null while the values are not known.
+ * @param {Pick<Legend, 'title' | 'mark'> & {unit?: string}} legend
+ * @param {readonly [number, number] | ((columns: Columns) => [number, number] | null)} span
+ * @param {(columns: Columns) => ((i: number) => number) | null} valuesIn
+ * @param {(value: number) => number} [scale]  what is linear along the ramp
+ * @returns {Colouring}
+ */
+const ramp = (legend, span, valuesIn, scale = (value) => value) => ({
+  range: typeof span === 'function' ? span : undefined,
+  colour({ palette: { sequential }, columns, range }) {
+    const ends = typeof span === 'function' ? range : span;
+    const valueAt = valuesIn(columns);
+    if (!ends || !valueAt) return null;
+    const [low, high] = ends.map(scale);
+    return (i) => onRamp(sequential, scale(valueAt(i)), low, high);
+  },
+  legend: ({ palette, range }) => ({
+    kind: 'sequential',
+    range: typeof span === 'function' ? (range ?? undefined) : [...span],
+    colours: hexes(palette.sequential),
+    ...legend,
+  }),
+});
+
+/** @type {Record<ColourMode, Colouring>} */
+export const COLOURINGS = {
+  level: {
+    colour({ palette, columns: { levels } }) {
+      return (i) => palette.levels[levels[i] % CYCLE];
+    },
+    legend: ({ palette, columns }) => ({
+      title: 'Generation level',
+      unit: 'rings around the seed',
+      kind: 'cyclic',
+      range: [0, columns.lastLevel],
+      colours: hexes(palette.levels),
+    }),
+  },
+  fate: classes(
+    'Slots',
+    FATE_LABELS,
+    ({ fate }) => fate,
+    ({ slots, adaptive }) =>
+      (i) =>
+        classOfSlots(slots[i], adaptive),
+  ),
+  valence: classes(
+    'Neighbours',
+    VALENCE_LABELS,
+    (palette) => palette.valence,
+    ({ valence }) => valence && ((i) => classOfValence(valence[i])),
+  ),
+  nearest: ramp(
+    { title: 'Nearest distance', unit: '× 2r', mark: 1 },
+    NEAREST_SHARE,
+    ({ nearest, radii }) => nearest && ((i) => nearest[i] / (2 * radii[i])),
+  ),
+  energy: ramp({ title: 'Energy', mark: 1 }, ENERGY_RANGE, ({ energy }) => energy && ((i) => energy[i])),
+  residual: ramp(
+    { title: 'Residual', unit: '× r' },
+    RESIDUAL_SHARE,
+    ({ residual, radii }) => residual && ((i) => residual[i] / radii[i]),
+    Math.log10,
+  ),
+  radius: ramp(
+    { title: 'Radius' },
+    radiusRange,
+    ({ radii }) =>
+      (i) =>
+        radii[i],
+  ),
+  curvature: {
+    range: curvatureRange,
+    colour({ palette, columns, range }) {
+      if (!range) return null;
+      const [low, high] = range;
+      return (i) => {
+        const mean = i < columns.curved ? meanCurvature(columns, i) : NaN;
+        return Number.isNaN(mean) ? palette.plain : onRamp(palette.diverging, mean, low, high);
+      };
+    },
+    legend: ({ palette, columns, range }) => ({
+      title: 'Mean curvature',
+      unit: '1/length',
+      kind: 'diverging',
+      range: range ?? undefined,
+      mark: 0,
+      colours: hexes(palette.diverging),
+      pending: range === null || columns.curved < columns.count,
+    }),
+  },
+  component: {
+    colour: ({ palette, columns: { component } }) =>
+      component &&
+      ((i) => (component[i] === NO_COMPONENT ? palette.plain : palette.components[component[i] % COMPONENT_COLOURS])),
+    legend: ({ palette, columns: { component } }) =>
+      byEntries('Connected components', palette, component && componentEntries(component, palette)),
+  },
+  normal: {
+    colour({ columns: { normals } }) {
+      return (i) => colourOfDirection(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    },
+    legend: () => ({
+      title: 'Normal',
+      kind: 'normal',
+      entries: NORMAL_AXES,
+      colours: NORMAL_AXES.map(({ colour }) => colour),
+    }),
+  },
+  plain: {
+    colour({ palette }) {
+      return () => palette.plain;
+    },
+    legend: ({ palette }) => ({ title: 'Plain', kind: 'plain', colours: [hexFromPacked(palette.plain)] }),
+  },
+};
+
+/**
+ * Returns the values at both ends of a ramp whose range depends on the particles; null for other modes and before there is a value.
+ * @param {ColourMode} mode @param {Columns} columns
+ */
+export const rangeOf = (mode, columns) => COLOURINGS[mode].range?.(columns) ?? null;
+
+/**
+ * Returns the colours of particles `first … last`, as `0xAABBGGRR`. While what a mode shows is missing, it is the plain one.
+ * @param {ColourMode} mode
+ * @param {Theme} theme
+ * @param {Columns} columns
+ * @param {number} first
+ * @param {number} last
+ * @param {[number, number] | null} [range]  from {@link rangeOf}
+ */
+export function coloursOf(mode, theme, columns, first, last, range = rangeOf(mode, columns)) {
+  const palette = PALETTES[theme];
+  const out = new Uint32Array(last - first);
+  const colour = COLOURINGS[mode].colour({ palette, columns, range });
+  if (!colour) return out.fill(palette.plain);
+  for (let i = first; i < last; i += 1) out[i - first] = colour(i);
+  return out;
+}
+
 /**
  * Returns the legend of the colours from {@link coloursOf}.
  * @param {ColourMode} mode
@@ -228,96 +336,9 @@ function categories(labels, colours, count, classOf) {
  * @returns {Legend}
  */
 export function legendOf(mode, theme, columns, range = rangeOf(mode, columns)) {
-  const palette = PALETTES[theme];
-  /**
-   * The legend of a sequential ramp, pending while there are no `values`.
-   * @param {Pick<Legend, 'title' | 'range' | 'mark'> & {unit?: string}} legend @param {unknown} values
-   * @returns {Legend}
-   */
-  const ramp = (legend, values) => ({
-    unit: '',
-    kind: 'sequential',
-    colours: [...palette.sequential].map(hexFromPacked),
-    pending: values === null,
-    ...legend,
-  });
-  switch (mode) {
-    case 'level':
-      return {
-        title: 'Generation level',
-        unit: 'rings around the seed',
-        kind: 'cyclic',
-        range: [0, columns.lastLevel],
-        colours: [...palette.levels].map(hexFromPacked),
-      };
-    case 'fate': {
-      const entries = categories(FATE_LABELS, palette.fate, columns.count, (i) =>
-        classOfSlots(columns.slots[i], columns.adaptive),
-      );
-      return { title: 'Slots', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
-    }
-    case 'valence': {
-      const { valence } = columns;
-      if (!valence)
-        return {
-          title: 'Neighbours',
-          unit: '',
-          kind: 'categories',
-          entries: [],
-          colours: [hexFromPacked(palette.plain)],
-          pending: true,
-        };
-      const entries = categories(VALENCE_LABELS, palette.valence, columns.count, (i) => classOfValence(valence[i]));
-      return { title: 'Neighbours', unit: '', kind: 'categories', entries, colours: entries.map((e) => e.colour) };
-    }
-    case 'nearest':
-      return ramp({ title: 'Nearest distance', unit: '× 2r', range: [...NEAREST_SHARE], mark: 1 }, columns.nearest);
-    case 'energy':
-      return ramp({ title: 'Energy', range: [...ENERGY_RANGE], mark: 1 }, columns.energy);
-    case 'residual':
-      return ramp({ title: 'Residual', unit: '× r', range: [...RESIDUAL_SHARE] }, columns.residual);
-    case 'radius':
-      return ramp({ title: 'Radius', range: range ?? undefined }, range);
-    case 'curvature':
-      return {
-        title: 'Mean curvature',
-        unit: '1/length',
-        kind: 'diverging',
-        range: range ?? undefined,
-        mark: 0,
-        colours: [...palette.diverging].map(hexFromPacked),
-        pending: range === null || columns.curved < columns.count,
-      };
-    case 'component': {
-      if (!columns.component)
-        return {
-          title: 'Connected components',
-          unit: '',
-          kind: 'categories',
-          entries: [],
-          colours: [hexFromPacked(palette.plain)],
-          pending: true,
-        };
-      const entries = componentEntries(columns.component, palette);
-      return {
-        title: 'Connected components',
-        unit: '',
-        kind: 'categories',
-        entries,
-        colours: entries.map((e) => e.colour),
-      };
-    }
-    case 'normal':
-      return {
-        title: 'Normal',
-        unit: '',
-        kind: 'normal',
-        entries: normalAxes(),
-        colours: normalAxes().map((e) => e.colour),
-      };
-    default:
-      return { title: 'Plain', unit: '', kind: 'plain', colours: [hexFromPacked(palette.plain)] };
-  }
+  const { colour, legend } = COLOURINGS[mode];
+  const context = { palette: PALETTES[theme], columns, range };
+  return { unit: '', pending: colour(context) === null, ...legend(context) };
 }
 
 /**
@@ -346,18 +367,22 @@ function componentEntries(component, palette) {
   return entries;
 }
 
-/** Returns the colours of the six axis directions, as in `coloursOf`. */
-function normalAxes() {
-  const byte = (/** @type {number} */ v) => Math.round(255 * (0.525 + 0.375 * v));
-  return /** @type {[string, number, number, number][]} */ ([
-    ['+x', 1, 0, 0],
-    ['−x', -1, 0, 0],
-    ['+y', 0, 1, 0],
-    ['−y', 0, -1, 0],
-    ['+z', 0, 0, 1],
-    ['−z', 0, 0, -1],
-  ]).map(([label, x, y, z]) => ({
-    label,
-    colour: hexFromPacked(((255 << 24) | (byte(z) << 16) | (byte(y) << 8) | byte(x)) >>> 0),
-  }));
+/**
+ * Returns the colour of a unit vector. The range of a channel is 0.15 … 0.9 instead of 0 … 1, so that no direction is black or too
+ * bright.
+ * @param {number} x @param {number} y @param {number} z
+ */
+function colourOfDirection(x, y, z) {
+  const channel = (/** @type {number} */ v) => Math.round(255 * (0.525 + 0.375 * v)) & 255;
+  return ((255 << 24) | (channel(z) << 16) | (channel(y) << 8) | channel(x)) >>> 0;
 }
+
+/** The six directions along the axes, for the legend. */
+const NORMAL_AXES = /** @type {[string, number, number, number][]} */ ([
+  ['+x', 1, 0, 0],
+  ['−x', -1, 0, 0],
+  ['+y', 0, 1, 0],
+  ['−y', 0, -1, 0],
+  ['+z', 0, 0, 1],
+  ['−z', 0, 0, -1],
+]).map(([label, x, y, z]) => ({ label, colour: hexFromPacked(colourOfDirection(x, y, z)) }));

@@ -14,42 +14,33 @@ const EDGE_PX = 1;
 const DIM_BACKFACES = 1;
 
 /**
- * @typedef {object} Look
- * @property {import('../types.js').ColourMode} colour
- * @property {number} size  disc radius as a share of the particle's radius
- * @property {'discs' | 'mesh'} draw
- * @property {'smooth' | 'flat'} faces
- * @property {boolean} edges  whether the edges of faces are drawn
- * @property {boolean} marks  whether vertices without six neighbours are marked
- * @property {boolean} ghost  whether the surface is drawn faintly beneath discs
+ * What of the view the picture itself shows, and what else it shows.
+ * @typedef {Omit<import('../types.js').ViewState, 'theme' | 'box' | 'bar' | 'measured' | 'points' | 'grain' | 'follow' | 'camera'>
+ *   & Setting} Look
+ */
+/**
+ * @typedef {object} Setting
  * @property {'light' | 'dark'} theme
  * @property {import('../types.js').Bounds | null} box  the clip box, or null if it is not drawn
- * @property {boolean} axes  whether axes are drawn over the picture, which a fit leaves room for
  * @property {import('../types.js').CuttingPlane | null} plane  what it hides is neither drawn nor picked
  * @property {Float32Array | null} points  the points of a model, three numbers each, drawn as dots
- * @property {number | null} level  the newest visible generation level, null for all
- * @property {number | null} step  the relaxation step after which discs are drawn, null for the last one
  * @property {number | null} upto  number of particles drawn, null for all
  * @property {number} highlight  index of the particle with an outline, −1 for none
  * @property {import('./camera.js').Insets} insets
  */
 
+/** Returns what the picture shows of the view. @param {import('../types.js').ViewState} view */
+export function seenOf({ theme, box, bar, measured, points, grain, follow, camera, ...seen }) {
+  return seen;
+}
+
 /** @param {import('../types.js').ViewState} view @returns {Look} */
-export const firstLook = ({ colour, size, draw, faces, edges, marks, ghost }) => ({
-  colour,
-  size,
-  draw,
-  faces,
-  edges,
-  marks,
-  ghost,
+export const firstLook = (view) => ({
+  ...seenOf(view),
   theme: 'light',
   box: null,
-  axes: false,
   plane: null,
   points: null,
-  level: null,
-  step: null,
   upto: null,
   highlight: -1,
   insets: { left: 0, right: 0, top: 0, bottom: 0 },

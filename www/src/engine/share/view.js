@@ -1,0 +1,148 @@
+/**
+ * The options of the view: for each what it is before it is chosen, what may be chosen, and its name in words. State, links, validation
+ * and the menu follow from this table.
+ *
+ * @module
+ */
+import { DISC_SIZE } from '../types.js';
+import { homeCamera, PITCH_LIMIT_RAD } from '../view/camera.js';
+import { COLOURINGS } from '../view/colouring.js';
+import { integers, isRecord, vec3, within } from './valid.js';
+
+/** Largest number of a camera, which the graphics card reads in single precision. */
+const LARGEST_SINGLE = 3e38;
+/** Upper limit for generation levels, relaxation steps and events in a state; no run reaches it. */
+const LAST_LEVEL = 1e6;
+/** Largest index of a particle in a state; no run reaches it. */
+const LAST_PARTICLE = 2 ** 32 - 1;
+
+/**
+ * An option. `valid` returns the valid value that is nearest to any input, or undefined. With `exact` a value that had to be changed
+ * counts as one that was reset.
+ * @template T
+ * @typedef {{home: () => T, words: string, valid: (raw: unknown) => T | undefined, exact?: boolean}} Option
+ */
+
+/** @param {boolean} home @param {string} words @returns {Option<boolean>} */
+const flag = (home, words) => ({
+  home: () => home,
+  words,
+  valid: (raw) => (typeof raw === 'boolean' ? raw : undefined),
+});
+
+/**
+ * An option with one of several values, of which the first is taken before one is chosen.
+ * @template {string} T
+ * @param {string} words @param {readonly T[]} values @returns {Option<T>}
+ */
+const choice = (words, values) => ({
+  home: () => values[0],
+  words,
+  valid: (raw) => values.find((value) => value === raw),
+});
+
+/** A number on the timeline; null for all of it. @param {string} words @returns {Option<number | null>} */
+const place = (words) => ({
+  home: () => null,
+  words,
+  valid(raw) {
+    if (raw === null) return null;
+    const at = within(raw, 0, LAST_LEVEL);
+    return at === undefined ? undefined : Math.round(at);
+  },
+});
+
+/** @param {unknown} raw @returns {import('../types.js').CameraState | undefined} */
+function validCamera(raw) {
+  const { target: at, distance: far, yaw: turn, pitch: tilt, fit } = isRecord(raw) ? raw : {};
+  const target = vec3(at);
+  const distance = within(far, 1 / LARGEST_SINGLE, LARGEST_SINGLE);
+  const yaw = within(turn, -2 * Math.PI, 2 * Math.PI);
+  const pitch = within(tilt, -PITCH_LIMIT_RAD, PITCH_LIMIT_RAD);
+  if (!target || distance === undefined || yaw === undefined || pitch === undefined) return undefined;
+  return { target, distance, yaw, pitch, fit: fit === true };
+}
+
+export const VIEW = {
+  colour: choice('colour', /** @type {import('../types.js').ColourMode[]} */ (Object.keys(COLOURINGS))),
+  /** Disc radius as a share of the repulsion radius: see {@link DISC_SIZE}. @type {Option<number>} */
+  size: {
+    home: () => DISC_SIZE.initial,
+    words: 'disc size',
+    valid: (raw) => within(raw, DISC_SIZE.min, DISC_SIZE.max),
+    exact: true,
+  },
+  /** How the particles are drawn. */
+  draw: choice('way of drawing', ['discs', 'mesh']),
+  /** How the faces of a mesh are lit and coloured. */
+  faces: choice('faces of the mesh', ['smooth', 'flat']),
+  /** Whether the edges of a mesh are drawn. */
+  edges: flag(true, 'edges of the mesh'),
+  /** Whether vertices of a mesh without six neighbours are marked. */
+  marks: flag(true, 'marks on the mesh'),
+  theme: choice('theme', ['auto', 'light', 'dark']),
+  /** Whether the surface is drawn faintly beneath the discs. */
+  ghost: flag(false, 'surface beneath the discs'),
+  /** Whether the clip box is drawn, with its dimensions. */
+  box: flag(false, 'box'),
+  /** Whether axes with ticks are drawn around the clip box. */
+  axes: flag(false, 'axes'),
+  /** Whether a scale bar is drawn. */
+  bar: flag(false, 'scale bar'),
+  /** Indices of up to two particles whose distance is measured; null while nothing is. @type {Option<number[] | null>} */
+  measured: {
+    home: () => null,
+    words: 'measured distance',
+    valid(raw) {
+      if (raw === null) return null;
+      const ends = integers(raw, LAST_PARTICLE);
+      return ends && ends.length <= 2 && new Set(ends).size === ends.length ? ends : undefined;
+    },
+  },
+  /** Whether the points that a model interpolates are drawn. */
+  points: flag(true, 'points of the model'),
+  /** The newest generation level drawn, null for all of them; a level beyond the last counts as the last. */
+  level: place('generation level'),
+  /** The relaxation step after which the particles are drawn, null for the last one. */
+  step: place('relaxation step'),
+  /** What a step on the timeline is. */
+  grain: choice('grain of the timeline', ['level', 'particle', 'event']),
+  /** The particle of the paper's run that is followed, and the number of its event. @type {Option<[number, number] | null>} */
+  follow: {
+    home: () => null,
+    words: 'place on the timeline',
+    valid(raw) {
+      if (raw === null) return null;
+      const [particle, event, ...more] = integers(raw, Infinity) ?? [];
+      if (event === undefined || more.length > 0) return undefined;
+      return [Math.min(particle, LAST_PARTICLE), Math.min(event, LAST_LEVEL)];
+    },
+  },
+  /** @type {Option<import('../types.js').CameraState>} */
+  camera: { home: homeCamera, words: 'camera', valid: validCamera },
+};
+
+/** @typedef {{[K in keyof typeof VIEW]: ReturnType<(typeof VIEW)[K]['home']>}} ViewState */
+
+const OPTIONS = /** @type {[string, Option<unknown>][]} */ (Object.entries(VIEW));
+
+export const homeView = () =>
+  /** @type {ViewState} */ (Object.fromEntries(OPTIONS.map(([key, { home }]) => [key, home()])));
+
+/**
+ * Returns a view with what can be used of a patch. What cannot is named in `reset`, in words for the user.
+ * @param {Record<string, unknown>} raw
+ * @param {ViewState} view
+ * @param {string[]} reset
+ */
+export function validView(raw, view, reset = []) {
+  /** @type {Record<string, unknown>} */
+  const out = { ...view };
+  for (const [key, { words, valid, exact }] of OPTIONS) {
+    if (raw[key] === undefined) continue;
+    const value = valid(raw[key]);
+    if (value === undefined || (exact && value !== raw[key])) reset.push(words);
+    if (value !== undefined) out[key] = value;
+  }
+  return /** @type {ViewState} */ (out);
+}
