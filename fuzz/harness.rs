@@ -5,7 +5,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
-use marching_particles::math::Sym3;
+use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::pointcloud::job::Job;
 use marching_particles::pointcloud::read::{ReadError, Reader};
 use marching_particles::sampler::{Search, Settings};
@@ -75,15 +75,15 @@ pub fn formula(bytes: &[u8]) {
 /// The bounds of a sum over a box around a point hold the value there, and say where it has none.
 pub fn check_value(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec3) {
     let mut out = [Enclosure::UNKNOWN];
-    field.enclose(0, &[[p - below, p + above]], &mut out);
-    let [Enclosure { value: [least, most], defined, .. }] = out;
+    field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
+    let [Enclosure { value: bounds, defined, .. }] = out;
     let value = field.jet(p).value;
     let context = || format!("{} at {p}, {below} {above}: {value}, {out:?}", field.text());
-    assert!(!least.is_nan() && !most.is_nan(), "{}", context());
+    assert!(!bounds.lo.is_nan() && !bounds.hi.is_nan(), "{}", context());
     // An intermediate result beyond the numbers makes 0·∞ of what is 0 (`tests/it/formula_properties.rs` asks for more of tamer
     // formulas), and at a pole the sign of a zero decides that of the infinity.
     if !value.is_nan() && (value.is_finite() || defined) {
-        assert!(least <= value && value <= most, "{}", context());
+        assert!(bounds.holds(value), "{}", context());
     }
 }
 
@@ -91,7 +91,8 @@ pub fn check_value(field: &mut FormulaField, p: DVec3, below: DVec3, above: DVec
 /// its size.
 pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places: [DVec3; 2]) {
     let mut out = [Enclosure::UNKNOWN];
-    field.enclose(0, &[[lo, lo + size]], &mut out);
+    let around = Bounds::new(lo, lo + size);
+    field.enclose(0, &[around], &mut out);
     let [known] = out;
     if !(known.defined && known.continuous) {
         return;
@@ -99,38 +100,39 @@ pub fn check_enclosure(field: &mut FormulaField, lo: DVec3, size: DVec3, places:
     let [p, q] = places.map(|share| (lo + size * share).min(lo + size));
     let gradient = field.transformed_jet(p).gradient;
     for axis in 0..3 {
-        let ([least, most], slope) = (known.gradient[axis], gradient[axis]);
-        assert!(least <= most, "{}: {known:?}", field.text());
-        let is_within = !slope.is_finite() || least <= slope && slope <= most;
+        let (bounds, slope) = (known.gradient[axis], gradient[axis]);
+        assert!(bounds.lo <= bounds.hi, "{}: {known:?}", field.text());
+        let is_within = !slope.is_finite() || bounds.holds(slope);
         assert!(is_within, "{}: {gradient} at {p}, not in {known:?}", field.text());
     }
-    let mut second = [[[0.0; 2]; 6]];
-    field.enclose_second(0, &[[lo, lo + size]], &mut second);
+    let mut second = [Sym3::splat(Interval::EVERYTHING)];
+    field.enclose_second(0, &[around], &mut second);
     let h = field.transformed_jet(p).hessian;
-    for ([least, most], exact) in second[0].into_iter().zip([h.xx, h.xy, h.xz, h.yy, h.yz, h.zz]) {
-        let is_within = !known.smooth || !exact.is_finite() || least <= exact && exact <= most;
+    for (bounds, exact) in second[0].entries().into_iter().zip(h.entries()) {
+        let is_within = !known.smooth || !exact.is_finite() || bounds.holds(exact);
         assert!(is_within, "{}: {h:?} at {p}, not in {second:?}", field.text());
     }
     // By the mean value theorem f(q) − f(p) is a slope within the bounds times q − p, even across kinks.
     let (from, to) = (field.jet(p).value, field.jet(q).value);
-    let mut rise = [0.0, 0.0];
+    let mut rise = Interval::new(0.0, 0.0);
     for axis in 0..3 {
         let way = q[axis] - p[axis];
-        let [a, b] = known.gradient[axis].map(|slope| if way == 0.0 { 0.0 } else { slope * way });
-        rise = [rise[0] + a.min(b), rise[1] + a.max(b)];
+        rise = rise + known.gradient[axis] * way;
     }
-    let slack = 1e-11 * (from.abs() + to.abs() + known.value[0].abs() + known.value[1].abs())
+    let slack = 1e-11 * (from.abs() + to.abs() + known.value.lo.abs() + known.value.hi.abs())
         + rounding(field, p)
         + rounding(field, q);
-    let is_outside = to - from < rise[0] - slack || to - from > rise[1] + slack;
+    let rise = rise.widened(slack);
+    // False for NaN.
+    let is_outside = to - from < rise.lo || to - from > rise.hi;
     assert!(!is_outside, "{}: {from} at {p} and {to} at {q}, but {known:?}", field.text());
 }
 
 /// How far rounding may move the value at a point, by the bounds there: terms may be millions of times as large as their sum.
 fn rounding(field: &mut FormulaField, p: DVec3) -> f64 {
     let mut out = [Enclosure::UNKNOWN];
-    field.enclose(0, &[[p, p]], &mut out);
-    out[0].value[1] - out[0].value[0]
+    field.enclose(0, &[Bounds::point(p)], &mut out);
+    out[0].value.hi - out[0].value.lo
 }
 
 /// Derivatives by transformation of the formula are those of forward jets.

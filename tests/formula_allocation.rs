@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Bounded, Enclosure, Field};
-use marching_particles::math::Sym3;
+use marching_particles::math::{Bounds, Sym3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -49,7 +49,7 @@ fn a_warm_field_evaluates_and_takes_new_parameters_without_allocating() {
             field.gradients(&points, &mut value, &mut gradient);
             field.hessians(&points, &mut value, &mut gradient, &mut hessian);
             field.jet(DVec3::splat(0.3));
-            field.enclose(0, &[[DVec3::splat(-0.3), DVec3::splat(0.3)]], &mut enclosure);
+            field.enclose(0, &[Bounds::cube(0.3)], &mut enclosure);
         };
         work();
         let before = CALLS.get();

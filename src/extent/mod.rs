@@ -74,14 +74,14 @@ impl Extent {
         }
         /// Rounds in which room and diagonal follow each other; the room settles by a factor of ten in each for usual radii.
         const ROUNDS: u32 = 8;
-        let size = self.bounds.hi() - self.bounds.lo();
+        let size = self.bounds.size();
         let most = MOST_MARGIN * size.max_element();
         let mut room = MARGIN * size;
         for _ in 0..ROUNDS {
             let radii = (MARGIN_RADII * share * (size + 2.0 * room).length()).min(most);
             room = (MARGIN * size).max(DVec3::splat(radii));
         }
-        placeable(self.bounds.lo() - room, self.bounds.hi() + room)
+        placeable(&Bounds::new(self.bounds.lo() - room, self.bounds.hi() + room))
     }
 }
 
@@ -116,16 +116,16 @@ impl BoxFit {
 async fn find(field: &mut dyn Field, cells: usize) -> Extent {
     let Some(bounded) = field.bounded() else { return sampled::find(field).await };
     let mut left = cells;
-    let mut bends: Option<[DVec3; 2]> = None;
+    let mut bends: Option<Bounds> = None;
     let mut before = None;
     for half in HALVES {
         let Scan { outcome, hull } = scan::scan(bounded, half, &mut left).await;
         pause().await;
         let is_first = before.is_none();
         match (outcome, hull) {
-            (Outcome::Inside, Some([lo, hi])) => {
+            (Outcome::Inside, Some(hull)) => {
                 let reach = if is_first { Reach::Bounded } else { Reach::Endless };
-                let bounds = placeable(lo, hi);
+                let bounds = placeable(&hull);
                 // What is beyond the box says nothing about the room within.
                 let extent = Extent { bounds, reach: Reach::Bounded };
                 return if is_first { extent } else { Extent { bounds: extent.with_room(0.0), reach } };
@@ -146,14 +146,13 @@ async fn find(field: &mut dyn Field, cells: usize) -> Extent {
 }
 
 /// The box of an endless surface with these bends.
-fn around(bends: Option<[DVec3; 2]>) -> Bounds {
+fn around(bends: Option<Bounds>) -> Bounds {
     let usual = Bounds::cube(USUAL_HALF);
-    let Some([lo, hi]) = bends else { return usual };
-    if lo.cmpge(usual.lo()).all() && hi.cmple(usual.hi()).all() {
+    let Some(bends) = bends else { return usual };
+    if usual.holds(bends.lo()) && usual.holds(bends.hi()) {
         return usual;
     }
-    let (middle, half) = (0.5 * (lo + hi), (0.5 + ROOM) * (hi - lo).max_element());
-    placeable(middle - half, middle + half)
+    placeable(&Bounds::point(bends.middle()).enlarged((0.5 + ROOM) * bends.size().max_element()))
 }
 
 /// The box of a surface that comes again along every axis, of short periods two.
@@ -164,16 +163,16 @@ fn of_periods(periods: [Option<f64>; 3]) -> Option<Bounds> {
     let is_short = [x, y, z].into_iter().any(|period| period > 0.0 && period < SHORT_PERIOD);
     // Along an axis along which nothing changes the box is as wide as along the widest other.
     let half = [x, y, z].map(|period| of(if period > 0.0 { period } else { longest }));
-    is_short.then(|| placeable(-DVec3::from_array(half), DVec3::from_array(half)))
+    is_short.then(|| placeable(&Bounds::symmetric(half)))
 }
 
 /// The box, made larger around its middle until particles can be put in it.
-fn placeable(lo: DVec3, hi: DVec3) -> Bounds {
-    let (middle, mut half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+fn placeable(wanted: &Bounds) -> Bounds {
+    let (middle, mut half) = (wanted.middle(), 0.5 * wanted.size());
     // A flat box has no room across.
     half = half.max(DVec3::splat(1e-6 * half.max_element()).max(DVec3::splat(f64::MIN_POSITIVE)));
     loop {
-        let bounds = Bounds { min: (middle - half).to_array(), max: (middle + half).to_array() };
+        let bounds = Bounds::new(middle - half, middle + half);
         if bounds.is_valid() || !half.is_finite() {
             return bounds;
         }

@@ -16,23 +16,23 @@ const MOST_GRIDS: u32 = 12;
 pub(super) async fn find(field: &mut dyn Field) -> Extent {
     let mut seen = None;
     for half in HALVES.into_iter().rev() {
-        let cube = [DVec3::splat(-half), DVec3::splat(half)];
-        let Some((mut hull, passes)) = changes(field, cube).await else { continue };
+        let cube = Bounds::cube(half);
+        let Some((mut hull, passes)) = changes(field, &cube).await else { continue };
         seen = seen.or(Some(half));
         if passes {
             continue;
         }
         let mut over = cube;
         for _ in 0..MOST_GRIDS {
-            if (hull[1] - hull[0]).max_element() >= FULL * (over[1] - over[0]).max_element() {
+            if hull.size().max_element() >= FULL * over.size().max_element() {
                 break;
             }
             // A cell of the grid around what it found is room for what it missed.
             over = hull;
-            let Some((finer, _)) = changes(field, over).await else { break };
+            let Some((finer, _)) = changes(field, &over).await else { break };
             hull = finer;
         }
-        return Extent { bounds: placeable(hull[0], hull[1]), reach: Reach::Bounded };
+        return Extent { bounds: placeable(&hull), reach: Reach::Bounded };
     }
     match seen {
         Some(half) => Extent { bounds: Bounds::cube(half), reach: Reach::Endless },
@@ -41,9 +41,9 @@ pub(super) async fn find(field: &mut dyn Field) -> Extent {
 }
 
 /// The box of the cells at whose corners f changes its sign, with a cell of room, and whether one of them lies at the faces.
-async fn changes(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> Option<([DVec3; 2], bool)> {
+async fn changes(field: &mut dyn Field, over: &Bounds) -> Option<(Bounds, bool)> {
     const NODES: usize = CELLS + 1;
-    let step = (hi - lo) / CELLS as f64;
+    let (lo, step) = (over.lo(), over.size() / CELLS as f64);
     let mut below = vec![f32::NAN; NODES * NODES];
     let mut layer = below.clone();
     let (mut first, mut last) = ([usize::MAX; 3], [0; 3]);
@@ -76,5 +76,5 @@ async fn changes(field: &mut dyn Field, [lo, hi]: [DVec3; 2]) -> Option<([DVec3;
     let at = |node: [usize; 3], room: f64| {
         DVec3::from_array(core::array::from_fn(|axis| lo[axis] + step[axis] * (node[axis] as f64 + room)))
     };
-    (first[0] != usize::MAX).then(|| ([at(first, -1.0), at(last, 1.0)], passes))
+    (first[0] != usize::MAX).then(|| (Bounds::new(at(first, -1.0), at(last, 1.0)), passes))
 }

@@ -6,6 +6,7 @@
 //! the search for components.
 
 use crate::field::{Bounded, Enclosure};
+use crate::math::Bounds;
 use crate::slices::pause;
 use glam::DVec3;
 
@@ -27,6 +28,8 @@ const MANY_INSIDE: usize = 4_000;
 /// Where a level of this depth drops less than a tenth of its cells, the bounds say nothing.
 const IDLE_LEVEL: u32 = 3;
 const IDLE_SHARE: f64 = 0.9;
+/// The box that holds nothing.
+const NOWHERE: Bounds = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
 /// Cells in a batch, after which the scan may be left.
 const BATCH: usize = 32;
 
@@ -46,7 +49,7 @@ pub(super) enum Outcome {
 /// The result of a scan: how it ended, and the box around the surface that it met.
 pub(super) struct Scan {
     pub(super) outcome: Outcome,
-    pub(super) hull: Option<[DVec3; 2]>,
+    pub(super) hull: Option<Bounds>,
 }
 
 /// Place of a cell in the grid of its level.
@@ -72,8 +75,10 @@ struct Level {
 }
 
 impl Level {
-    fn corners(&self, at: Place) -> [DVec3; 2] {
-        [0, 1].map(|end| self.lo + self.size * DVec3::from_array(at.map(|k| f64::from(k + end))))
+    fn cell(&self, at: Place) -> Bounds {
+        let [lo, hi] =
+            [0, 1].map(|end| self.lo + self.size * DVec3::from_array(at.map(|k| f64::from(k + end))));
+        Bounds::new(lo, hi)
     }
 
     fn is_at_face(&self, at: Place) -> bool {
@@ -125,28 +130,28 @@ async fn outcome(field: &mut dyn Bounded, level: &Level, kept: &[Cell], left: us
         return Some(if is_crossing { Outcome::Crossing } else { Outcome::Undecided });
     }
     let share = if is_last || kept.len() > MANY_INSIDE { COARSE } else { FINE };
-    if is_fine(level, hull(level, kept), share) {
+    if is_fine(level, &hull(level, kept), share) {
         return Some(Outcome::Inside);
     }
     (is_last || kept.len() > 4 * MANY_INSIDE).then_some(Outcome::Undecided)
 }
 
 /// Whether the cells of a level are at most this share of a box.
-fn is_fine(level: &Level, [lo, hi]: [DVec3; 2], share: f64) -> bool {
-    level.size <= share * (hi - lo).max_element()
+fn is_fine(level: &Level, hull: &Bounds, share: f64) -> bool {
+    level.size <= share * hull.size().max_element()
 }
 
 /// The box of the extremes.
-fn hull(level: &Level, kept: &[Cell]) -> [DVec3; 2] {
-    let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+fn hull(level: &Level, kept: &[Cell]) -> Bounds {
+    let Bounds { mut min, mut max } = NOWHERE;
     for cell in kept {
-        let corners = level.corners(cell.at);
+        let own = level.cell(cell.at);
         for axis in (0..3).filter(|&axis| cell.extremes[axis]) {
-            lo[axis] = lo[axis].min(corners[0][axis]);
-            hi[axis] = hi[axis].max(corners[1][axis]);
+            min[axis] = min[axis].min(own.min[axis]);
+            max[axis] = max[axis].max(own.max[axis]);
         }
     }
-    [lo, hi]
+    Bounds { min, max }
 }
 
 /// The box of the bends of a surface that goes on: of the cells with an extreme, where these are few and none lies at the faces.
@@ -155,17 +160,15 @@ async fn bends(
     mut level: Level,
     mut kept: Vec<Cell>,
     left: &mut usize,
-) -> Option<[DVec3; 2]> {
+) -> Option<Bounds> {
     loop {
         kept.retain(|cell| cell.extremes != [false; 3]);
         if kept.is_empty() || kept.len() > MANY_AT_FACES || kept.iter().any(|cell| level.is_at_face(cell.at))
         {
             return None;
         }
-        let corners = kept.iter().map(|cell| level.corners(cell.at));
-        let join = |[lo, hi]: [DVec3; 2], [a, b]: [DVec3; 2]| [lo.min(a), hi.max(b)];
-        let hull = corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], join);
-        if is_fine(&level, hull, FINE) || level.depth >= DEPTH || *left == 0 {
+        let hull = kept.iter().fold(NOWHERE, |hull, cell| hull.joined(&level.cell(cell.at)));
+        if is_fine(&level, &hull, FINE) || level.depth >= DEPTH || *left == 0 {
             return Some(hull);
         }
         level = Level { size: 0.5 * level.size, cells: 2 * level.cells, depth: level.depth + 1, ..level };
@@ -199,11 +202,11 @@ async fn visit(field: &mut dyn Bounded, level: &Level, cells: &[Place], left: &m
 /// Boxes and bounds over them.
 #[derive(Default)]
 struct Batch {
-    boxes: Vec<[DVec3; 2]>,
+    boxes: Vec<Bounds>,
     known: Vec<Enclosure>,
     /// Those that the bounds of the expression leave open.
     open: Vec<usize>,
-    middles: Vec<[DVec3; 2]>,
+    middles: Vec<Bounds>,
     at_middle: Vec<Enclosure>,
 }
 
@@ -218,60 +221,41 @@ impl Batch {
         extremes: &mut [Option<[bool; 3]>; BATCH],
     ) {
         self.boxes.clear();
-        self.boxes.extend(cells.iter().map(|&at| level.corners(at)));
+        self.boxes.extend(cells.iter().map(|&at| level.cell(at)));
         self.known.resize(cells.len(), Enclosure::UNKNOWN);
         field.enclose(factor, &self.boxes, &mut self.known);
         self.open.clear();
-        self.open.extend(
-            (0..cells.len()).filter(|&k| holds_zero(self.known[k].value) && self.known[k].may_vanish),
-        );
+        self.open
+            .extend((0..cells.len()).filter(|&k| self.known[k].value.holds(0.0) && self.known[k].may_vanish));
         self.middles.clear();
-        self.middles.extend(self.open.iter().map(|&k| {
-            let middle = 0.5 * (self.boxes[k][0] + self.boxes[k][1]);
-            [middle, middle]
-        }));
+        self.middles.extend(self.open.iter().map(|&k| Bounds::point(self.boxes[k].middle())));
         self.at_middle.resize(self.middles.len(), Enclosure::UNKNOWN);
         field.enclose(factor, &self.middles, &mut self.at_middle);
         for (&k, middle) in self.open.iter().zip(&self.at_middle) {
             let known = &self.known[k];
             let is_regular = known.defined && known.continuous;
-            if is_regular && !holds_zero(mean_value(known, middle, 0.5 * level.size)) {
+            let swing: f64 = known.gradient.iter().map(|slope| slope.magnitude() * (0.5 * level.size)).sum();
+            if is_regular && middle.value.mean_value(swing).excludes_zero() {
                 continue;
             }
             let found = extremes[k].get_or_insert([false; 3]);
             for (axis, found) in found.iter_mut().enumerate() {
                 let others = [(axis + 1) % 3, (axis + 2) % 3];
-                *found |= !is_regular || others.iter().all(|&other| holds_zero(known.gradient[other]));
+                *found |= !is_regular || others.iter().all(|&other| known.gradient[other].holds(0.0));
             }
         }
     }
-}
-
-fn holds_zero([lo, hi]: [f64; 2]) -> bool {
-    lo <= 0.0 && hi >= 0.0
-}
-
-/// Bounds of the value by the mean value form around the middle of a cube of this half-width.
-fn mean_value(known: &Enclosure, middle: &Enclosure, half: f64) -> [f64; 2] {
-    /// What the few operations may have been rounded by.
-    const ROUNDING: f64 = 16.0 * f64::EPSILON;
-    let swing: f64 = known.gradient.iter().map(|[lo, hi]| hi.max(-lo) * half).sum();
-    let slack = ROUNDING * (swing + middle.value[0].abs() + middle.value[1].abs());
-    let (lo, hi) = (middle.value[0] - swing - slack, middle.value[1] + swing + slack);
-    // Where nothing is known it is not a number.
-    if lo.is_nan() || hi.is_nan() { [f64::NEG_INFINITY, f64::INFINITY] } else { [lo, hi] }
 }
 
 /// Whether f changes its sign between corners of a cell at the faces, in which it is continuous.
 async fn crosses_faces(field: &mut dyn Bounded, level: &Level, kept: &[Cell]) -> bool {
     let factors = field.factors();
     for cell in kept.iter().filter(|cell| level.is_at_face(cell.at)) {
-        let [lo, hi] = level.corners(cell.at);
-        let mut boxes = vec![[lo, hi]];
+        let own = level.cell(cell.at);
+        let mut boxes = vec![own];
         boxes.extend((0..8).map(|corner| {
-            let pick = |axis: usize| if corner >> axis & 1 == 0 { lo[axis] } else { hi[axis] };
-            let p = DVec3::new(pick(0), pick(1), pick(2));
-            [p, p]
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { own.min[axis] } else { own.max[axis] };
+            Bounds::point(DVec3::new(pick(0), pick(1), pick(2)))
         }));
         let mut known = [Enclosure::UNKNOWN; 9];
         for factor in 0..factors {
@@ -279,8 +263,8 @@ async fn crosses_faces(field: &mut dyn Bounded, level: &Level, kept: &[Cell]) ->
             let corners = &known[1..];
             let is_regular = known[0].defined && known[0].continuous;
             if is_regular
-                && corners.iter().any(|corner| corner.value[1] < 0.0)
-                && corners.iter().any(|corner| corner.value[0] > 0.0)
+                && corners.iter().any(|corner| corner.value.hi < 0.0)
+                && corners.iter().any(|corner| corner.value.lo > 0.0)
             {
                 return true;
             }

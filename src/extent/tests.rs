@@ -148,9 +148,9 @@ fn a_scan_finds_what_is_within_but_a_fiftieth_of_its_half_width() {
             let mut field = FormulaField::parse(&text, &[]).expect("a formula");
             let found = crate::slices::complete(scan::scan(&mut field, half, &mut 10_000));
             assert_eq!(found.outcome, Outcome::Inside, "{text} within {half}");
-            let [lo, hi] = found.hull.expect("a hull");
-            let reach = if axis < 3 { hi[axis] } else { -lo[axis - 3] };
-            assert!((0.978 * half..0.981 * half).contains(&reach), "{text}: {lo} to {hi}");
+            let hull = found.hull.expect("a hull");
+            let reach = if axis < 3 { hull.max[axis] } else { -hull.min[axis - 3] };
+            assert!((0.978 * half..0.981 * half).contains(&reach), "{text}: {hull:?}");
         }
     }
 }

@@ -9,7 +9,7 @@ pub mod model;
 pub mod rbf;
 pub(crate) mod scaled;
 
-use crate::math::Sym3;
+use crate::math::{Bounds, Interval, Sym3};
 use glam::{DVec3, Vec3};
 
 /// Second-order jet of a field at a point, in double precision.
@@ -23,17 +23,14 @@ pub struct Jet {
     pub hessian: Sym3<f64>,
 }
 
-/// Indices of the second derivatives, a row for each axis, among the six of [`Bounded::enclose_second`].
-pub(crate) const SECOND: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
-
 /// Bounds of f and ∇f over a box, with properties that interval arithmetic has proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// Lower and upper bound of f, never NaN. The lower one is the larger one if f is defined nowhere in the box.
-    pub value: [f64; 2],
-    /// Lower and upper bounds of ∂f/∂x, ∂f/∂y and ∂f/∂z, never NaN. At a kink they contain every slope between the
+    /// Bounds of f, never NaN. They are empty if f is defined nowhere in the box.
+    pub value: Interval,
+    /// Bounds of ∂f/∂x, ∂f/∂y and ∂f/∂z, never NaN. At a kink they contain every slope between the
     /// one-sided ones (Clarke's generalised gradient).
-    pub gradient: [[f64; 2]; 3],
+    pub gradient: [Interval; 3],
     /// Whether f is certainly defined everywhere in the box, without NaN or pole.
     pub defined: bool,
     /// Whether f is certainly continuous where it is defined.
@@ -47,8 +44,8 @@ pub struct Enclosure {
 impl Enclosure {
     /// The enclosure that says nothing.
     pub const UNKNOWN: Self = Self {
-        value: [f64::NEG_INFINITY, f64::INFINITY],
-        gradient: [[f64::NEG_INFINITY, f64::INFINITY]; 3],
+        value: Interval::EVERYTHING,
+        gradient: [Interval::EVERYTHING; 3],
         defined: false,
         continuous: false,
         smooth: false,
@@ -57,13 +54,11 @@ impl Enclosure {
 
     /// Value and gradient in the middle of their bounds. Of a single point these are all but exact.
     pub(crate) fn middle(&self) -> (f64, DVec3) {
-        let mean = |[lo, hi]: [f64; 2]| 0.5 * (lo + hi);
-        (mean(self.value), DVec3::from_array(self.gradient.map(mean)))
+        (self.value.middle(), DVec3::from_array(self.gradient.map(Interval::middle)))
     }
 
     /// The enclosure of a field that is defined nowhere in the box.
-    pub const NOWHERE: Self =
-        Self { value: [f64::INFINITY, f64::NEG_INFINITY], may_vanish: false, ..Self::UNKNOWN };
+    pub const NOWHERE: Self = Self { value: Interval::NOTHING, may_vanish: false, ..Self::UNKNOWN };
 }
 
 /// A scalar field f with its derivatives; f < 0 inside the surface.
@@ -130,7 +125,7 @@ pub trait Field: Send {
 
 /// A field that bounds its values and derivatives over boxes, rounded outward: what the proofs about its surface rest on.
 ///
-/// A box is given by its smallest and largest corner, and `out[i]` belongs to `boxes[i]`.
+/// Box `boxes[i]` belongs to `out[i]`.
 pub trait Bounded: Field {
     /// Number of functions whose zeros together are those of f: the factors of a product, otherwise 1.
     fn factors(&mut self) -> usize {
@@ -143,13 +138,13 @@ pub trait Bounded: Field {
     /// # Panics
     ///
     /// If `factor` is not below [`Bounded::factors`], or `out` is shorter than `boxes`.
-    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]);
+    fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]);
 
-    /// Bounds of the second derivatives of factor `factor` over each box, in the order xx, xy, xz, yy, yz, zz. They are meaningless
-    /// where f is undefined or its gradient jumps.
+    /// Bounds of the second derivatives of factor `factor` over each box. They are meaningless where f is undefined or its
+    /// gradient jumps.
     ///
     /// # Panics
     ///
     /// Under the same conditions as [`Bounded::enclose`].
-    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]);
+    fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]);
 }

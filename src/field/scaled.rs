@@ -2,7 +2,7 @@
 //! single precision, whatever units a formula is in.
 
 use super::{Bounded, Enclosure, Field, Jet};
-use crate::math::{Bounds, Sym3, sort_numbers};
+use crate::math::{Bounds, Interval, Sym3, sort_numbers};
 use glam::{DVec3, Vec3};
 
 /// Maximum number of points at which the magnitude of the gradient is sampled: one batch.
@@ -135,23 +135,23 @@ impl Bounded for Scaled<'_> {
         self.bounds().factors()
     }
 
-    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         let scale = f64::from(self.scale);
         self.bounds().enclose(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
-                known.value = known.value.map(|bound| bound * scale);
-                known.gradient = known.gradient.map(|bounds| bounds.map(|bound| bound * scale));
+                known.value = known.value * scale;
+                known.gradient = known.gradient.map(|slope| slope * scale);
             }
         }
     }
 
-    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+    fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
         let scale = f64::from(self.scale);
         self.bounds().enclose_second(factor, boxes, out);
         if scale != 1.0 {
             for known in &mut out[..boxes.len()] {
-                *known = known.map(|bounds| bounds.map(|bound| bound * scale));
+                *known = known.map(|bounds| bounds * scale);
             }
         }
     }
@@ -182,19 +182,21 @@ mod tests {
             assert_eq!((4.0 * a[0], 4.0 * g[0]), (b[0], h[0]), "{double:?}");
             assert_eq!(4.0 * own.jet(DVec3::splat(0.1)).value, scaled.jet(DVec3::splat(0.1)).value);
         }
-        let boxes = [[DVec3::ZERO, DVec3::splat(0.1)]];
+        let boxes = [Bounds::new(DVec3::ZERO, DVec3::splat(0.1))];
         let scaled = scaled.bounded().expect("a formula has bounds");
         assert_eq!((own.factors(), scaled.factors()), (2, 2));
         for factor in 0..2 {
             let [mut a, mut b] = [[Enclosure::UNKNOWN]; 2];
             own.enclose(factor, &boxes, &mut a);
             scaled.enclose(factor, &boxes, &mut b);
-            assert_eq!(a[0].value.map(|bound| 4.0 * bound), b[0].value);
-            assert_eq!(a[0].gradient.map(|bounds| bounds.map(|bound| 4.0 * bound)), b[0].gradient);
-            let [mut a, mut b] = [[[[0.0; 2]; 6]]; 2];
+            assert_eq!(
+                (a[0].value * 4.0, a[0].gradient.map(|slope| slope * 4.0)),
+                (b[0].value, b[0].gradient)
+            );
+            let [mut a, mut b] = [[Sym3::splat(Interval::EVERYTHING)]; 2];
             own.enclose_second(factor, &boxes, &mut a);
             scaled.enclose_second(factor, &boxes, &mut b);
-            assert_eq!(a[0].map(|bounds| bounds.map(|bound| 4.0 * bound)), b[0]);
+            assert_eq!(a[0].map(|bounds| bounds * 4.0), b[0]);
         }
         struct Unbounded;
         impl Field for Unbounded {

@@ -1,14 +1,16 @@
-//! Small numeric building blocks that every other module may use: SIMD lanes, symmetric matrices, tangent
+//! Small numeric building blocks that every other module may use: SIMD lanes, intervals, symmetric matrices, tangent
 //! frames, boxes and the tolerances shared across the crate.
 
 mod forest;
 pub mod functions;
+pub(crate) mod interval;
 mod lanes;
 mod real;
 mod sort;
 mod table;
 
 pub(crate) use forest::Forest;
+pub use interval::Interval;
 pub use lanes::{LANES, Lanes};
 pub use real::Real;
 pub use sort::sort_few;
@@ -57,11 +59,23 @@ pub struct Bounds {
 impl Bounds {
     /// Points of a grid with `side` points on every axis, off the faces of the box and its planes of symmetry.
     pub(crate) fn spread(&self, side: usize) -> impl ExactSizeIterator<Item = DVec3> {
-        let (lo, size) = (self.lo(), self.hi() - self.lo());
+        let (lo, size) = (self.lo(), self.size());
         (0..side * side * side).map(move |i| {
             let node = DVec3::new((i % side) as f64, (i / side % side) as f64, (i / side / side) as f64);
             lo + size * (node + DVec3::new(0.41, 0.37, 0.43)) / side as f64
         })
+    }
+
+    /// The box from its smallest to its largest corner.
+    #[must_use]
+    pub const fn new(lo: DVec3, hi: DVec3) -> Self {
+        Self { min: lo.to_array(), max: hi.to_array() }
+    }
+
+    /// The box that holds `p` alone.
+    #[must_use]
+    pub const fn point(p: DVec3) -> Self {
+        Self::new(p, p)
     }
 
     /// The box centred on the origin with half-widths `half`.
@@ -88,10 +102,28 @@ impl Bounds {
         DVec3::from_array(self.max)
     }
 
+    /// Lengths of the sides.
+    #[must_use]
+    pub fn size(&self) -> DVec3 {
+        self.hi() - self.lo()
+    }
+
+    /// The point in the middle.
+    #[must_use]
+    pub fn middle(&self) -> DVec3 {
+        0.5 * (self.lo() + self.hi())
+    }
+
+    /// The box that is larger by `margin` on every side, or smaller by `-margin`.
+    #[must_use]
+    pub fn enlarged(&self, margin: f64) -> Self {
+        Self::new(self.lo() - margin, self.hi() + margin)
+    }
+
     /// Length of the space diagonal: the unit in which the paper gives its radii (§6).
     #[must_use]
     pub fn diagonal(&self) -> f64 {
-        (self.hi() - self.lo()).length()
+        self.size().length()
     }
 
     /// Largest coordinate of a corner, relative to the diagonal, of a box that needs no origin of its own. There, rounding to
@@ -109,20 +141,43 @@ impl Bounds {
             return DVec3::ZERO;
         }
         let grid = libm::exp2(libm::floor(libm::log2(diagonal)) - 2.0);
-        (0.5 * (self.lo() + self.hi()) / grid).round() * grid
+        (self.middle() / grid).round() * grid
     }
 
     /// Returns the box in coordinates whose zero is `origin`.
     #[must_use]
     pub fn relative_to(&self, origin: DVec3) -> Self {
-        Self { min: (self.lo() - origin).to_array(), max: (self.hi() - origin).to_array() }
+        Self::new(self.lo() - origin, self.hi() - origin)
     }
 
     /// Whether `p` lies in the closed box. Non-finite points do not.
     #[must_use]
     pub fn contains(&self, p: Vec3) -> bool {
-        let p = p.as_dvec3();
+        self.holds(p.as_dvec3())
+    }
+
+    /// Whether `p` lies in the closed box, in double precision. Non-finite points do not.
+    #[must_use]
+    pub fn holds(&self, p: DVec3) -> bool {
         p.cmpge(self.lo()).all() && p.cmple(self.hi()).all()
+    }
+
+    /// Whether another box lies in the interior of this one.
+    #[must_use]
+    pub fn holds_inside(&self, other: &Self) -> bool {
+        other.lo().cmpgt(self.lo()).all() && other.hi().cmplt(self.hi()).all()
+    }
+
+    /// Whether the closed boxes have no point in common.
+    #[must_use]
+    pub fn is_apart_from(&self, other: &Self) -> bool {
+        other.lo().cmpgt(self.hi()).any() || other.hi().cmplt(self.lo()).any()
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn joined(&self, other: &Self) -> Self {
+        Self::new(self.lo().min(other.lo()), self.hi().max(other.hi()))
     }
 
     /// Diagonals of a box with which the squares of radii are normal numbers in single precision.
@@ -167,6 +222,32 @@ pub struct Sym3<T> {
 }
 
 impl<T: Copy> Sym3<T> {
+    /// The matrix with the same value for every entry.
+    #[must_use]
+    pub const fn splat(entry: T) -> Self {
+        Self { xx: entry, xy: entry, xz: entry, yy: entry, yz: entry, zz: entry }
+    }
+
+    /// The upper triangle, row by row: xx, xy, xz, yy, yz, zz.
+    #[must_use]
+    pub fn entries(&self) -> [T; 6] {
+        [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
+    }
+
+    /// Entry in row `i` and column `j`, each 0 to 2.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, i: usize, j: usize) -> T {
+        match (i.min(j), i.max(j)) {
+            (0, 0) => self.xx,
+            (0, 1) => self.xy,
+            (0, _) => self.xz,
+            (1, 1) => self.yy,
+            (1, _) => self.yz,
+            _ => self.zz,
+        }
+    }
+
     /// `f` applied to every entry.
     #[must_use]
     pub fn map<U>(&self, f: impl Fn(T) -> U) -> Sym3<U> {

@@ -313,7 +313,7 @@ fn discontinuous_gradients_hide_no_component() {
     }
     // The bounds of the second derivatives would exclude the component if they were used where they do not hold.
     let mut field = FormulaField::parse("abs(x) + abs(y) + abs(z) - 0.1", &[]).unwrap();
-    let across = [[DVec3::splat(-0.1), DVec3::splat(0.2)], [DVec3::splat(0.1), DVec3::splat(0.2)]];
+    let across = [-0.1, 0.1].map(|from| Bounds::new(DVec3::splat(from), DVec3::splat(0.2)));
     let mut known = [Enclosure::UNKNOWN; 2];
     field.enclose(0, &across, &mut known);
     assert_eq!(known.map(|known| (known.continuous, known.smooth)), [(true, false), (true, true)]);

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use marching_particles::export::{self, Format, MeshFormat};
 use marching_particles::field::formula::FormulaField;
 use marching_particles::field::{Bounded, Enclosure, Field};
-use marching_particles::math::{Bounds, Sym3};
+use marching_particles::math::{Bounds, Interval, Sym3};
 use marching_particles::quality;
 use marching_particles::sampler::{Method, Sampling, Search, Settings};
 use marching_particles::session::{FieldRequest, Report, Session};
@@ -100,17 +100,15 @@ fn a_field_with_an_origin_is_the_same_field_there() {
         }
         assert!(near(hessian[k].xy, jet.hessian.xy) && near(hessian[k].zz, jet.hessian.zz), "{k}");
     }
-    let boxes: Vec<[DVec3; 2]> = points.iter().map(|p| [p.as_dvec3(), p.as_dvec3() + 0.01]).collect();
+    let boxes: Vec<Bounds> = points.iter().map(|p| Bounds::new(p.as_dvec3(), p.as_dvec3() + 0.01)).collect();
     let mut bounds = vec![Enclosure::UNKNOWN; 50];
-    let mut second = vec![[[0.0; 2]; 6]; 50];
+    let mut second = vec![Sym3::splat(Interval::EVERYTHING); 50];
     moved.enclose(0, &boxes, &mut bounds);
     moved.enclose_second(0, &boxes, &mut second);
-    for (k, [lo, hi]) in boxes.into_iter().enumerate() {
-        for corner in [lo, hi, 0.5 * (lo + hi)] {
+    for (k, around) in boxes.iter().enumerate() {
+        for corner in [around.lo(), around.hi(), around.middle()] {
             let jet = field.jet(FAR + corner);
-            assert!(bounds[k].value[0] <= jet.value && jet.value <= bounds[k].value[1], "{k}");
-            let [low, high] = second[k][1];
-            assert!(low <= jet.hessian.xy && jet.hessian.xy <= high, "{k}");
+            assert!(bounds[k].value.holds(jet.value) && second[k].xy.holds(jet.hessian.xy), "{k}");
         }
     }
 }

@@ -6,7 +6,7 @@ use marching_particles::field::formula::{
     utf16_offset,
 };
 use marching_particles::field::{Bounded, Enclosure, Field};
-use marching_particles::math::Sym3;
+use marching_particles::math::{Bounds, Interval, Sym3};
 
 fn parse(text: &str) -> FormulaField {
     FormulaField::parse(text, &[]).unwrap_or_else(|error| panic!("{text}: {error:?}"))
@@ -538,15 +538,15 @@ fn a_comma_that_has_one_reading_only_separates_arguments() {
 fn a_field_without_a_zero_is_seen_by_its_bounds() {
     let bounds = |text: &str| {
         let mut out = [Enclosure::UNKNOWN];
-        parse(text).enclose(0, &[[DVec3::splat(-10.0), DVec3::splat(10.0)]], &mut out);
+        parse(text).enclose(0, &[Bounds::cube(10.0)], &mut out);
         out[0]
     };
     let known = bounds("x^2 + y^2 + z^2 + 1");
-    assert!(known.value[0] > 0.9 && known.value[1] < 302.0 && known.defined, "{known:?}");
+    assert!(known.value.lo > 0.9 && known.value.hi < 302.0 && known.defined, "{known:?}");
     // Whatever way an even power is written: the bounds of a product of two factors would reach below 0.
     for text in ["x^4", "x^3 x", "x x^3", "x x x x", "x^2 x^2", "(x y) (x y)^3", "(x y)^3 (x y)"] {
         let known = bounds(&format!("{text} + 1"));
-        assert!(known.value[0] > 0.9, "{text}: {known:?}");
+        assert!(known.value.lo > 0.9, "{text}: {known:?}");
     }
 }
 
@@ -554,7 +554,8 @@ fn a_field_without_a_zero_is_seen_by_its_bounds() {
 fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
     let known = |text: &str, x: [f64; 2]| {
         let mut out = [Enclosure::UNKNOWN];
-        parse(text).enclose(0, &[[DVec3::new(x[0], 0.1, 0.1), DVec3::new(x[1], 0.2, 0.2)]], &mut out);
+        let around = Bounds { min: [x[0], 0.1, 0.1], max: [x[1], 0.2, 0.2] };
+        parse(text).enclose(0, &[around], &mut out);
         out[0]
     };
     // A box with a pole inside still has no zero.
@@ -565,7 +566,10 @@ fn poles_jumps_and_missing_values_are_seen_by_the_bounds_of_a_box() {
     assert!(known("1/x + 1", [-0.5, 0.7]).may_vanish);
     // The zeros of a product are those of its factors.
     assert_eq!(parse("-3x^2 (y - 1)/(z - 2)").factors(), 2);
-    assert_eq!(known("-3x^2/(z - 2)", [-0.5, 0.7]).gradient, [[1.0, 1.0], [0.0, 0.0], [0.0, 0.0]]);
+    assert_eq!(
+        known("-3x^2/(z - 2)", [-0.5, 0.7]).gradient,
+        [1.0, 0.0, 0.0].map(|slope| Interval::new(slope, slope))
+    );
     assert!(known("tan(x)", [1.5, 3.2]).may_vanish);
     for (text, jump) in
         [("floor(x)", [0.9, 1.1]), ("sign(x)", [-0.1, 0.1]), ("atan2(y - 0.15, x)", [-0.2, 0.1])]

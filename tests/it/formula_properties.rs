@@ -8,7 +8,7 @@ use marching_particles::field::formula::{
 };
 use marching_particles::field::gallery::SURFACES;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
-use marching_particles::math::Sym3;
+use marching_particles::math::{Bounds, Sym3};
 use proptest::prelude::*;
 
 /// Strategy for formulas with all constructs of the language; `a` and `b_1` are parameters.
@@ -241,7 +241,7 @@ proptest! {
         harness::check_value(&mut field, p, below, above);
         if field.jet(p).value.is_nan() {
             let mut out = [Enclosure::UNKNOWN];
-            field.enclose(0, &[[p - below, p + above]], &mut out);
+            field.enclose(0, &[Bounds::new(p - below, p + above)], &mut out);
             prop_assert!(!out[0].defined, "{text} has no value at {p} but {out:?}");
         }
     }

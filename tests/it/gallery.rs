@@ -5,7 +5,7 @@ use marching_particles::field::formula::FormulaField;
 use marching_particles::field::gallery::{self, SURFACES, Surface};
 use marching_particles::field::model::MODELS;
 use marching_particles::field::{Bounded, Enclosure, Field, Jet};
-use marching_particles::math::Sym3;
+use marching_particles::math::{Bounds, Sym3};
 use rand_core::Rng;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -117,11 +117,11 @@ fn values_lie_within_the_bounds_of_boxes_around_the_point() {
             let lo = p - half * 0.3;
             let hi = p + half * 0.7;
             let mut out = [Enclosure::UNKNOWN];
-            field.enclose(0, &[[lo, hi]], &mut out);
-            let [Enclosure { value: [least, most], defined, .. }] = out;
+            field.enclose(0, &[Bounds::new(lo, hi)], &mut out);
+            let [Enclosure { value: bounds, defined, .. }] = out;
             let value = field.jet(p).value;
             assert!(
-                value.is_nan() && !defined || least <= value && value <= most,
+                value.is_nan() && !defined || bounds.holds(value),
                 "{} at {p}: {value} outside {out:?} of {lo} … {hi}",
                 surface.id,
             );
@@ -139,8 +139,8 @@ fn small_boxes_off_the_surface_are_proven_empty() {
         for &p in &all {
             let is_empty = (0..field.factors()).all(|factor| {
                 let mut out = [Enclosure::UNKNOWN];
-                field.enclose(factor, &[[p - half, p + half]], &mut out);
-                !out[0].may_vanish || out[0].value[0] > 0.0 || out[0].value[1] < 0.0
+                field.enclose(factor, &[Bounds::new(p - half, p + half)], &mut out);
+                !out[0].may_vanish || out[0].value.excludes_zero()
             });
             proven += usize::from(is_empty);
         }

@@ -54,7 +54,7 @@ pub use error::{FormulaError, FormulaErrorKind, Mended, utf16_offset};
 pub use mathml::{MathGroup, MathNode, MathToken};
 
 use super::{Bounded, Enclosure, Field, Jet};
-use crate::math::Sym3;
+use crate::math::{Bounds, Interval, Sym3};
 use ast::{COORDINATES, Constant, Equation, Function};
 use compiled::Compiled;
 use glam::{DVec3, Vec3};
@@ -146,7 +146,7 @@ pub struct FormulaField {
     /// See [`Field::origin`].
     origin: DVec3,
     /// Scratch memory for boxes in the coordinates of the formula.
-    boxes: Vec<[DVec3; 2]>,
+    boxes: Vec<Bounds>,
 }
 
 impl FormulaField {
@@ -305,17 +305,17 @@ impl FormulaField {
     /// Runs `enclose` on boxes in the coordinates of the formula that hold these boxes.
     fn on_formula_boxes<R>(
         &mut self,
-        boxes: &[[DVec3; 2]],
-        enclose: impl FnOnce(&mut Self, &[[DVec3; 2]]) -> R,
+        boxes: &[Bounds],
+        enclose: impl FnOnce(&mut Self, &[Bounds]) -> R,
     ) -> R {
         if self.origin == DVec3::ZERO {
             return enclose(self, boxes);
         }
         let mut moved = core::mem::take(&mut self.boxes);
         moved.clear();
-        moved.extend(boxes.iter().map(|&[lo, hi]| {
-            let [lo, hi] = [lo, hi].map(|corner| (self.origin + corner).to_array());
-            [DVec3::from_array(lo.map(f64::next_down)), DVec3::from_array(hi.map(f64::next_up))]
+        moved.extend(boxes.iter().map(|own| {
+            let [lo, hi] = [own.lo(), own.hi()].map(|corner| (self.origin + corner).to_array());
+            Bounds { min: lo.map(f64::next_down), max: hi.map(f64::next_up) }
         }));
         let result = enclose(self, &moved);
         self.boxes = moved;
@@ -503,17 +503,17 @@ impl Bounded for FormulaField {
         self.compiled.factors(&self.values).len()
     }
 
-    fn enclose(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    fn enclose(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Enclosure]) {
         self.on_formula_boxes(boxes, |field, boxes| {
             field.compiled.factors(&field.values)[factor].first.enclose(boxes, out);
         });
     }
 
-    fn enclose_second(&mut self, factor: usize, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
+    fn enclose_second(&mut self, factor: usize, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
         self.on_formula_boxes(boxes, |field, boxes| {
             match &mut field.compiled.factors(&field.values)[factor].second {
                 Some(program) => program.enclose_second(boxes, out),
-                None => out[..boxes.len()].fill([[f64::NEG_INFINITY, f64::INFINITY]; 6]),
+                None => out[..boxes.len()].fill(Sym3::splat(Interval::EVERYTHING)),
             }
         });
     }

@@ -5,10 +5,10 @@
 //! the witness is named as [`Unsampled`], with the distance to which its component can be followed.
 
 use crate::field::{Bounded, Enclosure};
-use crate::math::sort_few;
+use crate::math::{Bounds, Interval, Sym3, sort_few};
 use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
-use crate::sampler::discovery::octree::Seed;
+use crate::sampler::discovery::octree::{Region, Seed};
 use crate::sampler::discovery::sheets::{
     Oriented, SheetRule, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
 };
@@ -66,8 +66,8 @@ pub(crate) struct Audited<'a, 'b> {
     pub(crate) radius: f64,
     /// How sheets are told apart.
     pub(crate) rule: SheetRule,
-    /// Corners of the region that was searched, and the width by which it is larger than the clip box.
-    pub(crate) within: ([DVec3; 2], f64),
+    /// What was searched.
+    pub(crate) region: Region,
 }
 
 impl Audit {
@@ -145,32 +145,32 @@ impl Audit {
 
     /// Decides whether the component of a witness holds one of the particles near it.
     fn look_at(&mut self, audited: &mut Audited, seed: Seed, near: &[(f32, u32)]) {
-        let Audited { probe, particles, slack, radius, rule, within, .. } = audited;
+        let Audited { probe, particles, slack, radius, rule, region, .. } = audited;
         let Seed { exact, factor, .. } = seed;
         let Some(field) = probe.field.bounded() else { return };
         let from = (exact, value_at(field, factor, exact).1.try_normalize().unwrap_or(DVec3::Z));
         // On the factor of the witness: the others are on other sheets.
         let mut on_part = near.to_vec();
-        let boxes: Vec<[DVec3; 2]> =
-            near.iter().map(|&(_, j)| [particles.position[j as usize].as_dvec3(); 2]).collect();
+        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
+        let boxes: Vec<Bounds> = near.iter().map(|&(_, j)| Bounds::point(place_of(j))).collect();
         let mut known = vec![Enclosure::UNKNOWN; boxes.len()];
         field.enclose(factor, &boxes, &mut known);
-        let mut place = known.iter().zip(&boxes).map(|(known, &[p, _])| {
-            let steepest = DVec3::from_array(known.gradient.map(|[lo, hi]| hi.max(-lo))).length();
+        let mut place = known.iter().zip(near).map(|(known, &(_, j))| {
+            let p = place_of(j);
+            let steepest = DVec3::from_array(known.gradient.map(Interval::magnitude)).length();
             // As near as the particle is to its own sheet: that of another factor may be within the slack too.
             let jet = field.jet(p);
             let own = jet.value.abs() / jet.gradient.length() + ROUNDING * p.abs().max_element();
-            known.value[1].max(-known.value[0]) <= 2.0 * own.min(*slack) * steepest
+            known.value.magnitude() <= 2.0 * own.min(*slack) * steepest
         });
         on_part.retain(|_| place.next() == Some(true));
-        let place_of = |j: u32| particles.position[j as usize].as_dvec3();
         let pairs: Vec<(Oriented, DVec3)> =
             on_part.iter().take(TOGETHER).map(|&(_, j)| (from, place_of(j))).collect();
         let is_held = are_connected(field, factor, &pairs, *slack, None).contains(&true)
             || on_part
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&(_, j)| is_connected(field, factor, from, place_of(j), *slack, *within));
+                .any(|&(_, j)| is_connected(field, factor, from, place_of(j), *slack, region));
         if is_held {
             return;
         }
@@ -185,7 +185,7 @@ impl Audit {
         }
         let Some(field) = probe.field.bounded() else { return };
         let followed = FOLLOWED * *radius;
-        if self.is_on_named(field, factor, from, (*slack, *within), followed) {
+        if self.is_on_named(field, factor, from, *slack, region, followed) {
             return;
         }
         if self.without.len() >= MOST_NAMED {
@@ -203,7 +203,8 @@ impl Audit {
         field: &mut dyn Bounded,
         factor: usize,
         from: Oriented,
-        (slack, within): (f64, ([DVec3; 2], f64)),
+        slack: f64,
+        region: &Region,
         reach: f64,
     ) -> bool {
         let of_part = self.named.iter().filter(|named| named.factor == factor);
@@ -213,7 +214,7 @@ impl Audit {
             .collect();
         sort_few(&mut near, |a, b| a.0 < b.0);
         near.truncate(MOST_TRIED_BY_SEGMENTS);
-        near.into_iter().any(|(_, place)| is_connected(field, factor, from, place, slack, within))
+        near.into_iter().any(|(_, place)| is_connected(field, factor, from, place, slack, region))
     }
 }
 
@@ -224,10 +225,10 @@ fn is_connected(
     from: Oriented,
     to: DVec3,
     slack: f64,
-    within: ([DVec3; 2], f64),
+    region: &Region,
 ) -> bool {
-    is_connected_by_segments(field, factor, from, to, slack, within)
-        || is_connected_around(field, factor, from, to, slack, within)
+    is_connected_by_segments(field, factor, from, to, slack, region)
+        || is_connected_around(field, factor, from, to, slack, region)
 }
 
 /// How far the part of the surface around a point reaches.
@@ -251,11 +252,11 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
     let gradient = value_at(field, factor, from).1;
     let normal = gradient.try_normalize().unwrap_or(DVec3::Z);
     let (u, v) = crate::math::tangent_frame(normal.as_vec3());
-    let mut second = [[[0.0; 2]; 6]];
-    field.enclose_second(factor, &[[from, from]], &mut second);
+    let mut second = [Sym3::splat(Interval::EVERYTHING)];
+    field.enclose_second(factor, &[Bounds::point(from)], &mut second);
     let mut known = [Enclosure::UNKNOWN; PATHS];
-    let bend =
-        second[0].iter().fold(0.0_f64, |most, [lo, hi]| most.max(hi.abs()).max(lo.abs())) / gradient.length();
+    let most_second = second[0].entries().into_iter().map(Interval::magnitude).fold(0.0, f64::max);
+    let bend = most_second / gradient.length();
     // `min` passes over a NaN.
     let step = (SHARE / bend).min(LARGEST * most);
     let mut at = [from; PATHS];
@@ -274,7 +275,7 @@ pub(crate) fn follow(field: &mut dyn Bounded, factor: usize, from: DVec3, most: 
         let mut next: [DVec3; PATHS] = core::array::from_fn(|k| at[k] + heading[k] * step);
         // Two Newton steps in the half-planes.
         for _ in 0..2 {
-            field.enclose(factor, &next.map(|p| [p, p]), &mut known);
+            field.enclose(factor, &next.map(Bounds::point), &mut known);
             for k in 0..PATHS {
                 let (value, gradient) = known[k].middle();
                 let within = gradient - across[k] * gradient.dot(across[k]);

@@ -11,91 +11,59 @@
 //! method do (R. B. Kearfott, "Rigorous Global Search: Continuous Problems", 1996). Where no solution is left, the cell holds no
 //! such point; near one, the range shrinks with the square of the cell's width.
 
-use crate::field::{Enclosure, SECOND};
+use crate::field::Enclosure;
+use crate::math::{Bounds, Interval, Sym3};
 use glam::DVec3;
-
-type Range = [f64; 2];
 
 /// Rounds of narrowing.
 const ROUNDS: u32 = 2;
 /// Bound of the rounding error of one step, relative to its operands.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-fn add(a: Range, b: Range) -> Range {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
-fn negated([lo, hi]: Range) -> Range {
-    [-hi, -lo]
-}
-
-fn scaled([lo, hi]: Range, factor: f64) -> Range {
-    let (a, b) = (lo * factor, hi * factor);
-    [a.min(b), a.max(b)]
-}
-
-fn product(a: Range, b: Range) -> Range {
-    let (p, q) = (scaled(a, b[0]), scaled(a, b[1]));
-    [p[0].min(q[0]), p[1].max(q[1])]
-}
-
-fn size([lo, hi]: Range) -> f64 {
-    hi.abs().max(lo.abs())
-}
-
 /// The part of `range` in which `slope` · d = `right` has a solution d; none if there is none.
-fn solved(range: Range, slope: Range, right: Range) -> Option<Range> {
-    let slack = ROUNDING * (size(right) + size(slope) * size(range));
-    let right = [right[0] - slack, right[1] + slack];
-    let cut = if slope[0] > 0.0 || slope[1] < 0.0 {
+fn solved(range: Interval, slope: Interval, right: Interval) -> Option<Interval> {
+    let right = right.widened(ROUNDING * (right.magnitude() + slope.magnitude() * range.magnitude()));
+    if slope.excludes_zero() {
         // The rounding error of the quotient is far below the slack.
-        let quotient = product(right, [1.0 / slope[1], 1.0 / slope[0]]);
-        [range[0].max(quotient[0]), range[1].min(quotient[1])]
-    } else {
-        let reached = product(slope, range);
-        if reached[0] > right[1] || reached[1] < right[0] {
-            return None;
-        }
-        range
-    };
-    // NaN compares as false, so an unknown range is kept.
-    if cut[0] > cut[1] { None } else { Some(cut) }
+        let cut = range.cut_to(right * Interval::new(1.0 / slope.hi, 1.0 / slope.lo));
+        return (cut.lo <= cut.hi).then_some(cut);
+    }
+    let reached = slope * range;
+    (reached.lo <= right.hi && reached.hi >= right.lo).then_some(range)
 }
 
-/// The part of the box from `lo` to `hi` in which f and its derivatives along the free `sides` can vanish together; none if they
-/// cannot. `known` and `second` are bounds of f and of its second derivatives over the box; `middle` are those of f at its middle.
+/// The part of a box in which f and its derivatives along the free `sides` can vanish together; none if they cannot. `known` and
+/// `second` are bounds of f and of its second derivatives over the box; `middle` are those of f at its middle.
 pub(crate) fn narrowed(
-    [lo, hi]: [DVec3; 2],
+    cell: &Bounds,
     (sides, up): ([Option<usize>; 2], usize),
     known: &Enclosure,
     middle: &Enclosure,
-    second: &[Range; 6],
-) -> Option<[DVec3; 2]> {
-    let is_bounded = known.smooth && known.defined && known.continuous;
-    if !(is_bounded && second.iter().all(|&[lo, hi]| lo.is_finite() && hi.is_finite())) {
-        return Some([lo, hi]);
+    second: &Sym3<Interval>,
+) -> Option<Bounds> {
+    let is_regular = known.smooth && known.defined && known.continuous;
+    let mut needed = second.entries().into_iter().chain(middle.gradient).chain([middle.value]);
+    if !(is_regular && needed.all(|bounds| bounds.magnitude().is_finite())) {
+        return Some(*cell);
     }
-    let h = |i: usize, j: usize| second[SECOND[i][j]];
-    let half = 0.5 * (hi - lo);
-    let m = 0.5 * (lo + hi);
+    let h = |i: usize, j: usize| second.at(i, j);
+    let (half, m) = (0.5 * cell.size(), cell.middle());
     // It is 0 along a pinned axis, whose side has no length.
-    let mut d: [Range; 3] = core::array::from_fn(|axis| [-half[axis], half[axis]]);
+    let mut d = half.to_array().map(Interval::symmetric);
     for _ in 0..ROUNDS {
-        let mut quadratic = [0.0; 2];
-        let most = d.map(size);
+        let mut quadratic = Interval::new(0.0, 0.0);
+        let most = d.map(Interval::magnitude);
         for (i, most) in most.into_iter().enumerate() {
-            quadratic = add(quadratic, product(h(i, i), [0.0, 0.5 * most * most]));
+            quadratic = quadratic + h(i, i) * Interval::new(0.0, 0.5 * most * most);
         }
         for [i, j] in [[0, 1], [0, 2], [1, 2]] {
-            let mixed = most[i] * most[j] * size(h(i, j));
-            quadratic = add(quadratic, [-mixed, mixed]);
+            quadratic = quadratic + Interval::symmetric(most[i] * most[j] * h(i, j).magnitude());
         }
-        d[up] = solved(d[up], known.gradient[up], add(middle.value, negated(quadratic)))?;
-        let right = |i: usize, d: &[Range; 3]| add(middle.gradient[i], negated(product(h(i, up), d[up])));
+        d[up] = solved(d[up], known.gradient[up], middle.value + -quadratic)?;
+        let right = |i: usize, d: &[Interval; 3]| middle.gradient[i] + -(h(i, up) * d[up]);
         match sides {
             [Some(i), Some(j)] => {
-                let entries = [h(i, i), h(i, j), h(j, j)];
-                let [a, b, c] = entries.map(|[lo, hi]| 0.5 * (lo + hi));
+                let [a, b, c] = [h(i, i), h(i, j), h(j, j)].map(Interval::middle);
                 let determinant = a * c - b * b;
                 let inverse = [[c, -b], [-b, a]].map(|row| row.map(|entry| entry / determinant));
                 let rights = [right(i, &d), right(j, &d)];
@@ -104,19 +72,20 @@ pub(crate) fn narrowed(
                         continue;
                     }
                     // The two terms may nearly cancel, so the slack follows their sizes.
-                    let combined = |v: [Range; 2]| {
-                        let slack = ROUNDING * (row[0].abs() * size(v[0]) + row[1].abs() * size(v[1]));
-                        add(add(scaled(v[0], row[0]), scaled(v[1], row[1])), [-slack, slack])
+                    let combined = |v: [Interval; 2]| {
+                        let slack =
+                            ROUNDING * (row[0].abs() * v[0].magnitude() + row[1].abs() * v[1].magnitude());
+                        v[0] * row[0] + v[1] * row[1] + Interval::symmetric(slack)
                     };
                     let coefficients = [combined([h(i, i), h(j, i)]), combined([h(i, j), h(j, j)])];
                     let (axis, other) = if k == 0 { (i, j) } else { (j, i) };
-                    let rest = negated(product(coefficients[1 - k], d[other]));
-                    d[axis] = solved(d[axis], coefficients[k], add(combined(rights), rest))?;
+                    let rest = -(coefficients[1 - k] * d[other]);
+                    d[axis] = solved(d[axis], coefficients[k], combined(rights) + rest)?;
                 }
                 // Also without the inverse, which is of no use where the equations are nearly dependent.
                 for (axis, other) in [(i, j), (j, i)] {
-                    let rest = negated(product(h(axis, other), d[other]));
-                    d[axis] = solved(d[axis], h(axis, axis), add(right(axis, &d), rest))?;
+                    let rest = -(h(axis, other) * d[other]);
+                    d[axis] = solved(d[axis], h(axis, axis), right(axis, &d) + rest)?;
                 }
             }
             [Some(axis), None] | [None, Some(axis)] => {
@@ -125,10 +94,11 @@ pub(crate) fn narrowed(
             [None, None] => {}
         }
     }
+    let (lo, hi) = (cell.lo(), cell.hi());
     let room = ROUNDING * (lo.abs() + hi.abs());
-    let from = m - DVec3::from_array(d.map(|range| range[1])) - room;
-    let to = m - DVec3::from_array(d.map(|range| range[0])) + room;
+    let from = m - DVec3::from_array(d.map(|range| range.hi)) - room;
+    let to = m - DVec3::from_array(d.map(|range| range.lo)) + room;
     // A range without width would pin a free axis, so the old one is kept there.
     let is_wide = from.max(lo).cmplt(to.min(hi));
-    Some([DVec3::select(is_wide, from.max(lo), lo), DVec3::select(is_wide, to.min(hi), hi)])
+    Some(Bounds::new(DVec3::select(is_wide, from.max(lo), lo), DVec3::select(is_wide, to.min(hi), hi)))
 }

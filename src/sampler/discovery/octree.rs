@@ -45,8 +45,8 @@
 //! kinks the bounds hold the generalised gradient, for which both arguments are the same. Where f jumps, has a pole or is not
 //! defined the surface may end, and nothing is concluded from slopes.
 
-use crate::field::{Bounded, Enclosure, SECOND};
-use crate::math::Bounds;
+use crate::field::{Bounded, Enclosure};
+use crate::math::{Bounds, Interval, Sym3};
 use crate::sampler::discovery::interval_newton::narrowed;
 use crate::sampler::discovery::singular::{Singular, isolating_box, singular_point};
 use glam::{DVec3, Vec3};
@@ -94,20 +94,19 @@ const BESIDE: f64 = 1.0 - CUT;
 /// A cell of a stratum. A side has the length 0 where a face or an edge of the box fixes the coordinate.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    lo: DVec3,
-    hi: DVec3,
+    bounds: Bounds,
     level: u8,
 }
 
 impl Cell {
     /// The point of the footprint at which a decided cell is probed along up.
     fn probe(&self) -> DVec3 {
-        self.lo + CUT * (self.hi - self.lo)
+        self.bounds.lo() + CUT * self.bounds.size()
     }
 
     /// The sides of the footprint, then up.
     fn axes(&self) -> ([Option<usize>; 2], usize) {
-        let free = |axis: usize| (self.lo[axis] < self.hi[axis]).then_some(axis);
+        let free = |axis: usize| (self.bounds.min[axis] < self.bounds.max[axis]).then_some(axis);
         match [free(0), free(1), free(2)] {
             [x, y, Some(z)] => ([x, y], z),
             [x, Some(y), None] => ([x, None], y),
@@ -115,9 +114,6 @@ impl Cell {
         }
     }
 }
-
-/// Infinite bounds of the second derivatives.
-const UNBOUNDED: [[f64; 2]; 6] = [[f64::NEG_INFINITY, f64::INFINITY]; 6];
 
 /// The state of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -149,15 +145,27 @@ pub(crate) struct Seed {
     pub(crate) factor: usize,
 }
 
+/// The region in which the components of the surface are searched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Region {
+    /// The box of the run with a margin around it.
+    pub(crate) bounds: Bounds,
+    /// Width of the margin.
+    pub(crate) margin: f64,
+}
+
+impl Default for Region {
+    fn default() -> Self {
+        Self { bounds: Bounds::cube(0.0), margin: 0.0 }
+    }
+}
+
 /// The search for witnesses, and what it has found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Octree {
     state: SearchState,
-    /// Width by which the box is enlarged on every side.
-    margin: f64,
-    /// Corners of the enlarged box.
-    lo: DVec3,
-    hi: DVec3,
+    /// What is searched.
+    pub(crate) region: Region,
     /// Number of factors of the field, which are searched one after the other.
     factors: usize,
     /// Largest number of cells that the searches of all factors together may visit.
@@ -169,8 +177,8 @@ pub(crate) struct Octree {
     pub(crate) singular: Vec<Singular>,
     /// At least one on every component of the surface.
     pub(crate) witnesses: Vec<Witness>,
-    /// Smallest and largest corners of the cells left undecided.
-    pub(crate) undecided: Vec<[DVec3; 2]>,
+    /// The cells left undecided.
+    pub(crate) undecided: Vec<Bounds>,
 }
 
 /// The search of one factor of the field.
@@ -187,7 +195,7 @@ struct FactorSearch {
     /// Number of cells visited.
     cells: usize,
     /// Boxes left out of the search.
-    isolated: Vec<[DVec3; 2]>,
+    isolated: Vec<Bounds>,
     /// Number of cells in which a singular point was looked for.
     searched: usize,
     /// Singular points that were found, so that each is treated once.
@@ -197,9 +205,9 @@ struct FactorSearch {
 /// Boxes and the bounds of the field over them.
 #[derive(Clone, Debug, Default)]
 struct BoxBounds {
-    boxes: Vec<[DVec3; 2]>,
+    boxes: Vec<Bounds>,
     known: Vec<Enclosure>,
-    second: Vec<[[f64; 2]; 6]>,
+    second: Vec<Sym3<Interval>>,
 }
 
 /// The cells of a batch, by what is to be done with them.
@@ -222,12 +230,12 @@ struct Tall {
 }
 
 impl Tall {
-    /// Corners of the taller cell.
-    fn corners(&self) -> [DVec3; 2] {
+    /// The taller cell.
+    fn bounds(&self) -> Bounds {
         let (_, up) = self.cell.axes();
-        let (mut lo, mut hi) = (self.cell.lo, self.cell.hi);
-        (lo[up], hi[up]) = (lo[up] - self.room, hi[up] + self.room);
-        [lo, hi]
+        let Bounds { mut min, mut max } = self.cell.bounds;
+        (min[up], max[up]) = (min[up] - self.room, max[up] + self.room);
+        Bounds { min, max }
     }
 }
 
@@ -259,37 +267,19 @@ impl BoxBounds {
             return;
         }
         for k in 0..n {
-            let [lo, hi] = self.boxes[k];
-            let middle = 0.5 * (lo + hi);
-            self.boxes.push([middle, middle]);
+            self.boxes.push(Bounds::point(self.boxes[k].middle()));
         }
         self.enclose(field, factor);
         self.boxes.truncate(n);
-        self.second.resize(n.max(self.second.len()), UNBOUNDED);
+        self.second.resize(n.max(self.second.len()), Sym3::splat(Interval::EVERYTHING));
         field.enclose_second(factor, &self.boxes, &mut self.second[..n]);
         for k in 0..n {
-            let [lo, hi] = self.boxes[k];
             let middle = self.known[n + k];
             if self.known[k].defined && self.known[k].continuous {
-                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * (hi - lo));
+                tighten(&mut self.known[k], &middle, &self.second[k], 0.5 * self.boxes[k].size());
             }
         }
     }
-}
-
-/// Returns the least absolute value within the bounds, or none if 0 lies within them.
-fn away_from_zero([lo, hi]: [f64; 2]) -> Option<f64> {
-    if lo > 0.0 {
-        Some(lo)
-    } else if hi < 0.0 {
-        Some(-hi)
-    } else {
-        None
-    }
-}
-
-fn largest([lo, hi]: [f64; 2]) -> f64 {
-    hi.max(-lo)
 }
 
 impl Octree {
@@ -299,9 +289,8 @@ impl Octree {
         self.undecided.clear();
         self.singular.clear();
         self.search.halves.clear();
-        self.margin = MARGIN * (bounds.hi() - bounds.lo()).max_element();
-        let margin = DVec3::splat(self.margin);
-        (self.lo, self.hi) = (bounds.lo() - margin, bounds.hi() + margin);
+        let margin = MARGIN * bounds.size().max_element();
+        self.region = Region { bounds: bounds.enlarged(margin), margin };
         self.state = if has_bounds { SearchState::Ready } else { SearchState::Unavailable };
     }
 
@@ -313,18 +302,8 @@ impl Octree {
         self.search.isolated.clear();
         self.search.met.clear();
         self.search.searched = 0;
-        self.search.level.push(Cell { lo: self.lo, hi: self.hi, level: 0 });
-        push_boundary(&mut self.search.level, [self.lo, self.hi]);
-    }
-
-    /// Smallest and largest corner of what is searched: the box and the margin around it.
-    pub(crate) fn searched(&self) -> [DVec3; 2] {
-        [self.lo, self.hi]
-    }
-
-    /// What the box is enlarged by.
-    pub(crate) fn margin(&self) -> f64 {
-        self.margin
+        self.search.level.push(Cell { bounds: self.region.bounds, level: 0 });
+        push_boundary(&mut self.search.level, &self.region.bounds);
     }
 
     /// Sets the expected number of particles, which limits the number of cells visited.
@@ -352,7 +331,7 @@ impl Octree {
     pub(crate) fn step(&mut self, field: &mut dyn Bounded, mut budget: u32) -> u32 {
         if self.state == SearchState::Ready {
             self.factors = field.factors();
-            if bounds_say_something(field, [self.lo, self.hi]) {
+            if bounds_say_something(field, &self.region.bounds) {
                 self.state = SearchState::Running;
                 self.begin_factor(0);
             } else {
@@ -375,7 +354,7 @@ impl Octree {
             if self.search.level.is_empty() || self.search.cells >= self.allowed() {
                 let open = self.search.level[self.search.next..].iter().chain(&self.search.halves);
                 let open = open.filter(|cell| !is_left_out(cell, &self.search.isolated));
-                self.undecided.extend(open.map(|cell| [cell.lo, cell.hi]));
+                self.undecided.extend(open.map(|cell| cell.bounds));
                 self.search.halves.clear();
                 if self.search.factor + 1 < self.factors {
                     self.begin_factor(self.search.factor + 1);
@@ -394,7 +373,7 @@ impl Octree {
             self.search.level[range].iter().filter(|cell| !is_left_out(cell, &self.search.isolated));
         self.batch.open.extend(searched);
         self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| cell.bounds));
         self.bounds.enclose(field, self.search.factor);
         let mut kept = 0;
         for k in 0..self.batch.open.len() {
@@ -411,7 +390,7 @@ impl Octree {
         }
         self.batch.open.truncate(kept);
         self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| [cell.lo, cell.hi]));
+        self.bounds.boxes.extend(self.batch.open.iter().map(|cell| cell.bounds));
         self.bounds.refine(field, self.search.factor);
         self.batch.tall.clear();
         for k in 0..self.batch.open.len() {
@@ -420,13 +399,12 @@ impl Octree {
             if is_discarded(&cell, &known) {
                 continue;
             }
-            let corners = [cell.lo, cell.hi];
-            let left = narrowed(corners, cell.axes(), &known, &middle, &self.bounds.second[k]);
-            let Some([lo, hi]) = left else { continue };
+            let left = narrowed(&cell.bounds, cell.axes(), &known, &middle, &self.bounds.second[k]);
+            let Some(left) = left else { continue };
             let (_, up) = cell.axes();
             // The height is that of the whole cell, because the narrowed one may be flat.
-            let height = cell.hi[up] - cell.lo[up];
-            (cell.lo, cell.hi) = (lo, hi);
+            let height = cell.bounds.max[up] - cell.bounds.min[up];
+            cell.bounds = left;
             match rise(&cell, &known) {
                 Some(t) if t <= MOST_RISE * height => {
                     let room = RISE_ROOM * t + LEAST_RISE * height;
@@ -452,12 +430,12 @@ impl Octree {
             && (cell.level - SINGULAR_FROM).is_multiple_of(SINGULAR_EVERY)
             && self.search.searched < MOST_TRIED
             && sides.iter().all(Option::is_some)
-            && known.gradient.iter().all(|&bounds| away_from_zero(bounds).is_none());
+            && !known.gradient.iter().any(|slope| slope.excludes_zero());
         if !is_tried {
             return false;
         }
         self.search.searched += 1;
-        let reach = (cell.hi - cell.lo).length();
+        let reach = cell.bounds.diagonal();
         let Some(point) = singular_point(field, cell.probe(), reach) else { return false };
         let at = point.position;
         let is_known = |p: &DVec3| (*p - at).length_squared() <= SAME * SAME * reach * reach;
@@ -465,26 +443,26 @@ impl Octree {
             return false;
         }
         self.search.met.push(at);
-        if point.is_zero && at.cmpge(self.lo).all() && at.cmple(self.hi).all() {
+        if point.is_zero && self.region.bounds.holds(at) {
             self.singular.push(point);
         }
         // A curve of such points passes through the faces of the box.
         if !point.is_alone {
             return false;
         }
-        let within = [self.lo, self.hi];
-        let Some(around) = isolating_box(field, self.search.factor, at, within, &self.search.isolated) else {
+        let isolated = &self.search.isolated;
+        let Some(around) = isolating_box(field, self.search.factor, at, &self.region.bounds, isolated) else {
             return false;
         };
         self.search.isolated.push(around);
-        push_boundary(&mut self.search.halves, around);
+        push_boundary(&mut self.search.halves, &around);
         is_inside(cell, &around)
     }
 
     /// Decides the cells that are to be made taller, or halves them.
     fn decide(&mut self, field: &mut dyn Bounded) {
         self.bounds.boxes.clear();
-        self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::corners));
+        self.bounds.boxes.extend(self.batch.tall.iter().map(Tall::bounds));
         self.bounds.refine(field, self.search.factor);
         for (tall, known) in self.batch.tall.iter_mut().zip(&self.bounds.known) {
             let is_regular = known.defined && known.continuous;
@@ -494,10 +472,11 @@ impl Octree {
         self.bounds.boxes.clear();
         for tall in &self.batch.tall {
             let (_, up) = tall.cell.axes();
-            self.bounds.boxes.extend(tall.corners().map(|end| {
+            let Bounds { min, max } = tall.bounds();
+            self.bounds.boxes.extend([min, max].map(|end| {
                 let mut p = tall.cell.probe();
                 p[up] = end[up];
-                [p, p]
+                Bounds::point(p)
             }));
         }
         self.bounds.enclose(field, self.search.factor);
@@ -505,12 +484,11 @@ impl Octree {
         for k in 0..self.batch.tall.len() {
             let Tall { cell, rise, .. } = self.batch.tall[k];
             let [bottom, top] = [2 * k, 2 * k + 1].map(|end| self.bounds.known[end].value);
-            let known = away_from_zero(bottom).and(away_from_zero(top)).is_some();
-            if rise.is_none() || !known {
+            if rise.is_none() || !bottom.excludes_zero() || !top.excludes_zero() {
                 self.halve(cell, DEPTH);
-            } else if (bottom[0] > 0.0) != (top[0] > 0.0) {
+            } else if (bottom.lo > 0.0) != (top.lo > 0.0) {
                 let (_, up) = cell.axes();
-                let (lo, hi) = (self.bounds.boxes[2 * k][0][up], self.bounds.boxes[2 * k + 1][0][up]);
+                let [lo, hi] = [2 * k, 2 * k + 1].map(|end| self.bounds.boxes[end].min[up]);
                 self.batch.lines.push(Line { tall: k, lo, hi, root: 0.5 * (lo + hi) });
             }
         }
@@ -520,11 +498,12 @@ impl Octree {
             let Tall { cell, rise, .. } = self.batch.tall[tall];
             let (sides, up) = cell.axes();
             let beside = BESIDE * rise.unwrap_or(0.0);
-            if height + beside < self.lo[up] || height > self.hi[up] && height - beside >= self.lo[up] {
+            let [bottom, top] = [self.region.bounds.min[up], self.region.bounds.max[up]];
+            if height + beside < bottom || height > top && height - beside >= bottom {
                 continue;
             }
             // Over a footprint of one point the graph cannot leave the box.
-            if height - beside >= self.lo[up] || sides == [None; 2] {
+            if height - beside >= bottom || sides == [None; 2] {
                 let mut position = cell.probe();
                 position[up] = height;
                 self.witnesses.push(Witness { position, factor: self.search.factor });
@@ -548,20 +527,19 @@ impl Octree {
                 let cell = self.batch.tall[tall].cell;
                 let mut p = cell.probe();
                 p[cell.axes().1] = root;
-                self.bounds.boxes.push([p, p]);
+                self.bounds.boxes.push(Bounds::point(p));
             }
             self.bounds.enclose(field, self.search.factor);
             settled = true;
             for (line, known) in self.batch.lines.iter_mut().zip(&self.bounds.known) {
                 let Line { tall, lo, hi, root } = *line;
-                let [least, most] = known.value;
-                if away_from_zero(known.value).is_none() {
+                if !known.value.excludes_zero() {
                     continue;
                 }
                 let slope = known.gradient[self.batch.tall[tall].cell.axes().1];
-                let rising = slope[0] > 0.0;
-                let (lo, hi) = if (least > 0.0) == rising { (lo, root) } else { (root, hi) };
-                let newton = root - (least + most) / (slope[0] + slope[1]);
+                let rising = slope.lo > 0.0;
+                let (lo, hi) = if (known.value.lo > 0.0) == rising { (lo, root) } else { (root, hi) };
+                let newton = root - (known.value.lo + known.value.hi) / (slope.lo + slope.hi);
                 let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
                 settled &= (next - root).abs() <= f64::EPSILON * (lo.abs() + hi.abs());
                 *line = Line { tall, lo, hi, root: next };
@@ -572,11 +550,11 @@ impl Octree {
     /// Halves a cell along its longer sides, unless it has been halved `depth` times.
     fn halve(&mut self, cell: Cell, depth: u8) {
         if cell.level >= depth {
-            self.undecided.push([cell.lo, cell.hi]);
+            self.undecided.push(cell.bounds);
             return;
         }
-        let size = cell.hi - cell.lo;
-        let middle = cell.lo + CUT * size;
+        let size = cell.bounds.size();
+        let middle = cell.bounds.lo() + CUT * size;
         let long = LONG * size.max_element();
         let pieces = |axis: usize| if size[axis] > long { 2 } else { 1 };
         for z in 0..pieces(2) {
@@ -585,7 +563,7 @@ impl Octree {
                     let mut half = Cell { level: cell.level + 1, ..cell };
                     for (axis, piece) in [x, y, z].into_iter().enumerate() {
                         if pieces(axis) == 2 {
-                            let end = if piece == 0 { &mut half.hi } else { &mut half.lo };
+                            let end = if piece == 0 { &mut half.bounds.max } else { &mut half.bounds.min };
                             end[axis] = middle[axis];
                         }
                     }
@@ -597,33 +575,33 @@ impl Octree {
 }
 
 /// Adds the faces and edges of a box to the cells of a level.
-fn push_boundary(level: &mut Vec<Cell>, [bottom, top]: [DVec3; 2]) {
+fn push_boundary(level: &mut Vec<Cell>, whole: &Bounds) {
     // Each axis free, or pinned to either end.
     for stratum in 1..27 {
-        let (mut lo, mut hi) = (bottom, top);
+        let Bounds { mut min, mut max } = *whole;
         let mut rest = stratum;
         for axis in 0..3 {
             match rest % 3 {
-                1 => hi[axis] = lo[axis],
-                2 => lo[axis] = hi[axis],
+                1 => max[axis] = min[axis],
+                2 => min[axis] = max[axis],
                 _ => {}
             }
             rest /= 3;
         }
         // A corner belongs to three edges.
-        if lo != hi {
-            level.push(Cell { lo, hi, level: 0 });
+        if min != max {
+            level.push(Cell { bounds: Bounds { min, max }, level: 0 });
         }
     }
 }
 
 /// Whether a cell lies in the interior of a box.
-fn is_inside(cell: &Cell, [lo, hi]: &[DVec3; 2]) -> bool {
-    cell.lo.cmpgt(*lo).all() && cell.hi.cmplt(*hi).all()
+fn is_inside(cell: &Cell, around: &Bounds) -> bool {
+    around.holds_inside(&cell.bounds)
 }
 
 /// Whether a cell lies in a box that is left out of the search.
-fn is_left_out(cell: &Cell, isolated: &[[DVec3; 2]]) -> bool {
+fn is_left_out(cell: &Cell, isolated: &[Bounds]) -> bool {
     isolated.iter().any(|around| is_inside(cell, around))
 }
 
@@ -631,53 +609,39 @@ fn is_left_out(cell: &Cell, isolated: &[[DVec3; 2]]) -> bool {
 fn is_discarded(cell: &Cell, known: &Enclosure) -> bool {
     let (sides, _) = cell.axes();
     !known.may_vanish
-        || away_from_zero(known.value).is_some()
-        || sides.into_iter().flatten().any(|side| away_from_zero(known.gradient[side]).is_some())
+        || known.value.excludes_zero()
+        || sides.into_iter().flatten().any(|side| known.gradient[side].excludes_zero())
 }
 
 /// Returns a bound for the rise or fall of the surface over the footprint of the cell, by the bounds of the gradient; none where
 /// f is not monotone along up.
 fn rise(cell: &Cell, known: &Enclosure) -> Option<f64> {
     let (sides, up) = cell.axes();
-    let least = away_from_zero(known.gradient[up])?;
-    let t: f64 = sides
-        .into_iter()
-        .flatten()
-        .map(|side| largest(known.gradient[side]) / least * (cell.hi[side] - cell.lo[side]))
-        .sum();
+    let least = known.gradient[up].away_from_zero()?;
+    let size = cell.bounds.size();
+    let t: f64 =
+        sides.into_iter().flatten().map(|side| known.gradient[side].magnitude() / least * size[side]).sum();
     t.is_finite().then_some(t)
 }
 
 /// Intersects bounds over a box with the mean value forms around its middle; `half` is half its size.
-fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &[[f64; 2]; 6], half: DVec3) {
-    for (axis, row) in SECOND.into_iter().enumerate().filter(|_| known.smooth) {
-        let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(second[row[k]]) * half[k]).sum();
-        narrow(&mut known.gradient[axis], middle.gradient[axis], swing);
+fn tighten(known: &mut Enclosure, middle: &Enclosure, second: &Sym3<Interval>, half: DVec3) {
+    let swing = |slope: &dyn Fn(usize) -> Interval| -> f64 {
+        (0..3).filter(|&k| half[k] > 0.0).map(|k| slope(k).magnitude() * half[k]).sum()
+    };
+    for axis in (0..3).filter(|_| known.smooth) {
+        let form = middle.gradient[axis].mean_value(swing(&|k| second.at(axis, k)));
+        known.gradient[axis] = known.gradient[axis].cut_to(form);
     }
-    let swing: f64 = (0..3).filter(|&k| half[k] > 0.0).map(|k| largest(known.gradient[k]) * half[k]).sum();
-    narrow(&mut known.value, middle.value, swing);
-}
-
-/// Intersects bounds with those around a middle.
-fn narrow(bounds: &mut [f64; 2], middle: [f64; 2], swing: f64) {
-    /// What the few operations that lead here may have been rounded by.
-    const ROUNDING: f64 = 16.0 * f64::EPSILON;
-    let slack = ROUNDING * (swing + middle[0].abs() + middle[1].abs());
-    let (lo, hi) = (middle[0] - swing - slack, middle[1] + swing + slack);
-    // False for NaN, where nothing is known.
-    if lo > bounds[0] {
-        bounds[0] = lo;
-    }
-    if hi < bounds[1] {
-        bounds[1] = hi;
-    }
+    let form = middle.value.mean_value(swing(&|k| known.gradient[k]));
+    known.value = known.value.cut_to(form);
 }
 
 /// Whether the field has finite bounds at all, tested on a few small boxes.
-fn bounds_say_something(field: &mut dyn Bounded, [lo, hi]: [DVec3; 2]) -> bool {
+fn bounds_say_something(field: &mut dyn Bounded, bounds: &Bounds) -> bool {
     const SIDE: usize = 3;
-    let bounds = Bounds { min: lo.to_array(), max: hi.to_array() };
-    let boxes: Vec<[DVec3; 2]> = bounds.spread(SIDE).map(|p| [p, p + MARGIN * (hi - lo)]).collect();
+    let boxes: Vec<Bounds> =
+        bounds.spread(SIDE).map(|p| Bounds::new(p, p + MARGIN * bounds.size())).collect();
     let mut known = [Enclosure::UNKNOWN; SIDE * SIDE * SIDE];
     field.enclose(0, &boxes, &mut known);
     known.iter().any(|known| known.value != Enclosure::UNKNOWN.value)
@@ -705,15 +669,13 @@ mod tests {
             let mut octree = begun();
             octree.search.level = cells.to_vec();
             octree.visit(field, 0..cells.len());
-            let mut all: Vec<[DVec3; 2]> =
-                octree.search.halves.iter().map(|cell| [cell.lo, cell.hi]).collect();
-            all.extend(octree.witnesses.iter().map(|witness| [witness.position; 2]));
+            let mut all: Vec<Bounds> = octree.search.halves.iter().map(|cell| cell.bounds).collect();
+            all.extend(octree.witnesses.iter().map(|witness| Bounds::point(witness.position)));
             all.extend(octree.undecided);
             (all, octree.search.halves)
         };
-        let sorted = |all: Vec<[DVec3; 2]>| {
-            let mut all: Vec<[[f64; 3]; 2]> =
-                all.into_iter().map(|ends| ends.map(|end| end.to_array())).collect();
+        let sorted = |all: Vec<Bounds>| {
+            let mut all: Vec<[[f64; 3]; 2]> = all.into_iter().map(|cell| [cell.min, cell.max]).collect();
             all.sort_by(|a, b| a.partial_cmp(b).expect("finite corners"));
             all
         };

@@ -106,10 +106,9 @@ impl ComponentSearch {
 
     /// Projects the witnesses onto the surface as single precision computes it, and into the box.
     fn project(&mut self, probe: &mut Probe, bounds: &Bounds, tolerance: Tolerance) {
-        let margin = self.octree.margin();
-        let inside = |p: DVec3| p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all();
+        let margin = self.octree.region.margin;
         if let Some(field) = probe.field.bounded() {
-            self.thin_out(field, [bounds.lo() - margin, bounds.hi() + margin], tolerance);
+            self.thin_out(field, tolerance);
         }
         // A witness whose component lies in the margin alone is not needed.
         let starts: Vec<(DVec3, usize)> = self
@@ -117,7 +116,7 @@ impl ComponentSearch {
             .witnesses
             .iter()
             .filter_map(|&Witness { position, factor }| {
-                let start = if inside(position) {
+                let start = if bounds.holds(position) {
                     Some(position)
                 } else {
                     moved_inside(probe.field, position, bounds, margin)
@@ -151,7 +150,7 @@ impl ComponentSearch {
     }
 
     /// Drops witnesses that are connected with others within the box: along a ridge of equal height there are many.
-    fn thin_out(&mut self, field: &mut dyn Bounded, corners: [DVec3; 2], tolerance: Tolerance) {
+    fn thin_out(&mut self, field: &mut dyn Bounded, tolerance: Tolerance) {
         let slack = f64::from(2.0 * tolerance.residual);
         let witnesses = core::mem::take(&mut self.octree.witnesses);
         let mut kept: Vec<(Witness, DVec3)> = Vec::new();
@@ -178,7 +177,7 @@ impl ComponentSearch {
                 .collect();
             let pairs: Vec<(Oriented, DVec3)> =
                 ends.iter().zip(&nearest).map(|(&end, nearest)| (end, nearest.unwrap_or(end.0))).collect();
-            let connected = are_connected(field, factor, &pairs, slack, Some(corners));
+            let connected = are_connected(field, factor, &pairs, slack, Some(&self.octree.region.bounds));
             for k in 0..group.len() {
                 if nearest[k].is_none() || !connected[k] {
                     kept.push((group[k], ends[k].1));
@@ -231,12 +230,12 @@ impl ComponentSearch {
         for (pair, &j) in pairs.iter_mut().zip(&near) {
             pair.1 = place_of(j);
         }
-        let within = (self.octree.searched(), self.octree.margin());
+        let region = self.octree.region;
         let is_proven = are_connected(field, factor, &pairs[..tried], slack, None).contains(&true)
             || near
                 .iter()
                 .take(MOST_TRIED_BY_SEGMENTS)
-                .any(|&j| is_connected_by_segments(field, factor, from, place_of(j), slack, within));
+                .any(|&j| is_connected_by_segments(field, factor, from, place_of(j), slack, &region));
         let is_covered = is_proven
             || near.iter().take(MOST_TRIED).any(|&j| {
                 let j = j as usize;
@@ -274,7 +273,7 @@ impl ComponentSearch {
             slack: f64::from(2.0 * tolerance.residual),
             radius,
             rule,
-            within: (self.octree.searched(), self.octree.margin()),
+            region: self.octree.region,
         };
         let left = self.audit.step(&mut audited, budget);
         if self.audit.is_done() { left } else { 0 }
@@ -305,12 +304,12 @@ impl ComponentSearch {
             doubts.push(Doubt::Unfinished);
         }
         if self.octree.is_done()
-            && let Some(&[lo, hi]) = self.octree.undecided.first()
+            && let Some(cell) = self.octree.undecided.first()
         {
             doubts.push(Doubt::Cells {
                 count: self.octree.undecided.len() as u64,
-                position: (0.5 * (lo + hi)).to_array(),
-                size: (hi - lo).max_element(),
+                position: cell.middle().to_array(),
+                size: cell.size().max_element(),
             });
         }
         let count = self.lost + self.audit.open;
@@ -345,9 +344,9 @@ impl ComponentSearch {
 /// A point of the surface a margin inside the box, near `p` in the margin outside: by turns to the nearest point of the smaller
 /// box and, along the gradient, to the surface. None where the surface does not reach into the box there.
 fn moved_inside(field: &mut dyn Field, mut p: DVec3, bounds: &Bounds, margin: f64) -> Option<DVec3> {
-    let (lo, hi) = (bounds.lo() + margin, bounds.hi() - margin);
+    let inner = bounds.enlarged(-margin);
     for _ in 0..MOST_INWARD {
-        p = p.clamp(lo, hi);
+        p = p.clamp(inner.lo(), inner.hi());
         let jet = field.jet(p);
         let step = jet.gradient * (jet.value / jet.gradient.length_squared());
         if !step.is_finite() || step.length_squared() < 1e-6 * margin * margin {
@@ -355,5 +354,5 @@ fn moved_inside(field: &mut dyn Field, mut p: DVec3, bounds: &Bounds, margin: f6
         }
         p -= step;
     }
-    (p.cmpge(bounds.lo()).all() && p.cmple(bounds.hi()).all()).then_some(p)
+    bounds.holds(p).then_some(p)
 }

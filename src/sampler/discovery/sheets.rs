@@ -6,7 +6,9 @@
 //! between them that faces the other way.
 
 use crate::field::{Bounded, Enclosure};
+use crate::math::{Bounds, Interval};
 use crate::particles::Particles;
+use crate::sampler::discovery::octree::Region;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::Accuracy;
 use crate::spatial::Neighbour;
@@ -196,8 +198,8 @@ pub(crate) const TOGETHER: usize = 10;
 pub(crate) type Oriented = (DVec3, DVec3);
 
 /// For each of at most [`TOGETHER`] pairs of points of the surface, the first with its normal: whether bounds of the gradient
-/// prove that the surface connects them. The points may be up to `slack` away from the surface. With corners `within`, the
-/// connection has to stay between them.
+/// prove that the surface connects them. The points may be up to `slack` away from the surface. The connection has to stay in the
+/// box `within`, if there is one.
 ///
 /// The proof is that of the [octree](super::octree), on a box around both points. f is monotone along the axis nearest the
 /// normal, and the surface through the first point leaves the box through its sides only. So it is the graph of a function over
@@ -207,45 +209,45 @@ pub(crate) fn are_connected(
     factor: usize,
     pairs: &[(Oriented, DVec3)],
     slack: f64,
-    within: Option<[DVec3; 2]>,
+    within: Option<&Bounds>,
 ) -> [bool; TOGETHER] {
-    let mut boxes = [[DVec3::ZERO; 2]; 3 * TOGETHER];
+    let mut boxes = [Bounds::point(DVec3::ZERO); 3 * TOGETHER];
     let mut known = [Enclosure::UNKNOWN; 3 * TOGETHER];
     for (k, &((a, normal), b)) in pairs.iter().enumerate() {
         let (around, _, _) = graph_box(a, b, normal, slack);
-        boxes[3 * k..3 * k + 3].copy_from_slice(&[around, [a, a], [b, b]]);
+        boxes[3 * k..3 * k + 3].copy_from_slice(&[around, Bounds::point(a), Bounds::point(b)]);
     }
     field.enclose(factor, &boxes[..3 * pairs.len()], &mut known);
     core::array::from_fn(|k| {
         let Some(&((a, normal), b)) = pairs.get(k) else { return false };
         let (around, up, room) = graph_box(a, b, normal, slack);
         let [known, ends @ ..] = [0, 1, 2].map(|m| known[3 * k + m]);
-        let least = known.gradient[up][0].abs().min(known.gradient[up][1].abs());
+        let Interval { lo, hi } = known.gradient[up];
+        let least = lo.abs().min(hi.abs());
         // Ends that are not quite on the surface have it within 2 slacks above or below.
-        within.is_none_or(|[lo, hi]| around[0].cmpge(lo).all() && around[1].cmple(hi).all())
-            && proves_graph(&known, around, up, room - 4.0 * slack)
-            && ends.iter().all(|end| end.value[1].max(-end.value[0]) <= 2.0 * slack * least)
+        within.is_none_or(|within| within.holds(around.lo()) && within.holds(around.hi()))
+            && proves_graph(&known, &around, up, room - 4.0 * slack)
+            && ends.iter().all(|end| end.value.magnitude() <= 2.0 * slack * least)
     })
 }
 
 /// Whether two points of the surface are connected by a chain of segments, each of which [is proven](are_connected). Points
 /// between which the surface bends too much for one box need more than one segment: a segment without a proof is halved, at a point
-/// of the surface in the box from `lo` to `hi`. A midpoint outside that box is moved `margin` inside and back to the surface, by
-/// turns.
+/// of the surface in the `region`. A midpoint outside it is moved inside by its margin and back to the surface, by turns.
 pub(crate) fn is_connected_by_segments(
     field: &mut dyn Bounded,
     factor: usize,
     from: Oriented,
     to: DVec3,
     slack: f64,
-    ([lo, hi], margin): ([DVec3; 2], f64),
+    region: &Region,
 ) -> bool {
     /// Largest number of turns.
     const MOST_TURNS: u32 = 8;
     /// Largest number of rounds, and of segments without a proof.
     const MOST_ROUNDS: u32 = 8;
     const MOST_WAITING: usize = 3 * TOGETHER;
-    let is_inside = |p: DVec3| p.cmpge(lo).all() && p.cmple(hi).all();
+    let inner = region.bounds.enlarged(-region.margin);
     let mut waiting = [(from, to); MOST_WAITING];
     let mut count = 1;
     for _ in 0..MOST_ROUNDS {
@@ -259,10 +261,10 @@ pub(crate) fn is_connected_by_segments(
             let chord = end - start.0;
             let Some(mut middle) = land(field, factor, start.0 + 0.5 * chord) else { return false };
             for _ in 0..MOST_TURNS {
-                if is_inside(middle.0) {
+                if region.bounds.holds(middle.0) {
                     break;
                 }
-                let Some(next) = land(field, factor, middle.0.clamp(lo + margin, hi - margin)) else {
+                let Some(next) = land(field, factor, middle.0.clamp(inner.lo(), inner.hi())) else {
                     return false;
                 };
                 middle = next;
@@ -271,7 +273,7 @@ pub(crate) fn is_connected_by_segments(
             let offset = middle.0 - (start.0 + 0.5 * chord);
             if count + 2 > MOST_WAITING
                 || offset.length_squared() > 0.25 * chord.length_squared()
-                || !is_inside(middle.0)
+                || !region.bounds.holds(middle.0)
             {
                 return false;
             }
@@ -294,7 +296,7 @@ pub(crate) fn is_connected_around(
     from: Oriented,
     to: DVec3,
     slack: f64,
-    within: ([DVec3; 2], f64),
+    region: &Region,
 ) -> bool {
     let chord = to - from.0;
     let Some(direction) = chord.try_normalize() else { return false };
@@ -303,8 +305,8 @@ pub(crate) fn is_connected_around(
     [u, -u, v, -v].into_iter().any(|side| {
         let beside = from.0 + 0.5 * (chord + side * chord.length());
         land(field, factor, beside).is_some_and(|middle| {
-            is_connected_by_segments(field, factor, from, middle.0, slack, within)
-                && is_connected_by_segments(field, factor, middle, to, slack, within)
+            is_connected_by_segments(field, factor, from, middle.0, slack, region)
+                && is_connected_by_segments(field, factor, middle, to, slack, region)
         })
     })
 }
@@ -330,12 +332,12 @@ fn land(field: &mut dyn Bounded, factor: usize, mut p: DVec3) -> Option<Oriented
 /// Value and gradient of a factor of the field at a point: the middles of their bounds.
 pub(crate) fn value_at(field: &mut dyn Bounded, factor: usize, p: DVec3) -> (f64, DVec3) {
     let mut known = [Enclosure::UNKNOWN];
-    field.enclose(factor, &[[p, p]], &mut known);
+    field.enclose(factor, &[Bounds::point(p)], &mut known);
     known[0].middle()
 }
 
 /// The box of one segment, the axis nearest its normal, and how far the box reaches beyond the ends along that axis.
-fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usize, f64) {
+fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> (Bounds, usize, f64) {
     /// Room above and below the ends: times the rise of the tangent plane between them; as a share of the longest side, for what the
     /// surface bends; and for the slack, of which [`are_connected`] takes four.
     const RISES: f64 = 1.5;
@@ -355,20 +357,17 @@ fn graph_box(a: DVec3, b: DVec3, normal: DVec3, slack: f64) -> ([DVec3; 2], usiz
     let room = RISES * slope + BEND * reach.max_element() + SLACKS * slack;
     lo[up] -= room;
     hi[up] += room;
-    ([lo, hi], up, room)
+    (Bounds::new(lo, hi), up, room)
 }
 
 /// Whether the surface through any point of a box is a graph over the whole box, if the point is at least `room` away from the
 /// lower and the upper face.
-fn proves_graph(known: &Enclosure, [lo, hi]: [DVec3; 2], up: usize, room: f64) -> bool {
-    let [least, most] = known.gradient[up];
-    if !(known.defined && known.continuous) || least <= 0.0 && most >= 0.0 {
-        return false;
-    }
-    let least = least.abs().min(most.abs());
+fn proves_graph(known: &Enclosure, around: &Bounds, up: usize, room: f64) -> bool {
+    let Some(least) = known.gradient[up].away_from_zero() else { return false };
+    let size = around.size();
     let t: f64 = (0..3)
         .filter(|&axis| axis != up)
-        .map(|axis| known.gradient[axis][1].max(-known.gradient[axis][0]) / least * (hi[axis] - lo[axis]))
+        .map(|axis| known.gradient[axis].magnitude() / least * size[axis])
         .sum();
-    t <= room
+    known.defined && known.continuous && t <= room
 }

@@ -13,7 +13,7 @@
 //! cone is that of an indefinite quadratic form, up to a size that bounds of the second derivatives tell.
 
 use crate::field::{Bounded, Enclosure, Field};
-use crate::math::Sym3;
+use crate::math::{Bounds, Interval, Sym3};
 use crate::particles::{Particles, Slots};
 use crate::spatial::tree::Tree;
 use glam::{DMat3, DVec3, Vec3};
@@ -117,16 +117,16 @@ pub(crate) fn mark(field: &mut dyn Field, points: &[Singular], particles: &mut P
     let tree = Tree::new(&places);
     // The smallest search distance is the distance between the points that were found last, which are all along the curve.
     let on_curves = points.iter().filter(|point| !point.is_alone).map(|point| point.reach);
-    let widest = on_curves.reduce(f64::min).unwrap_or(0.0);
+    let apart = on_curves.reduce(f64::min).unwrap_or(0.0);
     let mut near = Vec::new();
     for i in 0..particles.len() {
         let (p, reach) = (particles.position[i], 2.0 * particles.radius[i]);
-        let around = Vec3::splat(reach + widest as f32);
+        let around = Vec3::splat(reach + apart as f32);
         near.clear();
         tree.within_box(p - around, p + around, &mut near);
         let is_within = near.iter().any(|&k| tree.position[k as usize].distance_squared(p) <= reach * reach);
         let is_marked = is_within
-            || widest > 0.0
+            || apart > 0.0
                 && !near.is_empty()
                 && singular_point(field, p.as_dvec3(), f64::from(reach)).is_some_and(|point| point.is_zero);
         let slots = &mut particles.slots[i].0;
@@ -147,23 +147,22 @@ fn size_sq(m: &DMat3) -> f64 {
     m.to_cols_array().iter().map(|entry| entry * entry).sum()
 }
 
-/// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field has no local extremum. It lies in
-/// the box from `lo` to `hi` and meets none of the boxes `taken`.
+/// The largest of [`SIZES`] boxes around the singular point `at` in which one factor of the field has no local extremum. It lies
+/// inside the box `within` and meets none of the boxes `taken`.
 pub(crate) fn isolating_box(
     field: &mut dyn Bounded,
     factor: usize,
     at: DVec3,
-    [lo, hi]: [DVec3; 2],
-    taken: &[[DVec3; 2]],
-) -> Option<[DVec3; 2]> {
-    let largest = LARGEST * (hi - lo).max_element();
-    let boxes: [[DVec3; 2]; SIZES] = core::array::from_fn(|k| {
+    within: &Bounds,
+    taken: &[Bounds],
+) -> Option<Bounds> {
+    let largest = LARGEST * within.size().max_element();
+    let boxes: [Bounds; SIZES] = core::array::from_fn(|k| {
         let size = largest / f64::from(1_u32 << k);
-        [at - size * BELOW, at + size * ABOVE]
+        Bounds::new(at - size * BELOW, at + size * ABOVE)
     });
-    let fits = |&[bottom, top]: &[DVec3; 2]| {
-        let is_free = |&[a, b]: &[DVec3; 2]| a.cmpgt(top).any() || b.cmplt(bottom).any();
-        bottom.cmpgt(lo).all() && top.cmplt(hi).all() && taken.iter().all(is_free)
+    let fits = |around: &Bounds| {
+        within.holds_inside(around) && taken.iter().all(|taken| taken.is_apart_from(around))
     };
     let mut is_so = [false; SUB_BOXES];
     has_no_extremum(field, factor, &boxes, &mut is_so);
@@ -171,7 +170,7 @@ pub(crate) fn isolating_box(
     // Larger boxes may be proven in sub-boxes, whose bounds are tighter.
     let in_sub_boxes = (as_one.saturating_sub(MOST_LARGER)..as_one).find(|&k| {
         fits(&boxes[k]) && {
-            has_no_extremum(field, factor, &sub_boxes(boxes[k]), &mut is_so);
+            has_no_extremum(field, factor, &sub_boxes(&boxes[k]), &mut is_so);
             is_so.iter().all(|&is_so| is_so)
         }
     });
@@ -179,40 +178,41 @@ pub(crate) fn isolating_box(
 }
 
 /// A box cut into three along each axis.
-fn sub_boxes([lo, hi]: [DVec3; 2]) -> [[DVec3; 2]; SUB_BOXES] {
-    let third = |k: usize| if k == 3 { hi } else { lo + (hi - lo) * (k as f64 / 3.0) };
+fn sub_boxes(whole: &Bounds) -> [Bounds; SUB_BOXES] {
+    let (lo, size) = (whole.lo(), whole.size());
+    let third = |k: usize| if k == 3 { whole.hi() } else { lo + size * (k as f64 / 3.0) };
     core::array::from_fn(|i| {
         let [x, y, z] = [i % 3, i / 3 % 3, i / 9];
-        [0, 1].map(|end| DVec3::new(third(x + end).x, third(y + end).y, third(z + end).z))
+        let [lo, hi] = [0, 1].map(|end| DVec3::new(third(x + end).x, third(y + end).y, third(z + end).z));
+        Bounds::new(lo, hi)
     })
 }
 
 /// For each of some boxes, whether bounds show that there is no local extremum in it: the gradient vanishes nowhere, or the
 /// function [is a saddle](is_saddle) throughout.
-fn has_no_extremum(field: &mut dyn Bounded, factor: usize, boxes: &[[DVec3; 2]], out: &mut [bool]) {
+fn has_no_extremum(field: &mut dyn Bounded, factor: usize, boxes: &[Bounds], out: &mut [bool]) {
     let mut known = [Enclosure::UNKNOWN; SUB_BOXES];
-    let mut second = [[[0.0; 2]; 6]; SUB_BOXES];
+    let mut second = [Sym3::splat(Interval::EVERYTHING); SUB_BOXES];
     field.enclose(factor, boxes, &mut known);
     field.enclose_second(factor, boxes, &mut second);
     for (k, out) in out[..boxes.len()].iter_mut().enumerate() {
         let Enclosure { defined, continuous, smooth, gradient, .. } = known[k];
-        let is_steep = gradient.iter().any(|&[lo, hi]| lo > 0.0 || hi < 0.0);
+        let is_steep = gradient.iter().any(|slope| slope.excludes_zero());
         *out = defined && continuous && (is_steep || smooth && is_saddle(&second[k]));
     }
 }
 
 /// Whether the second derivatives along two fixed directions have different signs.
-fn is_saddle(second: &[[f64; 2]; 6]) -> bool {
-    let middle = second.map(|[lo, hi]| 0.5 * (lo + hi));
-    extreme_directions(middle)
-        .is_some_and(|[up, down]| along(second, up)[0] > 0.0 && along(second, down)[1] < 0.0)
+fn is_saddle(second: &Sym3<Interval>) -> bool {
+    extreme_directions(&second.map(Interval::middle))
+        .is_some_and(|[up, down]| along(second, up).lo > 0.0 && along(second, down).hi < 0.0)
 }
 
 /// Directions along which the second derivative is about the largest and about the smallest, if these have different signs.
-fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> {
+fn extreme_directions(second: &Sym3<f64>) -> Option<[DVec3; 2]> {
     /// Squarings of a matrix: enough to tell eigenvalues apart that differ by a tenth.
     const SQUARINGS: u32 = 7;
-    let hessian = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+    let hessian = matrix(second);
     let size = size_sq(&hessian).sqrt();
     let directions = [1.0, -1.0].map(|sign| {
         let mut power = hessian * sign + DMat3::from_diagonal(DVec3::splat(size));
@@ -233,19 +233,18 @@ fn extreme_directions([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> Option<[DVec3; 2]> 
 }
 
 /// Bounds of the second derivative along a direction, from bounds of the six second derivatives.
-fn along(second: &[[f64; 2]; 6], d: DVec3) -> [f64; 2] {
+fn along(second: &Sym3<Interval>, d: DVec3) -> Interval {
     /// Bound of the relative rounding error of the operations here.
     const ROUNDING: f64 = 32.0 * f64::EPSILON;
     let factors = [d.x * d.x, 2.0 * d.x * d.y, 2.0 * d.x * d.z, d.y * d.y, 2.0 * d.y * d.z, d.z * d.z];
-    let (mut lo, mut hi, mut size) = (0.0, 0.0, 0.0);
-    for (factor, [least, most]) in factors.into_iter().zip(second) {
-        let (a, b) = (factor * least, factor * most);
-        lo += a.min(b);
-        hi += a.max(b);
-        size += a.abs().max(b.abs());
+    let (mut sum, mut size) = (Interval::new(0.0, 0.0), 0.0);
+    for (factor, bounds) in factors.into_iter().zip(second.entries()) {
+        let term = bounds * factor;
+        sum = sum + term;
+        size += term.magnitude();
     }
-    // Infinite bounds give NaN, which compares as false: no sign is proven.
-    [lo - ROUNDING * size, hi + ROUNDING * size]
+    // Infinite bounds give infinite ends or NaN, which compares as false: no sign is proven.
+    sum.widened(ROUNDING * size)
 }
 
 #[cfg(test)]
@@ -256,9 +255,9 @@ mod tests {
     #[test]
     fn boxes_without_an_extremum_are_told_by_the_gradient_of_either_sign_or_by_a_saddle() {
         let boxes = [
-            [DVec3::splat(-0.1), DVec3::splat(0.1)],
-            [DVec3::splat(0.2), DVec3::splat(0.3)],
-            [DVec3::splat(-0.3), DVec3::splat(-0.2)],
+            Bounds::cube(0.1),
+            Bounds::new(DVec3::splat(0.2), DVec3::splat(0.3)),
+            Bounds::new(DVec3::splat(-0.3), DVec3::splat(-0.2)),
         ];
         // Around the origin, where all coordinates are positive, and where all are negative.
         for (formula, expected) in [

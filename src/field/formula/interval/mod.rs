@@ -15,7 +15,7 @@ use super::graph::{Graph, Id, Node};
 use super::operations::{Binary, Unary};
 use super::registers::Registers;
 use crate::field::Enclosure;
-use glam::DVec3;
+use crate::math::{Bounds, Interval, Sym3};
 use range::Range;
 use rows::{BOXES, Row};
 
@@ -170,15 +170,15 @@ impl BoxProgram {
     }
 
     /// Calls `take` with the index of each box and a function that gives the bounds of result `n` over it.
-    fn run(&mut self, boxes: &[[DVec3; 2]], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
+    fn run(&mut self, boxes: &[Bounds], mut take: impl FnMut(usize, &dyn Fn(usize) -> Range)) {
         for (first, boxes) in (0..).step_by(BOXES).zip(boxes.chunks(BOXES)) {
             let n = boxes.len();
             for axis in 0..3 {
                 let row = &mut self.rows[axis];
                 for k in 0..BOXES {
                     // The last box pads the row: arbitrary numbers could be slow in some lanes.
-                    let [lo, hi] = boxes[k.min(n - 1)];
-                    (row.lo[k], row.hi[k]) = (lo[axis].min(hi[axis]), lo[axis].max(hi[axis]));
+                    let Bounds { min, max } = boxes[k.min(n - 1)];
+                    (row.lo[k], row.hi[k]) = (min[axis].min(max[axis]), min[axis].max(max[axis]));
                 }
             }
             for at in 0..self.steps.len() {
@@ -193,13 +193,16 @@ impl BoxProgram {
 
     /// Bounds of results 0 … 3, a function and its gradient. Result 4 tells where the whole field is defined and
     /// continuous.
-    pub(super) fn enclose(&mut self, boxes: &[[DVec3; 2]], out: &mut [Enclosure]) {
+    pub(super) fn enclose(&mut self, boxes: &[Bounds], out: &mut [Enclosure]) {
         self.run(boxes, |i, result| out[i] = enclosure([0, 1, 2, 3, 4].map(result)));
     }
 
     /// Bounds of results 0 … 5, the second derivatives.
-    pub(super) fn enclose_second(&mut self, boxes: &[[DVec3; 2]], out: &mut [[[f64; 2]; 6]]) {
-        self.run(boxes, |i, result| out[i] = [0, 1, 2, 3, 4, 5].map(|output| slope(result(output))));
+    pub(super) fn enclose_second(&mut self, boxes: &[Bounds], out: &mut [Sym3<Interval>]) {
+        self.run(boxes, |i, result| {
+            let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|output| slope(result(output)));
+            out[i] = Sym3 { xx, xy, xz, yy, yz, zz };
+        });
     }
 
     fn execute(&self, step: &Step, n: usize) -> Row {
@@ -221,8 +224,8 @@ impl BoxProgram {
             Op::Power(n_th) => Row::each(n, |k| row(a).at(k).power(n_th)),
             Op::Scale => {
                 let factor = self.uniforms[b as usize];
-                if factor.lo == factor.hi && !factor.is_empty() {
-                    row(a).scale(factor.lo)
+                if factor.bounds.lo == factor.bounds.hi && !factor.is_empty() {
+                    row(a).scale(factor.bounds.lo)
                 } else {
                     row(a).mul(&Row::fill(factor))
                 }
@@ -263,8 +266,8 @@ impl Step {
 }
 
 /// Bounds of a derivative. Nothing is known of one that is defined nowhere in the box.
-fn slope(range: Range) -> [f64; 2] {
-    if range.is_empty() { [f64::NEG_INFINITY, f64::INFINITY] } else { [range.lo, range.hi] }
+fn slope(range: Range) -> Interval {
+    if range.is_empty() { Interval::EVERYTHING } else { range.bounds }
 }
 
 /// Enclosure from the bounds of a function, of its gradient and of the whole field.
@@ -274,7 +277,7 @@ fn enclosure([f, x, y, z, whole]: [Range; 5]) -> Enclosure {
     }
     let flags = f.flags & whole.flags;
     Enclosure {
-        value: [f.lo, f.hi],
+        value: f.bounds,
         gradient: [x, y, z].map(slope),
         defined: flags & flags::DEFINED != 0,
         continuous: flags & flags::CONTINUOUS != 0,

@@ -3,12 +3,12 @@
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
 use crate::field::formula::graph::{MIN_BLEND_WIDTH, smin};
 use crate::field::formula::operations::{Binary, Unary, sign};
+use crate::math::Interval;
 
 /// Bounds of the values of an operation over a box, with its [other properties](super::flags).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
-    pub(super) lo: f64,
-    pub(super) hi: f64,
+    pub(super) bounds: Interval,
     pub(super) flags: u8,
 }
 
@@ -19,7 +19,7 @@ const LIBRARY_ERROR: f64 = 8.0 * f64::EPSILON;
 const TRUSTED_ANGLE: f64 = 1e9;
 
 /// The empty range.
-const NOTHING: Range = Range { lo: f64::INFINITY, hi: f64::NEG_INFINITY, flags: EMPTY };
+const NOTHING: Range = Range { bounds: Interval::NOTHING, flags: EMPTY };
 
 /// Lower bound of a result that IEEE arithmetic rounded to `value`, at least one unit in the last place below it.
 ///
@@ -49,27 +49,33 @@ fn well_above(value: f64) -> f64 {
     widened(value, LIBRARY_ERROR, f64::INFINITY)
 }
 
-/// Product of bounds. 0 · ∞ is 0, because an infinite bound stands for arbitrarily large finite values.
-pub(super) fn product(a: f64, b: f64) -> f64 {
-    let product = a * b;
-    if product.is_nan() { 0.0 } else { product }
-}
-
 impl Range {
     /// The range from `lo` to `hi`. A NaN is replaced by an infinite bound.
     fn new(lo: f64, hi: f64, flags: u8) -> Self {
         let lo = if lo.is_nan() { f64::NEG_INFINITY } else { lo };
         let hi = if hi.is_nan() { f64::INFINITY } else { hi };
-        Self { lo, hi, flags }
+        Self { bounds: Interval::new(lo, hi), flags }
+    }
+
+    /// The range whose ends IEEE arithmetic rounded to those of `bounds`.
+    fn rounded(bounds: Interval, flags: u8) -> Self {
+        Self { bounds: Interval::new(down(bounds.lo), up(bounds.hi)), flags }
+    }
+
+    /// The range whose ends a library function rounded to the least and the greatest of these values.
+    fn among(corners: [f64; 4], flags: u8) -> Self {
+        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
+        let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        Self::new(well_below(lo), well_above(hi), flags)
     }
 
     /// The unbounded range, of an operation that may have a pole.
     fn everything(flags: u8) -> Self {
-        Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, flags: flags & EMPTY }
+        Self { bounds: Interval::EVERYTHING, flags: flags & EMPTY }
     }
 
     pub(super) fn exactly(value: f64) -> Self {
-        if value.is_nan() { NOTHING } else { Self { lo: value, hi: value, flags: REGULAR } }
+        if value.is_nan() { NOTHING } else { Self { bounds: Interval::new(value, value), flags: REGULAR } }
     }
 
     pub(super) fn is_empty(self) -> bool {
@@ -78,81 +84,88 @@ impl Range {
 
     /// Whether 0 is certainly not among the values.
     pub(super) fn is_nonzero(self) -> bool {
-        self.flags & (NONZERO | EMPTY) != 0 || self.lo > 0.0 || self.hi < 0.0
-    }
-
-    fn holds(self, value: f64) -> bool {
-        self.lo <= value && value <= self.hi
+        self.flags & (NONZERO | EMPTY) != 0 || self.bounds.excludes_zero()
     }
 
     /// Intersection with `lo … hi`. If that is smaller, the operation is not defined everywhere in the box.
     fn cut(self, lo: f64, hi: f64) -> Self {
-        let cut = Self { lo: self.lo.max(lo), hi: self.hi.min(hi), flags: self.flags };
-        if cut.lo > cut.hi {
+        let bounds = self.bounds.cut_to(Interval::new(lo, hi));
+        if bounds.lo > bounds.hi {
             NOTHING
-        } else if self.lo >= lo && self.hi <= hi {
-            cut
+        } else if self.bounds.lo >= lo && self.bounds.hi <= hi {
+            self
         } else {
-            Self { flags: self.flags & !DEFINED, ..cut }
+            Self { bounds, flags: self.flags & !DEFINED }
         }
     }
 
     /// Range of an increasing library function.
     fn increasing(self, f: fn(f64) -> f64) -> Self {
-        Self::new(well_below(f(self.lo)), well_above(f(self.hi)), joined(self.flags, self.flags))
+        Self::new(
+            well_below(f(self.bounds.lo)),
+            well_above(f(self.bounds.hi)),
+            joined(self.flags, self.flags),
+        )
+    }
+
+    /// Range of an increasing step function.
+    fn steps(self, f: impl Fn(f64) -> f64) -> Self {
+        let (lo, hi) = (f(self.bounds.lo), f(self.bounds.hi));
+        let flags = joined(self.flags, self.flags);
+        Self { bounds: Interval::new(lo, hi), flags: if lo == hi { flags } else { flags & !CONTINUOUS } }
+    }
+
+    /// The range of values that are no smaller than `least`, whatever rounding says.
+    fn at_least(self, least: f64) -> Self {
+        Self { bounds: Interval::new(self.bounds.lo.max(least), self.bounds.hi), flags: self.flags }
     }
 
     fn neg(self) -> Self {
-        Self { lo: -self.hi, hi: -self.lo, flags: self.flags }
+        Self { bounds: -self.bounds, flags: self.flags }
     }
 
     fn add(self, other: Self) -> Self {
-        Self::new(down(self.lo + other.lo), up(self.hi + other.hi), joined(self.flags, other.flags))
+        Self::rounded(self.bounds + other.bounds, joined(self.flags, other.flags))
     }
 
     fn mul(self, other: Self) -> Self {
-        let corners = [
-            product(self.lo, other.lo),
-            product(self.lo, other.hi),
-            product(self.hi, other.lo),
-            product(self.hi, other.hi),
-        ];
-        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let nonzero = if self.is_nonzero() && other.is_nonzero() { NONZERO } else { 0 };
-        Self::new(down(lo), up(hi), joined(self.flags, other.flags) | nonzero)
+        Self::rounded(self.bounds * other.bounds, joined(self.flags, other.flags) | nonzero)
     }
 
     pub(super) fn reciprocal(self) -> Self {
         let flags = joined(self.flags, self.flags);
-        if self.lo > 0.0 || self.hi < 0.0 {
-            return Self::new(down(1.0 / self.hi), up(1.0 / self.lo), flags);
+        let Interval { lo, hi } = self.bounds;
+        let inverse = Interval::new(1.0 / hi, 1.0 / lo);
+        if self.bounds.excludes_zero() {
+            return Self::rounded(inverse, flags);
         }
         // There is a pole. On one side of it the values keep their sign; on both sides they are still not 0.
         let flags = flags & EMPTY | NONZERO;
-        if self.lo == 0.0 && self.hi > 0.0 {
-            Self { lo: down(1.0 / self.hi), hi: f64::INFINITY, flags }
-        } else if self.hi == 0.0 && self.lo < 0.0 {
-            Self { lo: f64::NEG_INFINITY, hi: up(1.0 / self.lo), flags }
+        if lo == 0.0 && hi > 0.0 {
+            Self { bounds: Interval::new(down(inverse.lo), f64::INFINITY), flags }
+        } else if hi == 0.0 && lo < 0.0 {
+            Self { bounds: Interval::new(f64::NEG_INFINITY, up(inverse.hi)), flags }
         } else {
-            Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, flags }
+            Self { bounds: Interval::EVERYTHING, flags }
         }
     }
 
     fn abs(self) -> Self {
-        if self.lo >= 0.0 {
+        let Interval { lo, hi } = self.bounds;
+        if lo >= 0.0 {
             self
-        } else if self.hi <= 0.0 {
+        } else if hi <= 0.0 {
             self.neg()
         } else {
-            Self { lo: 0.0, hi: self.hi.max(-self.lo), flags: self.flags }
+            Self { bounds: Interval::new(0.0, hi.max(-lo)), flags: self.flags }
         }
     }
 
     fn tangent(self) -> Self {
-        let size = self.lo.abs().max(self.hi.abs());
+        let size = self.bounds.magnitude();
         let slack = 1e-15 * size + 1e-15;
-        let (lo, hi) = (self.lo / core::f64::consts::PI, self.hi / core::f64::consts::PI);
+        let (lo, hi) = (self.bounds.lo / core::f64::consts::PI, self.bounds.hi / core::f64::consts::PI);
         let trusted = size <= TRUSTED_ANGLE;
         let pole = !trusted || libm::floor(hi + 0.5 + slack) > libm::floor(lo + 0.5 - slack);
         if !pole {
@@ -168,7 +181,6 @@ impl Range {
         if self.is_empty() {
             return NOTHING;
         }
-        let flags = joined(self.flags, self.flags);
         match operation {
             Unary::Neg => self.neg(),
             Unary::Square => self.mul(self),
@@ -177,29 +189,26 @@ impl Range {
                 if cut.is_empty() {
                     return NOTHING;
                 }
-                Self::new(down(cut.lo.sqrt()), up(cut.hi.sqrt()), joined(cut.flags, cut.flags))
+                Self::rounded(
+                    Interval::new(cut.bounds.lo.sqrt(), cut.bounds.hi.sqrt()),
+                    joined(cut.flags, cut.flags),
+                )
             }
             Unary::Cbrt => self.increasing(libm::cbrt),
             Unary::Abs => self.abs(),
-            Unary::Sign => {
-                let (lo, hi) = (sign(self.lo), sign(self.hi));
-                Self { lo, hi, flags: if lo == hi { flags } else { flags & !CONTINUOUS } }
-            }
-            Unary::Floor => {
-                let (lo, hi) = (libm::floor(self.lo), libm::floor(self.hi));
-                Self { lo, hi, flags: if lo == hi { flags } else { flags & !CONTINUOUS } }
-            }
-            Unary::Exp => {
-                let bounds = self.increasing(libm::exp);
-                Self { lo: bounds.lo.max(0.0), ..bounds }
-            }
+            Unary::Sign => self.steps(sign),
+            Unary::Floor => self.steps(libm::floor),
+            Unary::Exp => self.increasing(libm::exp).at_least(0.0),
             Unary::Ln | Unary::Log10 => {
                 let cut = self.cut(0.0, f64::INFINITY);
                 if cut.is_empty() {
                     return NOTHING;
                 }
-                let bounds = cut.increasing(if operation == Unary::Ln { libm::log } else { libm::log10 });
-                Self { flags: if cut.lo > 0.0 { bounds.flags } else { bounds.flags & !DEFINED }, ..bounds }
+                let range = cut.increasing(if operation == Unary::Ln { libm::log } else { libm::log10 });
+                Self {
+                    flags: if cut.bounds.lo > 0.0 { range.flags } else { range.flags & !DEFINED },
+                    ..range
+                }
             }
             Unary::Sin | Unary::Cos => unreachable!("computed in rows"),
             Unary::Tan => self.tangent(),
@@ -210,19 +219,16 @@ impl Range {
                 } else if operation == Unary::Asin {
                     cut.increasing(libm::asin)
                 } else {
-                    let (lo, hi) = (libm::acos(cut.hi), libm::acos(cut.lo));
+                    let (lo, hi) = (libm::acos(cut.bounds.hi), libm::acos(cut.bounds.lo));
                     Self::new(well_below(lo), well_above(hi), joined(cut.flags, cut.flags))
                 }
             }
             Unary::Atan => self.increasing(libm::atan),
             Unary::Sinh => self.increasing(libm::sinh),
-            Unary::Cosh => {
-                let bounds = self.abs().increasing(libm::cosh);
-                Self { lo: bounds.lo.max(1.0), ..bounds }
-            }
+            Unary::Cosh => self.abs().increasing(libm::cosh).at_least(1.0),
             Unary::Tanh => {
-                let bounds = self.increasing(libm::tanh);
-                Self { lo: bounds.lo.max(-1.0), hi: bounds.hi.min(1.0), ..bounds }
+                let range = self.increasing(libm::tanh);
+                Self { bounds: range.bounds.cut_to(Interval::symmetric(1.0)), ..range }
             }
         }
     }
@@ -232,13 +238,14 @@ impl Range {
             return NOTHING;
         }
         let flags = joined(self.flags, other.flags);
+        let (a, b) = (self.bounds, other.bounds);
         match operation {
             Binary::Add => self.add(other),
             Binary::Sub => self.add(other.neg()),
             Binary::Mul => self.mul(other),
             Binary::Div => self.mul(other.reciprocal()),
-            Binary::Min => Self { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi), flags },
-            Binary::Max => Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi), flags },
+            Binary::Min => Self { bounds: Interval::new(a.lo.min(b.lo), a.hi.min(b.hi)), flags },
+            Binary::Max => Self { bounds: Interval::new(a.lo.max(b.lo), a.hi.max(b.hi)), flags },
             Binary::Pow => self.real_power(other),
             Binary::Atan2 => self.angle(other),
         }
@@ -246,58 +253,52 @@ impl Range {
 
     /// Range of self^exponent for any exponent.
     fn real_power(self, exponent: Self) -> Self {
-        let whole = exponent.lo == exponent.hi && exponent.lo == libm::trunc(exponent.lo);
-        if self.lo < 0.0 && whole {
+        let Interval { lo: least, hi: greatest } = exponent.bounds;
+        let has_negative = self.bounds.lo < 0.0;
+        if has_negative && least == greatest && least == libm::trunc(least) {
             // An integer exponent whose value comes from the parameters. The power is monotone in |x|, and the parity
             // of the exponent gives its sign.
             let size = self.abs().real_power(exponent);
-            let symmetric = Self { lo: -size.hi, ..size };
-            return if libm::fmod(exponent.lo, 2.0) == 0.0 { size } else { symmetric };
+            let symmetric = Self { bounds: Interval::symmetric(size.bounds.hi), ..size };
+            return if libm::fmod(least, 2.0) == 0.0 { size } else { symmetric };
         }
         // Negative numbers have powers for integer exponents only, which may be positive or negative.
-        let has_negative = self.lo < 0.0;
         let base = self.cut(0.0, f64::INFINITY);
-        if has_negative && exponent.lo < exponent.hi {
+        if has_negative && least < greatest {
             return Self::everything(0);
         }
         if base.is_empty() {
             return NOTHING;
         }
-        // On x ≥ 0 x^p is monotone in x and in p, so the extremes are at the corners.
-        let corners = [
-            libm::pow(base.lo, exponent.lo),
-            libm::pow(base.lo, exponent.hi),
-            libm::pow(base.hi, exponent.lo),
-            libm::pow(base.hi, exponent.hi),
-        ];
         let flags = joined(base.flags, exponent.flags);
+        let Interval { lo, hi } = base.bounds;
         // 0^p jumps at p = 0 and has a pole for p < 0.
-        if base.lo == 0.0 && exponent.lo <= 0.0 {
-            return Self { lo: 0.0, hi: f64::INFINITY, flags: flags & !REGULAR };
+        if lo == 0.0 && least <= 0.0 {
+            return Self { bounds: Interval::new(0.0, f64::INFINITY), flags: flags & !REGULAR };
         }
-        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::new(well_below(lo).max(0.0), well_above(hi), flags)
+        // On x ≥ 0 x^p is monotone in x and in p, so the extremes are at the corners.
+        let corners =
+            [libm::pow(lo, least), libm::pow(lo, greatest), libm::pow(hi, least), libm::pow(hi, greatest)];
+        Self::among(corners, flags).at_least(0.0)
     }
 
     /// Range of the angle atan2(self, across) of the point (across, self).
     fn angle(self, across: Self) -> Self {
         let flags = joined(self.flags, across.flags);
-        let pi = well_above(core::f64::consts::PI);
+        let (y, x) = (self.bounds, across.bounds);
         // The box meets the branch cut along the negative axis, or the origin.
-        if across.lo <= 0.0 && self.holds(0.0) {
-            return Self { lo: -pi, hi: pi, flags: flags & !CONTINUOUS };
+        if x.lo <= 0.0 && y.holds(0.0) {
+            let pi = well_above(core::f64::consts::PI);
+            return Self { bounds: Interval::symmetric(pi), flags: flags & !CONTINUOUS };
         }
         // Away from the branch cut the extremes are at the corners.
         let corners = [
-            libm::atan2(self.lo, across.lo),
-            libm::atan2(self.lo, across.hi),
-            libm::atan2(self.hi, across.lo),
-            libm::atan2(self.hi, across.hi),
+            libm::atan2(y.lo, x.lo),
+            libm::atan2(y.lo, x.hi),
+            libm::atan2(y.hi, x.lo),
+            libm::atan2(y.hi, x.hi),
         ];
-        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::new(well_below(lo), well_above(hi), flags)
+        Self::among(corners, flags)
     }
 
     /// Range of the smooth minimum, which increases with a and b and decreases with k.
@@ -306,8 +307,9 @@ impl Range {
             return NOTHING;
         }
         let flags = joined(joined(a.flags, b.flags), k.flags);
-        let widest = k.hi.max(MIN_BLEND_WIDTH);
-        let narrowest = k.lo.max(MIN_BLEND_WIDTH);
+        let (a, b) = (a.bounds, b.bounds);
+        let widest = k.bounds.hi.max(MIN_BLEND_WIDTH);
+        let narrowest = k.bounds.lo.max(MIN_BLEND_WIDTH);
         if !widest.is_finite() {
             return Self::everything(0);
         }
@@ -327,11 +329,11 @@ impl Range {
         let base = if even { self.abs() } else { self };
         // There are at most 2 log₂ n products, each with an error of half a unit; squaring doubles a relative error.
         let error = 2.0 * f64::from(natural) * f64::EPSILON;
-        let lo = widened(integer_power(base.lo, natural), -error, f64::NEG_INFINITY);
-        let hi = widened(integer_power(base.hi, natural), error, f64::INFINITY);
+        let lo = widened(integer_power(base.bounds.lo, natural), -error, f64::NEG_INFINITY);
+        let hi = widened(integer_power(base.bounds.hi, natural), error, f64::INFINITY);
         let flags = joined(self.flags, self.flags) | self.flags & NONZERO;
-        let bounds = Self { lo: if even { lo.max(0.0) } else { lo }, hi, flags };
-        if n < 0 { bounds.reciprocal() } else { bounds }
+        let range = Self { bounds: Interval::new(if even { lo.max(0.0) } else { lo }, hi), flags };
+        if n < 0 { range.reciprocal() } else { range }
     }
 
     /// Range of a choice: `value` where a ≤ b and 0 elsewhere, or the reverse if not `where_at_most`.
@@ -340,14 +342,15 @@ impl Range {
             return NOTHING;
         }
         let flags = joined(joined(a.flags, b.flags), value.flags);
-        let (always, never) = (a.hi <= b.lo, a.lo > b.hi);
+        let (always, never) = (a.bounds.hi <= b.bounds.lo, a.bounds.lo > b.bounds.hi);
         let (always_value, always_zero) = if where_at_most { (always, never) } else { (never, always) };
         if always_value {
             Self { flags, ..value }
         } else if always_zero {
-            Self { lo: 0.0, hi: 0.0, flags }
+            Self { bounds: Interval::new(0.0, 0.0), flags }
         } else {
-            Self { lo: value.lo.min(0.0), hi: value.hi.max(0.0), flags: flags & !CONTINUOUS }
+            let Interval { lo, hi } = value.bounds;
+            Self { bounds: Interval::new(lo.min(0.0), hi.max(0.0)), flags: flags & !CONTINUOUS }
         }
     }
 }

@@ -3,7 +3,9 @@
 //! Only the most frequent operations are written out here. The others go through [`Range`], box by box.
 
 use super::flags::{CONTINUOUS, DEFINED, EMPTY, NONZERO, REGULAR, joined};
-use super::range::{Range, down, product, up};
+use super::range::{Range, down, up};
+use crate::math::Interval;
+use crate::math::interval::product;
 
 /// Number of boxes in a row.
 pub(super) const BOXES: usize = 32;
@@ -21,12 +23,12 @@ impl Row {
 
     /// Bounds over box `k`.
     pub(super) fn at(&self, k: usize) -> Range {
-        Range { lo: self.lo[k], hi: self.hi[k], flags: self.flags[k] }
+        Range { bounds: Interval::new(self.lo[k], self.hi[k]), flags: self.flags[k] }
     }
 
     /// The same bounds over every box.
     pub(super) fn fill(range: Range) -> Self {
-        Self { lo: [range.lo; BOXES], hi: [range.hi; BOXES], flags: [range.flags; BOXES] }
+        Self { lo: [range.bounds.lo; BOXES], hi: [range.bounds.hi; BOXES], flags: [range.flags; BOXES] }
     }
 
     /// `f` over each of the first `n` boxes.
@@ -34,7 +36,7 @@ impl Row {
         let mut out = Self::ZERO;
         for k in 0..n {
             let range = f(k);
-            (out.lo[k], out.hi[k], out.flags[k]) = (range.lo, range.hi, range.flags);
+            (out.lo[k], out.hi[k], out.flags[k]) = (range.bounds.lo, range.bounds.hi, range.flags);
         }
         out
     }
