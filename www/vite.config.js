@@ -1,6 +1,7 @@
 import { createHash } from 'node:crypto';
-import { readdirSync, readFileSync, statSync } from 'node:fs';
-import { join } from 'node:path';
+import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { setTimeout } from 'node:timers/promises';
 import { build, defineConfig } from 'vite';
 
 /** What the builds of both pages share. */
@@ -59,6 +60,27 @@ const lessonPage = {
         },
       });
     },
+  },
+};
+
+/**
+ * Has the development server take the bundles that `cargo xtask serve` builds quickly, and wait for one that is not there yet: only
+ * the core and a renderer are built before the page is served.
+ * @type {import('vite').Plugin}
+ */
+const quickBundles = {
+  name: 'quick-bundles',
+  apply: 'serve',
+  enforce: 'pre',
+  resolveId(id, importer = '', { scan = false } = {}) {
+    if (!id.startsWith('.') || !id.includes('/wasm/')) return null;
+    // The scan for packages to bundle ends at a file that is not there.
+    return scan ? { id, external: true } : join(dirname(importer), id.replace('/wasm/', '/wasm/dev/'));
+  },
+  async load(id) {
+    const [file] = id.split('?');
+    while (file.includes('/src/wasm/dev/') && !existsSync(file)) await setTimeout(200);
+    return null;
   },
 };
 
@@ -132,7 +154,7 @@ const offline = {
 export default defineConfig({
   base: './',
   worker: { format: 'es' },
-  plugins: [preloadCore, lessonPage, offline, noServiceWorker],
+  plugins: [preloadCore, lessonPage, offline, quickBundles, noServiceWorker],
   build: {
     ...SHARED,
     outDir: '../dist',

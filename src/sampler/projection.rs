@@ -348,7 +348,6 @@ impl Probe<'_> {
     /// `normal[i]` becomes the unit normal, and `ok[i]` whether the point is on the surface within the limits of
     /// `descents`. A point is given up after `max_steps` evaluations, when it has moved too far, and where the field is
     /// undefined or its gradient is not above `min_gradient`.
-    #[expect(clippy::too_many_arguments, reason = "one hot routine; a struct would only rename these")]
     pub(crate) fn land_along_gradient(
         &mut self,
         points: &mut [Vec3],

@@ -1,12 +1,12 @@
 //! What JavaScript sees: newtypes that copy, nothing else.
 //!
-//! One source makes five bundles. With the feature `render` it is the renderer (for WebGPU or for WebGL2), which lives on the
-//! main thread; with `points`, what makes fields from files, and with `lesson`, the paper's algorithms event by event, each in a
-//! worker of its own; with none of them the core, in another worker.
+//! One source makes five bundles, each with a feature of its own: `core`, the sampler; `points`, what makes fields from files;
+//! `lesson`, the paper's algorithms event by event, each of these in a worker of its own; `webgpu` and `webgl`, the renderer,
+//! which lives on the main thread.
 
-#[cfg(not(any(feature = "render", feature = "points", feature = "lesson")))]
+#[cfg(feature = "core")]
 mod core;
-#[cfg(not(any(feature = "render", feature = "points", feature = "lesson")))]
+#[cfg(feature = "core")]
 pub use core::Core;
 
 #[cfg(feature = "lesson")]
@@ -14,7 +14,7 @@ mod lesson;
 #[cfg(feature = "lesson")]
 pub use lesson::Lesson;
 
-#[cfg(not(feature = "render"))]
+#[cfg(any(feature = "core", feature = "points", feature = "lesson"))]
 mod values;
 
 #[cfg(feature = "points")]

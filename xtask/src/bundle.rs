@@ -1,9 +1,9 @@
 //! The WebAssembly bundles: the core, what makes fields from points, the lesson, and the renderer for WebGPU and for WebGL2.
 //!
-//! One bundle is: cargo (release, SIMD) → wasm-bindgen → wasm-opt → `www/src/wasm/NAME/`. Its declarations are checked in, since the
-//! page's types are those of `src/web/`; the rest is not. A bundle is skipped when a
-//! hash over everything that goes into it is unchanged; when cargo then gives the same module as before, binding and
-//! optimising are skipped as well.
+//! One bundle is: cargo (SIMD) → wasm-bindgen → wasm-opt → a folder that the page takes it from. Its declarations are checked in,
+//! since the page's types are those of `src/web/`; the rest is not. For the development server cargo optimises less, and
+//! declarations and wasm-opt are left out. A bundle is skipped when a hash over everything that goes into it is unchanged; when
+//! cargo then gives the same module as before, binding and optimising are skipped as well.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,12 +11,39 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
+use wasm_bindgen_cli_support::Bindgen;
 
 use crate::fingerprint::{Fingerprint, files_under, sha256_of};
 use crate::node;
-use crate::project::{Project, cargo};
+use crate::project::Project;
 use crate::step;
 use crate::wasm_target::WasmTarget;
+
+/// What a bundle is built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// The site, its tests and benches.
+    Site,
+    /// The development server: soon compiled, by the profile `wasm-dev`, and not optimised for its size.
+    Development,
+}
+
+impl Purpose {
+    /// The folder of the bundles. The page's scripts name the one of the site; the development server takes the other
+    /// (`www/vite.config.js`).
+    fn folder(self, project: &Project) -> PathBuf {
+        let site = project.www.join("src/wasm");
+        if self == Self::Site { site } else { site.join("dev") }
+    }
+
+    /// Cargo's profile.
+    fn profile(self) -> &'static str {
+        match self {
+            Self::Site => "release",
+            Self::Development => "wasm-dev",
+        }
+    }
+}
 
 /// One of the bundles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -76,7 +103,7 @@ impl Bundle {
     /// The features that cargo builds it with.
     pub(crate) fn features(self) -> &'static str {
         match self {
-            Self::Core => "",
+            Self::Core => "core",
             Self::Points => "points",
             Self::Lesson => "lesson",
             Self::Webgpu => "webgpu",
@@ -112,11 +139,11 @@ impl Bundle {
 }
 
 /// Builds the bundles that are not up to date.
-pub(crate) fn build(project: &Project, bundles: &[Bundle]) -> Result<()> {
+pub(crate) fn build(project: &Project, bundles: &[Bundle], purpose: Purpose) -> Result<()> {
     let target = WasmTarget::prepare(project)?;
     let mut current = Vec::new();
     for &bundle in bundles {
-        if !build_one(project, &target, bundle)? {
+        if !build_one(project, &target, bundle, purpose)? {
             current.push(bundle.folder());
         }
     }
@@ -127,13 +154,13 @@ pub(crate) fn build(project: &Project, bundles: &[Bundle]) -> Result<()> {
 }
 
 /// Builds a bundle; false if it was up to date.
-fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<bool> {
+fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<bool> {
     let name = bundle.folder();
-    let out_dir = project.www.join("src/wasm").join(name);
-    let stamp_file = project.scratch("stamps")?.join(format!("{name}.json"));
+    let out_dir = purpose.folder(project).join(name);
+    let stamp_file = project.scratch("stamps")?.join(format!("{name}-{}.json", purpose.profile()));
     let stamp: Value =
         fs::read(&stamp_file).ok().and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default();
-    let inputs = inputs(project, target, bundle)?;
+    let inputs = inputs(project, target, bundle, purpose)?;
     let intact = stamp["outputs"].as_object().is_some_and(|outputs| {
         !outputs.is_empty()
             && outputs
@@ -143,7 +170,7 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
     if intact && stamp["inputs"] == inputs.as_str() {
         return Ok(false);
     }
-    let module = compile(project, target, bundle)?;
+    let module = compile(project, target, bundle, purpose)?;
     let process =
         Fingerprint::default().file(&module)?.text("process", &process_version(project, bundle)?).finish();
     if !(intact && stamp["process"] == process.as_str()) {
@@ -151,9 +178,11 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
         if stage.exists() {
             fs::remove_dir_all(&stage)?;
         }
-        bind(project, bundle, &module, &stage)?;
-        declare(project, bundle, &stage, &out_dir)?;
-        optimise(project, bundle, &stage)?;
+        bind(bundle, &module, &stage)?;
+        if purpose == Purpose::Site {
+            declare(project, bundle, &stage, &out_dir)?;
+            optimise(project, bundle, &stage)?;
+        }
         publish(&stage, &out_dir)?;
     }
     let mut outputs = serde_json::Map::new();
@@ -169,16 +198,16 @@ fn build_one(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<b
 }
 
 /// A hash over everything that goes into a bundle.
-fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<String> {
+fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<String> {
     let root = &project.root;
     let mut fingerprint = Fingerprint::default()
         .text("compiler", &target.version)
         .text("flags", &rust_flags(project).join(" "))
+        .text("profile", purpose.profile())
         .text("opt-level", bundle.opt_level())
         .text("features", bundle.features())
         .text("process", &process_version(project, bundle)?)
         .file(&root.join("Cargo.toml"))?
-        .file(&root.join("Cargo.lock"))?
         .file(&root.join("src/lib.rs"))?;
     for folder in bundle.sources() {
         fingerprint = fingerprint.tree(&root.join(folder))?;
@@ -189,8 +218,8 @@ fn inputs(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Stri
 /// What identifies the steps after the compiler.
 fn process_version(project: &Project, bundle: Bundle) -> Result<String> {
     Ok(Fingerprint::default()
-        .file(&project.root.join("xtask/bindgen/Cargo.toml"))?
-        .tree(&project.root.join("xtask/bindgen/src"))?
+        .file(&project.root.join("xtask/src/bundle.rs"))?
+        .file(&project.root.join("Cargo.lock"))?
         .file(&project.www.join("node_modules/binaryen/package.json"))?
         .text("wasm-opt", &bundle.wasm_opt().join(" "))
         .finish())
@@ -210,21 +239,16 @@ fn rust_flags(project: &Project) -> Vec<String> {
     flags
 }
 
-/// The target folder of all that makes the bundles. Cargo lets one build at a time into a folder, and this one has its own so that
-/// the native checks can run meanwhile.
-fn target_folder(project: &Project) -> PathBuf {
-    project.target.join("wasm")
-}
-
 /// Compiles the library for a bundle and returns the module.
-fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<PathBuf> {
+fn compile(project: &Project, target: &WasmTarget, bundle: Bundle, purpose: Purpose) -> Result<PathBuf> {
     let mut command = target.cargo(project, "rustc");
     command
-        // The crate type is stated because a library that is also built as an rlib gets no link-time optimisation.
-        .args(["--package", "marching-particles", "--lib", "--crate-type", "cdylib", "--release", "--locked"])
+        .args(["--package", "marching-particles", "--lib", "--crate-type", "cdylib", "--locked"])
+        .args(["--profile", purpose.profile()])
         .args(["--no-default-features", "--features", bundle.features()])
         .arg("--message-format=json-render-diagnostics")
-        .env("CARGO_TARGET_DIR", target_folder(project))
+        // Cargo lets one build at a time into a folder. This one is apart so that the native checks can run meanwhile.
+        .env("CARGO_TARGET_DIR", project.target.join("wasm"))
         .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", bundle.opt_level())
         .env("CARGO_ENCODED_RUSTFLAGS", rust_flags(project).join("\u{1f}"))
         // Without this the builds would write one file of the same name, and cargo would take one bundle's
@@ -247,30 +271,21 @@ fn compile(project: &Project, target: &WasmTarget, bundle: Bundle) -> Result<Pat
     module.context("cargo named no wasm module among its results")
 }
 
-/// Writes the module and its JavaScript to `stage`.
-fn bind(project: &Project, bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
-    let name = bundle.folder();
-    let mut tool = Command::new(cargo());
-    tool.current_dir(&project.root).args([
-        "build",
-        "--package",
-        "xtask-bindgen",
-        "--locked",
-        "--message-format=json-render-diagnostics",
-    ]);
-    tool.env("CARGO_TARGET_DIR", target_folder(project));
-    let label = format!("{name}: the binding tool (compiled once, about half a minute)");
-    let messages = step::run(&label, &mut tool, "")?;
-    let executable = messages
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-        .context("cargo named no executable for xtask-bindgen")?;
-    step::run(
-        &format!("{name}: bind"),
-        Command::new(executable).arg(module).arg(stage).arg(bundle.out_name()),
-        "",
-    )?;
+/// Writes the module and its JavaScript to `stage`. This is the work of the `wasm-bindgen` command with `--target web`, as a
+/// library: the lock file pins its version, and nobody has to install a tool.
+fn bind(bundle: Bundle, module: &Path, stage: &Path) -> Result<()> {
+    step::task(&format!("{}: bind", bundle.folder()), || {
+        Bindgen::new()
+            .input_path(module)
+            .out_name(bundle.out_name())
+            .typescript(true)
+            // Keeps `new URL('…_bg.wasm', import.meta.url)` in the module, which is how bundlers find the wasm file.
+            .omit_default_module_path(false)
+            .remove_producers_section(true)
+            .web(true)?
+            .generate(stage)
+            .with_context(|| format!("could not bind {}", module.display()))
+    })?;
     let script = stage.join(format!("{}.js", bundle.out_name()));
     let text = fs::read_to_string(&script).with_context(|| format!("could not read {}", script.display()))?;
     if !text.contains(&format!("export class {} ", bundle.class())) {

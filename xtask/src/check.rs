@@ -6,8 +6,9 @@ use std::thread;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum as _;
+use serde_json::Value;
 
-use crate::bundle::{self, Bundle};
+use crate::bundle::{self, Bundle, Purpose};
 use crate::chromium;
 use crate::deny;
 use crate::engines;
@@ -24,16 +25,14 @@ pub(crate) enum Part {
     Format,
     /// Licences, sources and duplicates of the dependencies; skipped, with the reason, without cargo-deny.
     Deny,
-    /// Clippy on the native code, warnings denied.
+    /// Clippy on everything that is compiled natively, warnings denied.
     Lint,
-    /// Clippy on every WebAssembly bundle, warnings denied.
+    /// Clippy on the library as WebAssembly, with what JavaScript sees of it, warnings denied.
     LintWasm,
     /// rustdoc, warnings denied.
     Docs,
-    /// Unit, integration and documentation tests.
+    /// Unit, integration and documentation tests, and every example.
     Native,
-    /// The shader tests alone (also part of `native`).
-    Shaders,
     /// The core, the solver for points and the lesson as WebAssembly, in Node, against the digests of the native ones.
     Parity,
     /// Mesh files against Khronos' glTF validator.
@@ -135,7 +134,6 @@ fn run(project: &Project, parts: &[Part], chromium: Option<&Path>) -> Vec<String
             Part::LintWasm => lint_wasm(project),
             Part::Docs => docs(project),
             Part::Native => native(project),
-            Part::Shaders => shaders(project),
             Part::Parity => parity(project),
             Part::Gltf => gltf(project),
             Part::Page => page(project),
@@ -163,68 +161,67 @@ fn format(project: &Project) -> Result<()> {
 }
 
 fn lint(project: &Project) -> Result<()> {
-    let arguments =
-        ["clippy", "--workspace", "--all-targets", "--all-features", "--locked", "--", "--deny", "warnings"];
-    step::run("lint (native)", &mut cargo_at_root(project, &arguments), "").map(drop)
+    let mut command = cargo_at_root(project, &["clippy", "--all-targets"]);
+    command.args(TESTED).args(["--", "--deny", "warnings"]);
+    step::run("lint (native)", &mut command, "").map(drop)
 }
 
+/// One pass for all bundles: their features can be had together. That for WebGL2 is left out, because no line of the sources
+/// depends on which back end the renderer has.
 fn lint_wasm(project: &Project) -> Result<()> {
-    let target = WasmTarget::prepare(project)?;
-    for bundle in Bundle::ALL {
-        let mut command = target.cargo(project, "clippy");
-        command.args([
-            "--package",
-            "marching-particles",
-            "--lib",
-            "--no-default-features",
-            "--features",
-            bundle.features(),
-            "--locked",
-        ]);
-        command.args(["--", "--deny", "warnings"]);
-        step::run(&format!("lint (wasm32, {})", bundle.folder()), &mut command, "")?;
+    let features =
+        [Bundle::Core, Bundle::Points, Bundle::Lesson, Bundle::Webgpu].map(Bundle::features).join(",");
+    let mut command = WasmTarget::prepare(project)?.cargo(project, "clippy");
+    command.args([
+        "--package",
+        "marching-particles",
+        "--lib",
+        "--no-default-features",
+        "--features",
+        &features,
+    ]);
+    command.args(["--locked", "--", "--deny", "warnings"]);
+    step::run("lint (wasm32)", &mut command, "").map(drop)
+}
+
+fn docs(project: &Project) -> Result<()> {
+    let mut command = cargo_at_root(project, &["doc", "--no-deps"]);
+    command.args(TESTED).env("RUSTDOCFLAGS", "--deny warnings");
+    step::run("documentation", &mut command, "").map(drop)
+}
+
+/// What is compiled natively. Every command names it, because another choice of features has cargo compile everything again.
+const TESTED: [&str; 4] = ["--workspace", "--features", "marching-particles/cli", "--locked"];
+
+fn native(project: &Project) -> Result<()> {
+    let mut build = cargo_at_root(project, &["test", "--no-run", "--message-format=json-render-diagnostics"]);
+    let messages = step::run("native tests: compile", build.args(TESTED), "")?;
+    let mut tests = cargo_at_root(project, &["test", "--no-fail-fast"]);
+    step::run("native tests", tests.args(TESTED), "")?;
+    examples(project, &messages)
+}
+
+/// Runs every example that cargo says it has compiled, in a folder of its own, where it may write files.
+fn examples(project: &Project, messages: &str) -> Result<()> {
+    let folder = project.scratch("examples")?;
+    let mut found = false;
+    for message in messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()) {
+        let target = &message["target"];
+        let (Some("example"), Some(name)) = (target["kind"][0].as_str(), target["name"].as_str()) else {
+            continue;
+        };
+        let Some(executable) = message["executable"].as_str() else { continue };
+        step::run(&format!("example {name}"), Command::new(executable).current_dir(&folder), "")?;
+        found = true;
+    }
+    if !found && project.root.join("examples").is_dir() {
+        bail!("cargo compiled no example of examples/");
     }
     Ok(())
 }
 
-fn docs(project: &Project) -> Result<()> {
-    let mut command = cargo_at_root(
-        project,
-        &["doc", "--package", "marching-particles", "--no-deps", "--all-features", "--locked"],
-    );
-    command.env("RUSTDOCFLAGS", "--deny warnings");
-    step::run("documentation", &mut command, "").map(drop)
-}
-
-/// What is tested natively. Every test command names it, because another choice has cargo compile everything again.
-const TESTED: [&str; 7] = [
-    "--package",
-    "marching-particles",
-    "--package",
-    "xtask",
-    "--features",
-    "marching-particles/cli",
-    "--locked",
-];
-
-fn native(project: &Project) -> Result<()> {
-    let mut build = cargo_at_root(project, &["test", "--no-run"]);
-    step::run("native tests: compile", build.args(TESTED), "")?;
-    let mut tests = cargo_at_root(project, &["test", "--no-fail-fast"]);
-    step::run("native tests", tests.args(TESTED), "").map(drop)
-}
-
-fn shaders(project: &Project) -> Result<()> {
-    step::run(
-        "shader tests",
-        cargo_at_root(project, &["test"]).args(TESTED).args(["--test", "it", "shaders::"]),
-        "",
-    )
-    .map(drop)
-}
-
 fn parity(project: &Project) -> Result<()> {
-    bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson])?;
+    bundle::build(project, &[Bundle::Core, Bundle::Points, Bundle::Lesson], Purpose::Site)?;
     for script in ["tests/wasm/parity.mjs", "tests/wasm/points.mjs", "tests/wasm/lesson.mjs"] {
         let mut command = Command::new(node::node()?);
         command.current_dir(&project.root).arg(script);
@@ -245,7 +242,7 @@ fn page(project: &Project) -> Result<()> {
     let mut lint = node::npm()?;
     lint.args(["run", "--silent", "lint"]).current_dir(&project.www);
     step::run("page: format and lint", &mut lint, "`npm run format` in www/ puts most of it right.")?;
-    bundle::build(project, &Bundle::ALL)?;
+    bundle::build(project, &Bundle::ALL, Purpose::Site)?;
     node::script(project, "page: types", "check", &[])?;
     node::script(project, "page: unit tests", "test", &[]).map(drop)
 }

@@ -22,7 +22,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use bundle::Bundle;
+use bundle::{Bundle, Purpose};
 use project::Project;
 
 const EXAMPLES: &str = "\
@@ -94,7 +94,7 @@ fn perform(task: Task) -> Result<()> {
         Task::Wasm { bundles } => {
             let bundles = if bundles.is_empty() { Bundle::ALL.to_vec() } else { bundles };
             node::prepare(&project)?;
-            bundle::build(&project, &bundles)
+            bundle::build(&project, &bundles, Purpose::Site)
         }
     }
 }

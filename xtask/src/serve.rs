@@ -1,12 +1,13 @@
-//! The development server.
+//! The development server. What the page needs at once is built before it starts, the other bundles while it serves.
 
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 
-use crate::bundle::{self, Bundle};
+use crate::bundle::{self, Bundle, Purpose};
 use crate::fingerprint::files_under;
 use crate::node;
 use crate::project::Project;
@@ -28,6 +29,9 @@ pub(crate) struct Options {
     /// The port to listen on; the next free one if it is taken.
     #[arg(long, default_value_t = 5173)]
     port: u16,
+    /// Draw with WebGPU where the browser has it, which compiles a second renderer; without this, with WebGL2.
+    #[arg(long)]
+    webgpu: bool,
     /// Serve the built static site (dist/) in place of the development server.
     #[arg(long)]
     release_site: bool,
@@ -36,15 +40,27 @@ pub(crate) struct Options {
 /// Builds what is out of date, serves the page, and rebuilds the bundles whenever a Rust source or a shader changes.
 pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
     let started = Instant::now();
+    // One renderer is enough, and that for WebGL2 runs in every browser. The last two are for what a visitor may ask for later.
+    let mut bundles = vec![Bundle::Core, Bundle::Webgl];
+    bundles.extend(options.webgpu.then_some(Bundle::Webgpu));
+    let first = bundles.len();
+    bundles.extend([Bundle::Points, Bundle::Lesson]);
     if options.release_site {
         site::build(project)?;
     } else {
-        node::prepare(project)?;
-        bundle::build(project, &Bundle::ALL)?;
+        // Without Node there is nothing to wait for.
+        node::node()?;
+        // Fetching packages waits for the network, compiling does not.
+        thread::scope(|scope| {
+            let packages = scope.spawn(|| node::prepare(project));
+            let built = bundle::build(project, &bundles[..first], Purpose::Development);
+            packages.join().map_err(|_| anyhow!("fetching the page's packages ended with a panic"))??;
+            built
+        })?;
     }
     println!("  ready after {}; stop with Ctrl-C", step::seconds(started.elapsed()));
     let mut server = Server(start_vite(project, options)?);
-    let mut seen = sources(project)?;
+    let mut seen = Vec::new();
     loop {
         if let Some(status) = server.0.try_wait()? {
             if status.success() {
@@ -52,7 +68,7 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
             }
             bail!("the server ended ({status})");
         }
-        std::thread::sleep(LOOK_EVERY);
+        thread::sleep(LOOK_EVERY);
         if options.release_site {
             continue;
         }
@@ -60,10 +76,12 @@ pub(crate) fn serve(project: &Project, options: &Options) -> Result<()> {
         if now == seen {
             continue;
         }
+        if !seen.is_empty() {
+            println!("\n  sources changed");
+        }
         seen = now;
-        println!("\n  sources changed");
         // A source that does not compile is an everyday event: say so and keep serving the last good bundles.
-        if let Err(error) = bundle::build(project, &Bundle::ALL) {
+        if let Err(error) = bundle::build(project, &bundles, Purpose::Development) {
             eprintln!("\nerror: {error:#}\n");
         }
     }
@@ -92,6 +110,8 @@ fn start_vite(project: &Project, options: &Options) -> Result<Child> {
     command.args(["--import", END_WITH_INPUT]).arg(vite).current_dir(&project.www).stdin(Stdio::piped());
     if options.release_site {
         command.arg("preview");
+    } else if !options.webgpu {
+        command.env("VITE_WITHOUT_WEBGPU", "1");
     }
     command.args(["--clearScreen", "false", "--port", &options.port.to_string()]);
     if options.open {

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::bundle::{self, Bundle};
+use crate::bundle::{self, Bundle, Purpose};
 use crate::fingerprint::{files_under, sha256_of};
 use crate::node;
 use crate::project::Project;
@@ -38,7 +38,7 @@ fn budget_kb(bundle: Bundle) -> f64 {
 /// Builds the site into `dist/`.
 pub(crate) fn build(project: &Project) -> Result<()> {
     node::prepare(project)?;
-    bundle::build(project, &Bundle::ALL)?;
+    bundle::build(project, &Bundle::ALL, Purpose::Site)?;
     node::script(project, "page: build (Vite)", "build", &[])?;
     Ok(())
 }

@@ -28,6 +28,8 @@ const within = (promise, ms) => Promise.race([promise, new Promise((resolve) => 
 async function available(kind) {
   if (kind === 'canvas2d') return true;
   if (kind === 'webgpu') {
+    // The development server has one renderer, unless it is asked for both.
+    if (import.meta.env.VITE_WITHOUT_WEBGPU) return false;
     const gpu = /** @type {any} */ (navigator).gpu;
     if (!gpu) return false;
     try {
