@@ -87,7 +87,7 @@ pub trait Field: Send {
         hessian: &mut [Sym3<f32>],
     );
 
-    /// f, ∇f and ∇∇f at `p` in double precision. Tests compare the batched methods with it.
+    /// f, ∇f and ∇∇f at `p` in double precision: the reference for the batched methods, and what set-up, proofs and measurements use.
     fn jet(&mut self, p: DVec3) -> Jet;
 
     /// f and ∇f at each point in double precision, equal to those of [`Field::jet`] up to rounding.

@@ -2,6 +2,7 @@
 
 use crate::math::{Bounds, SQRT_3, sort_numbers};
 use crate::sampler::discovery::survey::Survey;
+use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::projection::{Tolerance, tolerance};
 use crate::sampler::refine::{self, Refusal};
 use crate::sampler::settings::{Settings, SizeMode};
@@ -12,7 +13,7 @@ use glam::Vec3;
 /// it more than one, seams less. Measured on sphere, ellipsoid, torus and tanglecube: 1.02 to 1.12.
 const PACKING: f64 = 1.08;
 
-/// The same for the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces.
+/// [`PACKING`] of the adaptive front, whose arcs bend with the surface: 1.00 to 1.05 on the same surfaces.
 const ADAPTIVE_PACKING: f64 = 1.02;
 
 /// A wanted count above this is approached through a pilot run, which measures the packing.
@@ -216,10 +217,10 @@ impl Attempt {
     }
 
     /// Smallest and largest radius of a particle.
-    pub(super) fn radii(&self) -> [f32; 2] {
+    pub(super) fn radii(&self) -> RadiusRange {
         match &self.sizing {
-            Some(sizing) => [sizing.smallest(), sizing.largest()],
-            None => [self.front_radius() as f32; 2],
+            Some(sizing) => RadiusRange { smallest: sizing.smallest(), largest: sizing.largest() },
+            None => RadiusRange::of(self.front_radius() as f32),
         }
     }
 

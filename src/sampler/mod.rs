@@ -20,6 +20,7 @@ mod relaxation;
 mod run;
 mod setting;
 mod settings;
+pub(crate) mod sheet;
 mod sizing;
 
 pub use discovery::completeness::{Doubt, Sampled, Search, Unsampled};

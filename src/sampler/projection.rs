@@ -148,6 +148,17 @@ struct Active {
     last: f32,
 }
 
+/// Two neighbouring samples of an arc, between which f changes its sign.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    /// cos θ and sin θ of the first sample.
+    turn: [f32; 2],
+    /// f at the first sample.
+    first: f32,
+    /// f at the last sample.
+    last: f32,
+}
+
 impl Probe<'_> {
     /// Finds the point of the surface nearest to the guess on each of at most [`BATCH`] circles. `landing[i]` belongs
     /// to `circles[i]`.
@@ -282,7 +293,8 @@ impl Probe<'_> {
         sort_few(&mut brackets[..count], |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt());
         let mut budget = MAX_BRACKET_STEPS;
         for &(_, k) in &brackets[..count] {
-            let found = self.illinois(circle, tolerance, (turns[k], f[k], f[k + 1]), &mut budget);
+            let bracket = Bracket { turn: turns[k], first: f[k], last: f[k + 1] };
+            let found = self.illinois(circle, tolerance, bracket, &mut budget);
             if let Some(landing) = found {
                 return landing;
             }
@@ -291,13 +303,12 @@ impl Probe<'_> {
         if count == 0 && undefined > ARC_SAMPLES / 2 { Landing::Undefined } else { Landing::NotConverged }
     }
 
-    /// Finds the root in the bracket that begins at `turn` and has the values `fa` and `fb` at its ends; `None` if the
-    /// sign changes at a pole or a jump.
+    /// Finds the root in a bracket; `None` if the sign changes at a pole or a jump.
     fn illinois(
         &mut self,
         circle: &Circle,
         tolerance: Tolerance,
-        (turn, mut fa, mut fb): ([f32; 2], f32, f32),
+        Bracket { turn, first: mut fa, last: mut fb }: Bracket,
         budget: &mut u32,
     ) -> Option<Landing> {
         // The unknown t is the tangent of half the angle from the start of the bracket.

@@ -11,15 +11,16 @@ use crate::sampler::front::{FrontContext, FrontSetup, LevelFront};
 use crate::sampler::phase::{PhaseState, StopReason, SurveyCursor};
 use crate::sampler::probe::Probe;
 use crate::sampler::refine::{self, Components, Next, Refusal, Surface};
-use crate::sampler::relaxation;
+use crate::sampler::relaxation::{Limits, RepulsionLaw};
 use crate::sampler::settings::{GapPolicy, Sampling};
-use glam::Vec3;
+use crate::sampler::sheet::OrientedPoint;
 use rand_core::{Rng, SeedableRng};
 
 /// Largest number of units of the search in one step, whatever the budget. On some formulas a unit of the search takes far longer
 /// than one of the front, and a caller that derives its budget from the front's pace must not wait.
 const SEARCH_SLICE: u32 = 8_192;
-/// The same for the relaxation, in whose stages the time of a unit differs by a factor of ten.
+/// Largest number of units of the relaxation in one step, whatever the budget: in its stages the time of a unit differs by a factor
+/// of ten.
 const RELAXATION_SLICE: u32 = 16_384;
 /// Seeds that may be taken back in an attempt, and one more for every particle.
 const MOST_LONE_SEEDS: usize = 256;
@@ -134,7 +135,8 @@ impl Sampler {
     /// Looks for the next survey point that no particle covers and starts a front there.
     fn find_seed(&mut self, probe: &mut Probe, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
         if let Some((position, normal)) = self.coarse.seed() {
-            return self.begin_front(probe, position, normal, None).unwrap_or(PhaseState::Search);
+            let seed = OrientedPoint { position, normal };
+            return self.begin_front(probe, seed, None).unwrap_or(PhaseState::Search);
         }
         while *left > 0 {
             if self.has_too_many_lone_seeds() {
@@ -142,12 +144,12 @@ impl Sampler {
             }
             let Some(i) = cursor.next() else { return PhaseState::Search };
             *left -= 1;
-            let (position, normal) = (self.survey.position[i], self.survey.normal[i]);
+            let point = OrientedPoint { position: self.survey.position[i], normal: self.survey.normal[i] };
             let start = probe.evaluations();
-            let is_seed = !self.front.active_mut().is_covered(probe, &self.particles, (position, normal))
+            let is_seed = !self.front.active_mut().is_covered(probe, &self.particles, point)
                 && self.survey.is_zero(probe, i);
             self.counts.seeding_evaluations += probe.evaluations() - start;
-            if is_seed && let Some(next) = self.begin_front(probe, position, normal, Some(cursor)) {
+            if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
                 return next;
             }
         }
@@ -159,15 +161,14 @@ impl Sampler {
     fn begin_front(
         &mut self,
         probe: &mut Probe,
-        position: Vec3,
-        normal: Vec3,
+        seed: OrientedPoint,
         after: Option<SurveyCursor>,
     ) -> Option<PhaseState> {
         if self.particles.len() >= self.settings.max_particles as usize {
             self.front.active_mut().level_mut().capped = true;
             return Some(PhaseState::Search);
         }
-        let is_started = self.with_front(probe, |front, context| front.add_seed(context, position, normal));
+        let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed));
         is_started.then(|| {
             self.counts.seeds += u32::from(self.coarse.seed().is_none());
             PhaseState::Generation(after)
@@ -273,12 +274,13 @@ impl Sampler {
             };
             let rule = self.front.active().rule();
             let mut near = self.components.take_near();
-            self.front.active_mut().near(&self.particles, seed.position, seed.normal, &mut near);
+            let point = OrientedPoint { position: seed.position, normal: seed.normal };
+            self.front.active_mut().list_cover(&self.particles, point, &mut near);
             let start = probe.evaluations();
             let cover = self.components.cover(probe, &self.particles, seed, near, (tolerance, rule));
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if cover == Cover::Bare
-                && let Some(next) = self.begin_front(probe, seed.position, seed.normal, None)
+                && let Some(next) = self.begin_front(probe, point, None)
             {
                 return next;
             }
@@ -438,16 +440,14 @@ impl Sampler {
         self.neighbours.shrink();
         let tolerance = self.attempt.tolerance(&self.survey);
         let law = match self.settings.sampling {
-            Sampling::Uniform => {
-                relaxation::RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance }
-            }
-            Sampling::Adaptive => relaxation::RepulsionLaw::Overlap {
+            Sampling::Uniform => RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance },
+            Sampling::Adaptive => RepulsionLaw::Overlap {
                 accuracy: self.survey.accuracy(),
                 min_gradient: tolerance.min_gradient,
             },
         };
         let steps = self.settings.relax_steps;
-        let limits = (&self.bounds, self.front.active().rule().largest_lift());
+        let limits = Limits { bounds: self.bounds, largest_lift: self.front.active().rule().largest_lift() };
         self.relaxation.begin(law, limits, steps, &self.particles, &mut self.neighbours);
         PhaseState::Relaxation
     }

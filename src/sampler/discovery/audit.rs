@@ -10,9 +10,10 @@ use crate::particles::Particles;
 use crate::sampler::discovery::completeness::Unsampled;
 use crate::sampler::discovery::octree::{Region, Seed};
 use crate::sampler::discovery::sheets::{
-    Oriented, SheetRule, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
+    Oriented, TOGETHER, are_connected, is_connected_around, is_connected_by_segments, value_at,
 };
 use crate::sampler::probe::Probe;
+use crate::sampler::sheet::{Pair, SheetRule};
 use crate::spatial::tree::Tree;
 use glam::DVec3;
 
@@ -175,9 +176,9 @@ impl Audit {
             return;
         }
         let seems_held = on_part.iter().take(TOGETHER).any(|&(_, j)| {
-            let (position, normal) = (particles.position[j as usize], particles.normal[j as usize]);
-            normal.dot(seed.normal) > 0.0
-                && rule.is_one_sheet(probe, (seed.position, seed.normal), position - seed.position, normal)
+            let offset = particles.position[j as usize] - seed.position;
+            let pair = Pair { offset, normal: seed.normal, other: particles.normal[j as usize] };
+            pair.faces_one_way() && rule.is_one_sheet(probe, seed.position, pair)
         });
         if seems_held {
             self.leave_open(exact, 1);

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// Sheets nearer than this many of the distances that single precision resolves are not told apart, in runs of one size and of
 /// many: a particle may be one such distance away from its sheet, and the lift of two particles has to be four times that (see
-/// [`SheetRule`](super::sheets::SheetRule)). Of three concentric spheres, particles of one size have the right components and Euler
+/// [`SheetRule`](crate::sampler::sheet::SheetRule)). Of three concentric spheres, particles of one size have the right components and Euler
 /// number from 8 of them on, and particles of many sizes from 55 on, but not at 33.
 pub(crate) const UNRESOLVED: [f64; 2] = [16.0, 48.0];
 /// Distances, over that of the second zero of the quadratic, at which the sign is looked at. Of three sheets at equal distances the

@@ -8,12 +8,11 @@ use crate::sampler::discovery::audit::{Audit, Audited, follow};
 use crate::sampler::discovery::completeness::{Doubt, Sampled, Search};
 use crate::sampler::discovery::nearness::{Nearness, nearest};
 use crate::sampler::discovery::octree::{Octree, Seed, Witness};
-use crate::sampler::discovery::sheets::{
-    Oriented, SheetRule, TOGETHER, are_connected, is_connected_by_segments,
-};
+use crate::sampler::discovery::sheets::{Oriented, TOGETHER, are_connected, is_connected_by_segments};
 use crate::sampler::discovery::singular::Singular;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{Descent, Tolerance};
+use crate::sampler::sheet::{Pair, SheetRule};
 use glam::{DVec3, Vec3};
 
 /// Units of work that a witness counts for.
@@ -240,7 +239,7 @@ impl ComponentSearch {
             || near.iter().take(MOST_TRIED).any(|&j| {
                 let j = j as usize;
                 let offset = particles.position[j] - position;
-                rule.is_one_sheet(probe, (position, normal), offset, particles.normal[j])
+                rule.is_one_sheet(probe, position, Pair { offset, normal, other: particles.normal[j] })
             });
         self.near = near;
         if is_covered { Cover::Covered } else { Cover::Bare }

@@ -6,20 +6,17 @@
 
 use crate::math::{Bounds, sort_few, tangent_frame};
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::sheets::{SheetRule, is_near_own};
 use crate::sampler::discovery::survey::Survey;
 use crate::sampler::fates::FateCounts;
+use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::settings::Settings;
+use crate::sampler::sheet::{OrientedPoint, SheetRule};
 use crate::sampler::sizing::Sizing;
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::Vec3;
-
-/// Two particles belong to one sheet if their normals are within 90° and one rises from the other's tangent plane by
-/// no more than 45°, give or take a slack: this is sin² 45°.
-pub(crate) const MAX_RISE_SQ: f32 = 0.5;
 
 /// What a front works with and on, besides itself.
 pub(crate) struct FrontContext<'a, 'f> {
@@ -44,15 +41,15 @@ pub(crate) struct FrontSetup<'a> {
     pub(crate) survey: &'a Survey,
     /// Radius of the particles of the uniform front.
     pub(crate) radius: f32,
-    /// Smallest and largest radius of those of the adaptive front.
-    pub(crate) radii: [f32; 2],
+    /// Radii of the particles of the adaptive front.
+    pub(crate) radii: RadiusRange,
     /// Particles to reserve room for.
     pub(crate) expected: usize,
 }
 
 impl FrontSetup<'_> {
     /// How particles with radii in this range tell sheets apart.
-    pub(crate) fn rule(&self, radii: [f32; 2]) -> SheetRule {
+    pub(crate) fn rule(&self, radii: RadiusRange) -> SheetRule {
         SheetRule::new(self.survey.crowding, radii, self.survey.accuracy())
     }
 }
@@ -74,7 +71,7 @@ pub(crate) struct Level {
     stage: LevelStage,
     /// Next parent of the stage, or next child.
     next: usize,
-    /// Index of the first provisional child of this level, and of the first one placed.
+    /// Index that the first child of this level has while it is provisional, and that the first one placed keeps.
     pub(crate) first_child: usize,
     /// Particles before this index are final. Provisional children stand from here on.
     pub(crate) settled: usize,
@@ -152,7 +149,7 @@ pub(crate) trait LevelFront {
     /// How far the front has come.
     fn level(&self) -> &Level;
 
-    /// The same, to be changed.
+    /// How far the front has come, to be changed.
     fn level_mut(&mut self) -> &mut Level;
 
     /// Number of parents in the level; none if the front has come to its end.
@@ -177,7 +174,7 @@ pub(crate) trait LevelFront {
     fn clear_level(&mut self);
 
     /// Adds a seed, between two levels. Says whether it could: an adaptive one needs a curvature.
-    fn add_seed(&mut self, context: &mut FrontContext, position: Vec3, normal: Vec3) -> bool;
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool;
 
     /// Whether the last particle, a seed that stayed alone, touches another one of whatever sheet.
     fn is_seed_crowded(&mut self, particles: &Particles) -> bool;
@@ -188,8 +185,8 @@ pub(crate) trait LevelFront {
     /// The particles within a distance of a place, of whatever sheet.
     fn within(&mut self, position: Vec3, distance: f32) -> &[Neighbour];
 
-    /// Collects the particles of the sheet of (`position`, `normal`) that are so near that no front need start there.
-    fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour>;
+    /// Collects the particles that face the same way as a `point` and are so near that no front need start there.
+    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour>;
 
     /// Goes on to the gaps, once the surface is covered; false if there is none to fill.
     fn begin_filling(&mut self) -> bool;
@@ -276,22 +273,17 @@ pub(crate) trait LevelFront {
         context.neighbours.truncate(last);
     }
 
-    /// Whether a particle of the sheet of (`position`, `normal`) is so near that no front need start there.
-    fn is_covered(
-        &mut self,
-        probe: &mut Probe,
-        particles: &Particles,
-        (position, normal): (Vec3, Vec3),
-    ) -> bool {
+    /// Whether a particle of the sheet of a `point` is so near that no front need start there.
+    fn is_covered(&mut self, probe: &mut Probe, particles: &Particles, point: OrientedPoint) -> bool {
         let rule = self.rule();
-        let found = self.gather_cover(particles, position, normal);
+        let found = self.gather_cover(particles, point);
         let spacing = |j: usize| 2.0 * particles.radius[j];
-        is_near_own(rule, probe, particles, (position, normal), found, spacing)
+        rule.is_near_own(probe, particles, point, found, spacing)
     }
 
-    /// Those particles, nearest first, in `near`.
-    fn near(&mut self, particles: &Particles, position: Vec3, normal: Vec3, near: &mut Vec<u32>) {
-        let found = self.gather_cover(particles, position, normal);
+    /// Writes the particles that [`Self::gather_cover`] finds around a `point` to `near`, the nearest first.
+    fn list_cover(&mut self, particles: &Particles, point: OrientedPoint, near: &mut Vec<u32>) {
+        let found = self.gather_cover(particles, point);
         sort_few(found, |a, b| (a.distance_sq, a.index) < (b.distance_sq, b.index));
         near.clear();
         near.extend(found.iter().map(|found| found.index));
@@ -333,17 +325,4 @@ pub(crate) fn initial_slots() -> Slots {
     let mut slots = Slots::default();
     slots.set(0, SlotFate::Parent);
     slots
-}
-
-/// Whether a particle at `offset` with the normal `other` belongs to the sheet of a point with the unit normal `normal`. Below
-/// the distance whose square is `slack_sq` the direction between the two tells nothing.
-pub(crate) fn is_same_sheet(
-    offset: Vec3,
-    distance_sq: f32,
-    normal: Vec3,
-    other: Vec3,
-    slack_sq: f32,
-) -> bool {
-    let rise = offset.dot(normal);
-    normal.dot(other) > 0.0 && rise * rise <= MAX_RISE_SQ * (distance_sq + slack_sq)
 }

@@ -47,7 +47,7 @@ impl Front {
         }
     }
 
-    /// The same, to be changed.
+    /// The front that works, to be changed.
     pub(crate) fn active_mut(&mut self) -> &mut dyn LevelFront {
         match self.sampling {
             Sampling::Uniform => &mut self.uniform,

@@ -13,6 +13,20 @@ const RATIO: f32 = 4.0;
 /// Largest number of layers; the last one holds all larger radii too.
 const MAX_LAYERS: usize = 6;
 
+/// The radii of a set of particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RadiusRange {
+    pub(crate) smallest: f32,
+    pub(crate) largest: f32,
+}
+
+impl RadiusRange {
+    /// One radius.
+    pub(crate) fn of(radius: f32) -> Self {
+        Self { smallest: radius, largest: radius }
+    }
+}
+
 /// The layers and their ranges of radii.
 #[derive(Clone, Debug)]
 struct Layers {
@@ -24,8 +38,8 @@ struct Layers {
 }
 
 impl Layers {
-    /// Divides the radii from `smallest` to `largest` into layers.
-    fn between(smallest: f32, largest: f32) -> Self {
+    /// Divides a range of radii into layers.
+    fn between(RadiusRange { smallest, largest }: RadiusRange) -> Self {
         let mut layers = Self { count: 0, middle: [1.0; MAX_LAYERS], largest: [1.0; MAX_LAYERS] };
         let mut top = smallest;
         while layers.count < MAX_LAYERS && (layers.count == 0 || top < largest) {
@@ -82,12 +96,12 @@ pub(crate) struct RadiusGrids {
 
 impl RadiusGrids {
     pub(crate) fn new() -> Self {
-        Self { grids: Vec::new(), layers: Layers::between(1.0, 1.0) }
+        Self { grids: Vec::new(), layers: Layers::between(RadiusRange::of(1.0)) }
     }
 
-    /// Empties the grids for particles with radii from `smallest` to `largest`; the usual query reaches `reach` radii.
-    pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32) {
-        self.layers = Layers::between(smallest, largest);
+    /// Empties the grids for particles with these radii; the usual query reaches `reach` radii.
+    pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32) {
+        self.layers = Layers::between(radii);
         self.grids.truncate(self.layers.count);
         for (k, side) in self.layers.sides(reach).enumerate() {
             match self.grids.get_mut(k) {
@@ -134,13 +148,12 @@ pub(crate) struct RadiusChains {
 
 impl RadiusChains {
     pub(crate) fn new() -> Self {
-        Self { chains: Chains::default(), layers: Layers::between(1.0, 1.0) }
+        Self { chains: Chains::default(), layers: Layers::between(RadiusRange::of(1.0)) }
     }
 
-    /// Empties the lists for up to `particles` particles with radii from `smallest` to `largest`; the usual query
-    /// reaches `reach` radii.
-    pub(crate) fn reset(&mut self, smallest: f32, largest: f32, reach: f32, particles: usize) {
-        self.layers = Layers::between(smallest, largest);
+    /// Empties the lists for up to `particles` particles with these radii; the usual query reaches `reach` radii.
+    pub(crate) fn reset(&mut self, radii: RadiusRange, reach: f32, particles: usize) {
+        self.layers = Layers::between(radii);
         self.chains.reset(self.layers.sides(reach), particles);
     }
 
@@ -154,7 +167,8 @@ impl RadiusChains {
     pub(crate) fn beside(
         &self,
         positions: &[Vec3],
-        (position, radius): (Vec3, f32),
+        position: Vec3,
+        radius: f32,
         meant: impl Fn(u32) -> bool,
     ) -> impl Iterator<Item = u32> {
         self.chains.beside(positions, self.layers.of(radius), position, meant)

@@ -7,7 +7,7 @@
 use crate::math::{larger, refill};
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
-use crate::sampler::neighbours::grids::RadiusChains;
+use crate::sampler::neighbours::grids::{RadiusChains, RadiusRange};
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use glam::{BVec4A, Vec4};
 
@@ -120,15 +120,10 @@ impl NeighbourLists {
         self.grid_travel < slack
     }
 
-    /// Empties the grid for this many particles with radii from `smallest` to `largest`. Those within `reach` mean
-    /// radii will be listed, and before the grid is emptied again they may move by `slack` more.
-    pub(crate) fn empty_grid(
-        &mut self,
-        (smallest, largest): (f32, f32),
-        (reach, slack): (f32, f32),
-        particles: usize,
-    ) {
-        self.grid.reset(smallest, largest, reach + slack, particles);
+    /// Empties the grid for this many particles. Those within `reach` mean radii will be listed, and before the grid is emptied
+    /// again they may move by `slack` more.
+    pub(crate) fn empty_grid(&mut self, radii: RadiusRange, reach: f32, slack: f32, particles: usize) {
+        self.grid.reset(radii, reach + slack, particles);
         self.share = 0.5 * reach;
         self.grid_travel = 0.0;
     }
@@ -186,7 +181,7 @@ impl NeighbourLists {
         self.group.push(i as u32);
         let travel = &self.travel;
         let is_other = |j: u32| j as usize != i && travel[j as usize] == Travel::STALE;
-        let others = self.grid.beside(positions, (p, largest), is_other);
+        let others = self.grid.beside(positions, p, largest, is_other);
         for index in others.take(GROUP - 1) {
             let j = index as usize;
             self.group.push(index);

@@ -3,7 +3,8 @@
 use crate::math::refill;
 use crate::particles::Particles;
 use crate::sampler::neighbours::packed::{PackedNeighbours, ROOM};
-use crate::sampler::relaxation::repulsion::{Repulsion, same_sheet_weight};
+use crate::sampler::relaxation::repulsion::Repulsion;
+use crate::sampler::sheet::repulsion_weight;
 use core::ops::Range;
 use glam::{Mat4, Vec3, Vec4};
 
@@ -106,7 +107,7 @@ impl Forces {
             let offset = particles.position[i] - particles.position[j];
             let mean = 0.5 * (law.radius(particles, i) + law.radius(particles, j));
             let (weight, of_pair) = law.pairs(Vec4::splat(offset.length_squared()), Vec4::splat(mean));
-            let share = same_sheet_weight(particles.normal[i].dot(particles.normal[j]));
+            let share = repulsion_weight(particles.normal[i].dot(particles.normal[j]));
             let push = offset.extend(0.0) * (weight.x * share);
             self.force[i] += push;
             self.force[j] -= push;
@@ -162,7 +163,7 @@ impl PairBatch {
         for (&end, i) in ends.iter().zip(range) {
             for k in first..end {
                 let other = particles.normal[self.other[k] as usize];
-                let share = same_sheet_weight(particles.normal[i].dot(other));
+                let share = repulsion_weight(particles.normal[i].dot(other));
                 self.weight[k] *= share;
                 self.energy[k] *= share;
             }

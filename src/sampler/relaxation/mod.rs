@@ -19,14 +19,13 @@
 //! * The step size is not fixed but as large as stays stable. A step that does not lower the energy is taken back and
 //!   the step size is halved, so the energy falls at every step that stands. This holds because the energy is one
 //!   function of positions and normals: no pair within range is missing from the lists, and each counts with the weight
-//!   of its present normals ([`repulsion::same_sheet_weight`]). Where nearly every particle has a neighbour across a
+//!   of its present normals ([`sheet::repulsion_weight`]). Where nearly every particle has a neighbour across a
 //!   bend that the radius does not resolve, no step along these forces may lower the energy further; the relaxation
 //!   then ends before its last step.
 
 mod forces;
 mod grading;
 pub(crate) mod repulsion;
-mod sheets;
 mod stepper;
 
 use crate::math::Bounds;
@@ -38,6 +37,7 @@ use crate::sampler::projection::{Accuracy, Tolerance};
 use crate::sampler::relaxation::forces::BATCH_PARTICLES;
 use crate::sampler::relaxation::repulsion::{Gaussian, LandingBatch, Overlap, Repulsion, TRUSTED_CORRECTION};
 use crate::sampler::relaxation::stepper::{Stepper, batches};
+use crate::sampler::sheet;
 use crate::sampler::sizing::Sizing;
 use core::ops::Range;
 
@@ -46,7 +46,7 @@ const RENEWAL_UNITS: u32 = 10;
 
 /// What a relaxation does next, particle by particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Phase {
+enum Stage {
     /// Put all particles into the grid.
     FillGrid,
     /// Renew the stale neighbour lists.
@@ -99,15 +99,24 @@ impl RepulsionLaw {
     }
 }
 
+/// What keeps particles where they belong.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// The box.
+    pub(crate) bounds: Bounds,
+    /// Lift of a move above which a particle has left its sheet; infinite where no others are near.
+    pub(crate) largest_lift: f32,
+}
+
 /// A relaxation under way.
 #[derive(Clone)]
 pub(crate) struct Relaxation {
     law: RepulsionLaw,
     /// Steps to be done in all.
     target: u32,
-    phase: Phase,
+    stage: Stage,
     purpose: Purpose,
-    /// The next particle in this phase.
+    /// The next particle in this stage.
     next: usize,
     /// Units done beyond the budgets so far, to be paid from the next ones.
     debt: u32,
@@ -122,7 +131,7 @@ impl Relaxation {
         Self {
             law: RepulsionLaw::Gaussian { radius: 1.0, tolerance: Tolerance::default() },
             target: 0,
-            phase: Phase::Done,
+            stage: Stage::Done,
             purpose: Purpose::End,
             next: 0,
             debt: 0,
@@ -134,23 +143,22 @@ impl Relaxation {
 
     /// Forgets an earlier run.
     pub(crate) fn clear(&mut self) {
-        self.phase = Phase::Done;
+        self.stage = Stage::Done;
         self.stepper.clear();
     }
 
-    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. A particle that
-    /// moves by more than `largest_lift` has left its sheet; if that is finite, particles of different sheets that face the same
-    /// way do not repel each other.
+    /// Goes on until `target` steps are done in all. `pairs` are the lists of the front, if it was not cut short. Where the
+    /// largest lift is finite, particles of different sheets that face the same way do not repel each other.
     pub(crate) fn begin(
         &mut self,
         law: RepulsionLaw,
-        (bounds, largest_lift): (&Bounds, f32),
+        limits: Limits,
         target: u32,
         particles: &Particles,
         pairs: &mut PackedNeighbours,
     ) {
-        let sheets = if largest_lift < f32::INFINITY {
-            sheets::numbers(largest_lift, particles, pairs)
+        let sheets = if limits.largest_lift < f32::INFINITY {
+            sheet::numbers(limits.largest_lift, particles, pairs)
         } else {
             Vec::new()
         };
@@ -163,22 +171,22 @@ impl Relaxation {
         self.is_steep = false;
         // A first step that was cancelled has moved particles, so the lists of the front no longer hold.
         let is_first = self.stepper.energy().is_empty();
-        self.stepper.begin((bounds, largest_lift), particles, law.first_step(), law.resizes());
+        self.stepper.begin(limits, particles, law.first_step(), law.resizes());
         self.lists.reset(particles);
         self.lists.sheets = sheets;
         // The front's lists may hold pairs on two near sheets.
         let are_lists_right = pairs.len() == particles && is_first && self.lists.sheets.is_empty();
-        self.phase = if are_lists_right && self.purpose != Purpose::End {
+        self.stage = if are_lists_right && self.purpose != Purpose::End {
             self.after_lists()
         } else {
             pairs.extend_to(particles);
             self.lists.make_all_stale();
-            Phase::FillGrid
+            Stage::FillGrid
         };
     }
 
     pub(crate) fn is_done(&self) -> bool {
-        self.phase == Phase::Done
+        self.stage == Stage::Done
     }
 
     pub(crate) fn steps_done(&self) -> u32 {
@@ -192,19 +200,19 @@ impl Relaxation {
 
     /// Takes back a step that is only half made, and ends. Returns whether positions changed.
     pub(crate) fn abandon(&mut self, particles: &mut Particles) -> bool {
-        let moved = match self.phase {
-            Phase::Move => 0..self.next,
-            Phase::TakeBack => self.next..particles.len(),
+        let moved = match self.stage {
+            Stage::Move => 0..self.next,
+            Stage::TakeBack => self.next..particles.len(),
             _ => 0..0,
         };
         for i in moved.clone() {
             self.stepper.restore(particles, i);
         }
-        self.phase = Phase::Done;
+        self.stage = Stage::Done;
         !moved.is_empty()
     }
 
-    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one phase;
+    /// Does up to `budget` units of work and returns whether particles moved. A unit is one particle in one stage;
     /// costly ones count for several. It returns early where a step stands, so that its particles can be looked at.
     /// Particles of many radii need the radius field `sizing` of their run.
     ///
@@ -245,44 +253,44 @@ impl Relaxation {
         self.debt -= paid;
         budget -= paid;
         let steps = self.stepper.done();
-        while budget > 0 && self.phase != Phase::Done && self.stepper.done() == steps {
+        while budget > 0 && self.stage != Stage::Done && self.stepper.done() == steps {
             let (last, units) = self.affordable::<L>(budget, n);
             let range = self.next..last;
             self.debt = units.saturating_sub(budget);
             budget = budget.saturating_sub(units);
             self.next = last;
-            match &mut self.phase {
-                Phase::FillGrid => self.fill_grid(law, particles, range),
-                Phase::RenewLists => self.renew_lists(pairs, particles, range),
-                Phase::Grade { has_lowered } => {
+            match &mut self.stage {
+                Stage::FillGrid => self.fill_grid(law, particles, range),
+                Stage::RenewLists => self.renew_lists(pairs, particles, range),
+                Stage::Grade { has_lowered } => {
                     *has_lowered |= grading::grade_near(law.slope(), pairs, particles, range);
                 }
-                Phase::SumForces { energy } => {
+                Stage::SumForces { energy } => {
                     for first in range.step_by(BATCH_PARTICLES) {
                         let few = first..last.min(first + BATCH_PARTICLES);
                         self.stepper.forces.add_near(law, pairs, particles, few, energy);
                     }
                 }
-                Phase::Move | Phase::TakeBack | Phase::Polish => {
+                Stage::Move | Stage::TakeBack | Stage::Polish => {
                     has_moved |= !range.is_empty();
                     self.displace(law, probe, pairs, particles, range);
                 }
-                Phase::Done => {}
+                Stage::Done => {}
             }
             if last == n {
                 self.next = 0;
-                self.phase = self.following(law, pairs, particles);
+                self.stage = self.following(law, pairs, particles);
             }
         }
         has_moved
     }
 
-    /// Returns how far this phase comes with a budget, and the units that takes: the last particle may go beyond the
+    /// Returns how far this stage comes with a budget, and the units that takes: the last particle may go beyond the
     /// budget.
     fn affordable<L: Repulsion>(&self, budget: u32, n: usize) -> (usize, u32) {
-        let cost = |i: usize| match self.phase {
-            Phase::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
-            Phase::Polish => L::POLISH_UNITS,
+        let cost = |i: usize| match self.stage {
+            Stage::RenewLists if self.lists.is_stale(i) => RENEWAL_UNITS,
+            Stage::Polish => L::POLISH_UNITS,
             _ => 1,
         };
         let (mut last, mut units) = (self.next, 0);
@@ -295,8 +303,7 @@ impl Relaxation {
 
     fn fill_grid<L: Repulsion>(&mut self, law: &L, particles: &Particles, range: Range<usize>) {
         if range.start == 0 {
-            let reach = (L::RANGE + L::SKIN, L::SLACK);
-            self.lists.empty_grid(law.extent(particles), reach, particles.len());
+            self.lists.empty_grid(law.extent(particles), L::RANGE + L::SKIN, L::SLACK, particles.len());
         }
         for i in range {
             self.lists.insert(particles, i);
@@ -317,7 +324,7 @@ impl Relaxation {
         }
     }
 
-    /// Moves the particles of `range` as this phase says, and lands them.
+    /// Moves the particles of `range` as this stage says, and lands them.
     fn displace<L: Repulsion>(
         &mut self,
         law: &L,
@@ -326,16 +333,16 @@ impl Relaxation {
         particles: &mut Particles,
         range: Range<usize>,
     ) {
-        let Self { phase, lists, stepper, .. } = self;
+        let Self { stage, lists, stepper, .. } = self;
         let mut landing = LandingBatch::new();
         for range in batches(range) {
             let is_checked = pairs.any_weighted(&range) || stepper.may_stray();
             // Near a bend the energy depends on the normal, which is therefore evaluated at the final position; and near another sheet a
             // short correction may lead far away.
             landing.trust = if is_checked { 0.0 } else { TRUSTED_CORRECTION };
-            match phase {
-                Phase::Move => stepper.advance(law, particles, range.clone(), &mut landing),
-                Phase::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),
+            match stage {
+                Stage::Move => stepper.advance(law, particles, range.clone(), &mut landing),
+                Stage::TakeBack => stepper.take_back(law, lists, particles, range.clone(), &mut landing),
                 _ => {
                     (landing.trust, landing.renews_radii) = (0.0, true);
                     landing.position[..range.len()].copy_from_slice(&particles.position[range.clone()]);
@@ -345,82 +352,82 @@ impl Relaxation {
         }
     }
 
-    /// Returns the phase that follows, once all particles have been through the present one.
+    /// Returns the stage that follows, once all particles have been through the present one.
     fn following<L: Repulsion>(
         &mut self,
         law: &L,
         pairs: &PackedNeighbours,
         particles: &mut Particles,
-    ) -> Phase {
-        match self.phase {
-            Phase::FillGrid => Phase::RenewLists,
-            Phase::RenewLists => {
+    ) -> Stage {
+        match self.stage {
+            Stage::FillGrid => Stage::RenewLists,
+            Stage::RenewLists => {
                 self.lists.end_renewal();
                 self.after_lists()
             }
-            Phase::Grade { mut has_lowered } => {
+            Stage::Grade { mut has_lowered } => {
                 has_lowered |= grading::grade_far(law.slope(), pairs, particles);
                 self.is_steep |= has_lowered;
                 match self.purpose {
-                    _ if has_lowered => Phase::Grade { has_lowered: false },
-                    Purpose::End => Phase::Done,
-                    Purpose::Step | Purpose::Judge => Phase::SumForces { energy: 0.0 },
+                    _ if has_lowered => Stage::Grade { has_lowered: false },
+                    Purpose::End => Stage::Done,
+                    Purpose::Step | Purpose::Judge => Stage::SumForces { energy: 0.0 },
                 }
             }
-            Phase::SumForces { mut energy } => {
+            Stage::SumForces { mut energy } => {
                 self.stepper.forces.add_far(law, pairs, particles, &mut energy);
                 self.after_forces::<L>(energy / particles.len() as f64)
             }
-            Phase::Move => self.after_moving(law, particles),
-            Phase::TakeBack => {
+            Stage::Move => self.after_moving(law, particles),
+            Stage::TakeBack => {
                 self.purpose = Purpose::Step;
                 self.after_moving(law, particles)
             }
-            Phase::Polish if L::RESIZES => {
+            Stage::Polish if L::RESIZES => {
                 // The grading is a promise about all pairs: none may be missing that the front or a change of radii has
                 // left out.
                 self.purpose = Purpose::End;
                 self.lists.make_all_stale();
-                Phase::FillGrid
+                Stage::FillGrid
             }
-            Phase::Polish | Phase::Done => Phase::Done,
+            Stage::Polish | Stage::Done => Stage::Done,
         }
     }
 
     /// Returns what follows complete lists: the forces, or the grading if radii may be too different.
-    fn after_lists(&self) -> Phase {
+    fn after_lists(&self) -> Stage {
         let is_uneven = self.is_steep || self.purpose == Purpose::End || !self.stepper.has_begun();
         if self.law.resizes() && is_uneven {
-            Phase::Grade { has_lowered: false }
+            Stage::Grade { has_lowered: false }
         } else {
-            Phase::SumForces { energy: 0.0 }
+            Stage::SumForces { energy: 0.0 }
         }
     }
 
     /// Returns what follows a move: first the renewal of the stale lists, if there are any.
-    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> Phase {
+    fn after_moving<L: Repulsion>(&mut self, law: &L, particles: &Particles) -> Stage {
         let grid_serves = self.lists.end_move(L::SLACK * law.radius(particles, 0));
         if !self.lists.has_stale() {
             self.after_lists()
         } else if grid_serves {
-            Phase::RenewLists
+            Stage::RenewLists
         } else {
-            Phase::FillGrid
+            Stage::FillGrid
         }
     }
 
     /// Returns what follows the forces: the next step, the end, or the return from a step that has not lowered the
     /// energy.
-    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> Phase {
+    fn after_forces<L: Repulsion>(&mut self, energy: f64) -> Stage {
         if self.purpose != Purpose::Judge {
             self.stepper.record_first(energy);
         } else if !self.stepper.judge(energy, L::STEP) {
-            return Phase::TakeBack;
+            return Stage::TakeBack;
         }
         if self.stepper.done() >= self.target || self.stepper.is_stuck() {
-            return Phase::Polish;
+            return Stage::Polish;
         }
         self.purpose = Purpose::Judge;
-        Phase::Move
+        Stage::Move
     }
 }

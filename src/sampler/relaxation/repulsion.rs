@@ -3,9 +3,10 @@
 
 use crate::differential::{Curvature, curvatures_of};
 use crate::field::Field;
-use crate::math::Sym3;
+use crate::math::{Sym3, larger};
 use crate::particles::Particles;
 use crate::sampler::neighbours::constants::{GAUSSIAN_RANGE, GAUSSIAN_SKIN, OVERLAP_RANGE, OVERLAP_SKIN};
+use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::probe::{BATCH, Probe};
 use crate::sampler::projection::{Accuracy, Descent, Descents, Tolerance};
 use crate::sampler::sizing::Sizing;
@@ -13,17 +14,6 @@ use glam::{Vec3, Vec4};
 
 /// Largest number of evaluations to bring a particle back onto the surface.
 const MAX_NEWTON: u32 = 6;
-
-/// Returns the weight of a pair of particles whose unit normals have this cosine: 1 up to 60°, where they are
-/// neighbours on one sheet of the surface, and 0 from 120°, where they are on two.
-///
-/// In between the weight is linear in the cosine. So no pair appears or disappears suddenly, and the energy is a
-/// continuous function of the positions. The force is the derivative with respect to the distance alone and leaves out
-/// that of the weight, so the ramp must not be steep. Of ramps from 60°, 75° and 90° to 90°, 105° and 120° this one
-/// spreads particles most evenly on the surfaces of the gallery at radii of 1 % to 5 % of the diagonal.
-pub(crate) fn same_sheet_weight(cosine: f32) -> f32 {
-    (0.5 + cosine).clamp(0.0, 1.0)
-}
 
 /// Largest distance that a particle moves in one step, in radii.
 pub(crate) const MAX_MOVE: f32 = 0.35;
@@ -87,7 +77,7 @@ pub(crate) trait Repulsion {
     fn slope(&self) -> f32;
 
     /// Returns the smallest and the largest radius of the particles.
-    fn extent(&self, particles: &Particles) -> (f32, f32);
+    fn extent(&self, particles: &Particles) -> RadiusRange;
 
     /// Returns force over offset, and energy, of four pairs with these squared distances and mean radii, both in units
     /// of length.
@@ -139,8 +129,8 @@ impl Repulsion for Gaussian {
         0.0
     }
 
-    fn extent(&self, _: &Particles) -> (f32, f32) {
-        (self.radius, self.radius)
+    fn extent(&self, _: &Particles) -> RadiusRange {
+        RadiusRange::of(self.radius)
     }
 
     fn pairs(&self, distance_sq: Vec4, _: Vec4) -> (Vec4, Vec4) {
@@ -225,9 +215,11 @@ impl Repulsion for Overlap<'_> {
         self.sizing.slope()
     }
 
-    fn extent(&self, particles: &Particles) -> (f32, f32) {
-        particles.radius.iter().fold((f32::INFINITY, 0.0), |(least, most), &radius| {
-            (if radius < least { radius } else { least }, if radius > most { radius } else { most })
+    fn extent(&self, particles: &Particles) -> RadiusRange {
+        let none = RadiusRange { smallest: f32::INFINITY, largest: 0.0 };
+        particles.radius.iter().fold(none, |RadiusRange { smallest, largest }, &radius| RadiusRange {
+            smallest: if radius < smallest { radius } else { smallest },
+            largest: larger(radius, largest),
         })
     }
 

@@ -2,12 +2,13 @@
 
 use crate::math::{Bounds, larger, refill};
 use crate::particles::Particles;
-use crate::sampler::discovery::sheets::lift;
 use crate::sampler::neighbours::constants::MAX_TURN;
 use crate::sampler::neighbours::lists::NeighbourLists;
 use crate::sampler::probe::{BATCH, Probe};
+use crate::sampler::relaxation::Limits;
 use crate::sampler::relaxation::forces::Forces;
 use crate::sampler::relaxation::repulsion::{LandingBatch, MAX_MOVE, Repulsion};
+use crate::sampler::sheet::OrientedPoint;
 use core::ops::Range;
 use glam::Vec3;
 
@@ -21,9 +22,7 @@ const MAX_FAILURES: u32 = 6;
 /// The step size and the state of every particle that a step changes.
 #[derive(Clone)]
 pub(super) struct Stepper {
-    bounds: Bounds,
-    /// Lift above which a particle has left its sheet; infinite where no others are near.
-    largest_lift: f32,
+    limits: Limits,
     pub(super) forces: Forces,
     /// Positions before the step under judgement.
     previous: Vec<Vec3>,
@@ -44,8 +43,7 @@ pub(super) struct Stepper {
 impl Stepper {
     pub(super) fn new() -> Self {
         Self {
-            bounds: Bounds::cube(1.0),
-            largest_lift: f32::INFINITY,
+            limits: Limits { bounds: Bounds::cube(1.0), largest_lift: f32::INFINITY },
             forces: Forces::new(),
             previous: Vec::new(),
             previous_radius: Vec::new(),
@@ -63,16 +61,9 @@ impl Stepper {
         self.energy.clear();
     }
 
-    /// Prepares for more steps of particles in `bounds`, which have left their sheet above `largest_lift`; `first_size` is the size
-    /// of the first step of a run.
-    pub(super) fn begin(
-        &mut self,
-        (bounds, largest_lift): (&Bounds, f32),
-        particles: usize,
-        first_size: f32,
-        resizes: bool,
-    ) {
-        (self.bounds, self.largest_lift) = (*bounds, largest_lift);
+    /// Prepares for more steps; `first_size` is the size of the first step of a run.
+    pub(super) fn begin(&mut self, limits: Limits, particles: usize, first_size: f32, resizes: bool) {
+        self.limits = limits;
         self.failures = 0;
         if self.done == 0 {
             self.step_size = first_size;
@@ -96,7 +87,7 @@ impl Stepper {
 
     /// Returns whether particles may come to another sheet.
     pub(super) fn may_stray(&self) -> bool {
-        self.largest_lift < f32::INFINITY
+        self.limits.largest_lift < f32::INFINITY
     }
 
     /// Returns whether the energy before the next step is known.
@@ -210,12 +201,12 @@ impl Stepper {
         let goal = landing.position;
         law.land(probe, landing);
         if self.may_stray() {
-            self.land_nearer(law, probe, particles, (range.start, &goal), landing);
+            self.land_nearer(law, probe, particles, range.start, &goal, landing);
         }
         for (k, i) in range.enumerate() {
             let (position, normal) = (landing.position[k], landing.normal[k]);
             let cosine = normal.dot(particles.normal[i]);
-            if landing.ok[k] && self.bounds.contains(position) && cosine > 0.0 {
+            if landing.ok[k] && self.limits.bounds.contains(position) && cosine > 0.0 {
                 // A turn of the normal counts as a move: the turn that makes a list stale as the distance that does.
                 let turn_sq = 2.0 - 2.0 * cosine;
                 let per_turn = 0.5 * L::SKIN / MAX_TURN * law.radius(particles, i);
@@ -241,12 +232,14 @@ impl Stepper {
         law: &L,
         probe: &mut Probe,
         particles: &Particles,
-        (first, goal): (usize, &[Vec3; BATCH]),
+        first: usize,
+        goal: &[Vec3; BATCH],
         landing: &mut LandingBatch,
     ) {
         let has_left = |landing: &LandingBatch, k: usize| {
-            let (p, n) = (particles.position[first + k], particles.normal[first + k]);
-            !landing.ok[k] || lift(landing.position[k] - p, n, landing.normal[k]) > self.largest_lift
+            let from = OrientedPoint::of(particles, first + k);
+            let pair = from.pair(landing.position[k] - from.position, landing.normal[k]);
+            !landing.ok[k] || pair.lift() > self.limits.largest_lift
         };
         let mut share = 1.0;
         for _ in 0..HALVINGS {

@@ -66,7 +66,7 @@ impl SumOfCurvatures {
 
 /// One of the laws.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum Law {
     ChordError(ChordError),
     MaxCurvature(MaxCurvature),
     SumOfCurvatures(SumOfCurvatures),
@@ -75,7 +75,7 @@ enum Kind {
 /// The law of a run, with its clamp, and the factor on all radii that makes the count match.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizingLaw {
-    kind: Kind,
+    law: Law,
     /// Smallest and largest radius, before the factor.
     least: f32,
     greatest: f32,
@@ -87,12 +87,10 @@ impl SizingLaw {
     pub(crate) fn new(settings: &Settings, diagonal: f64) -> Self {
         let scale = settings.curvature_scale;
         Self {
-            kind: match settings.radius_law {
-                LawKind::ChordError => {
-                    Kind::ChordError(ChordError { error: settings.chord_error * diagonal })
-                }
-                LawKind::MaxCurvature => Kind::MaxCurvature(MaxCurvature { scale }),
-                LawKind::SumOfCurvatures => Kind::SumOfCurvatures(SumOfCurvatures { scale }),
+            law: match settings.radius_law {
+                LawKind::ChordError => Law::ChordError(ChordError { error: settings.chord_error * diagonal }),
+                LawKind::MaxCurvature => Law::MaxCurvature(MaxCurvature { scale }),
+                LawKind::SumOfCurvatures => Law::SumOfCurvatures(SumOfCurvatures { scale }),
             },
             least: (settings.radius_min_share * diagonal) as f32,
             greatest: (settings.radius_max_share * diagonal) as f32,
@@ -123,10 +121,10 @@ impl SizingLaw {
     /// Returns the radius where the surface has this curvature.
     #[inline]
     pub(crate) fn radius(&self, curvature: &Curvature) -> f32 {
-        let radius = match self.kind {
-            Kind::ChordError(law) => law.radius(curvature),
-            Kind::MaxCurvature(law) => law.radius(curvature),
-            Kind::SumOfCurvatures(law) => law.radius(curvature),
+        let radius = match self.law {
+            Law::ChordError(law) => law.radius(curvature),
+            Law::MaxCurvature(law) => law.radius(curvature),
+            Law::SumOfCurvatures(law) => law.radius(curvature),
         };
         // NaN, which stands for an undefined curvature, is not above the smallest radius.
         let radius = if radius > self.least { radius.min(self.greatest) } else { self.least };

@@ -18,19 +18,19 @@ mod vicinity;
 
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::sheets::{SheetRule, lift};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::adaptive::arcs::ParentFrame;
 use crate::sampler::front::adaptive::parents::{LocalShape, Parent, Parents, shape_in};
 use crate::sampler::front::adaptive::placement::{DirectLanding, DirectPlacement, Proposal, SurfacePoint};
 use crate::sampler::front::adaptive::vicinity::Vicinity;
 use crate::sampler::front::level::{
-    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, is_same_sheet,
+    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame,
 };
 use crate::sampler::neighbours::constants::{OVERLAP_RANGE, OVERLAP_SKIN};
 use crate::sampler::neighbours::grids::{GridHandle, RadiusGrids};
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{Accuracy, Tolerance, tolerance};
+use crate::sampler::sheet::{ADAPTIVE_SLACK, OrientedPoint, Pair, SheetRule, is_level};
 use crate::spatial::Neighbour;
 use core::ops::Range;
 use glam::{Vec2, Vec3};
@@ -47,9 +47,6 @@ const TOUCHING: f32 = 1.25;
 
 /// Neighbours within this many radii enter the fit of the radius's gradient.
 const RING: f32 = 2.8;
-
-/// The slack of the sheet test, as a share of r_i + r_j.
-const RISE_SLACK: f32 = 0.35;
 
 /// A child and its parent take part in the filling if the child's radius differs from the prediction by more than this share.
 /// The radii around them are known by then.
@@ -147,7 +144,7 @@ impl AdaptiveFront {
         let grown = (spot.radius - particles.radius[provisional]).max(0.0) + self.growth;
         let room = clearance - moved - self.children.drift - self.rules.match_tolerance * grown;
         let is_clear = room > 0.0;
-        if !is_clear && self.collides(probe, particles, (spot.position, spot.normal, spot.radius)) {
+        if !is_clear && self.collides(probe, particles, &spot) {
             self.parents.note_seam(parent);
             return SlotFate::Matched;
         }
@@ -171,39 +168,35 @@ impl AdaptiveFront {
     }
 
     /// Whether a settled particle of the same sheet is nearer than the match tolerance allows.
-    fn collides(
-        &mut self,
-        probe: &mut Probe,
-        particles: &Particles,
-        (position, normal, radius): (Vec3, Vec3, f32),
-    ) -> bool {
+    fn collides(&mut self, probe: &mut Probe, particles: &Particles, spot: &SurfacePoint) -> bool {
         let sheets = self.rules.sheets;
         let share = self.rules.match_tolerance;
-        self.grids.gather(position, |largest| share * (radius + largest), &mut self.found);
+        self.grids.gather(spot.position, |largest| share * (spot.radius + largest), &mut self.found);
         let settled = self.level.settled;
         self.found.iter().any(|near| {
             let j = near.index as usize;
-            let both = radius + particles.radius[j];
+            let both = spot.radius + particles.radius[j];
             let limit = share * both;
+            let pair = Pair { offset: near.offset, normal: spot.normal, other: particles.normal[j] };
             j < settled
                 && near.distance_sq <= limit * limit
-                && is_same_sheet_by_size(near, normal, particles.normal[j], both)
-                && (!sheets.is_fine()
-                    || is_on_sheet(sheets, probe, (position, normal), near.offset, particles.normal[j]))
+                && is_level_by_size(pair, near.distance_sq, both)
+                && (!sheets.is_fine() || is_on_sheet(sheets, probe, spot.position, pair))
         })
     }
 
     /// Removes the particles on another sheet that faces the same way as `parent` from those found around it.
     fn drop_strangers(&self, context: &mut FrontContext, parent: usize, found: &mut Vec<Neighbour>) {
         let FrontContext { probe, particles, .. } = context;
-        let from = (particles.position[parent], particles.normal[parent]);
+        let from = OrientedPoint::of(particles, parent);
         let (sheets, settled) = (self.rules.sheets, self.level.settled);
         found.retain(|near| {
-            let (j, other) = (near.index as usize, particles.normal[near.index as usize]);
+            let j = near.index as usize;
+            let pair = from.pair(near.offset, particles.normal[j]);
             j == parent
                 || j >= settled
-                || other.dot(from.1) <= 0.0
-                || is_on_sheet(sheets, probe, from, near.offset, other)
+                || !pair.faces_one_way()
+                || is_on_sheet(sheets, probe, from.position, pair)
         });
     }
 }
@@ -230,7 +223,7 @@ impl LevelFront for AdaptiveFront {
         self.parents.clear();
         self.children.clear();
         self.growth = 0.0;
-        self.grids.reset(radii[0], radii[1], self.rules.reach);
+        self.grids.reset(radii, self.rules.reach);
         (self.fills, self.filled) = (0, 0);
     }
 
@@ -257,7 +250,7 @@ impl LevelFront for AdaptiveFront {
 
     /// Finds the free arcs of the parent and enters provisional children in each.
     fn place_children(&mut self, context: &mut FrontContext, which: usize) {
-        let Parent { particle, local, .. } = self.parents.level[which];
+        let Parent { particle, has_placed, local } = self.parents.level[which];
         let parent = particle as usize;
         let particles = &*context.particles;
         let radius = particles.radius[parent];
@@ -269,10 +262,11 @@ impl LevelFront for AdaptiveFront {
             self.drop_strangers(context, parent, &mut found);
         }
         let particles = &*context.particles;
-        // Every particle gets its neighbour list when it places its children for the first time.
-        let again = context.neighbours.len() > parent;
+        // A particle gets its neighbour list when it places its children for the first time.
+        debug_assert_eq!(has_placed, context.neighbours.len() > parent, "particle {parent}");
+        let lists = (!has_placed).then_some(&mut *context.neighbours);
         let alone_on_sheet =
-            self.around.read(&found, context.neighbours, particles, parent, self.level.settled) && !is_fine;
+            self.around.read(&found, lists, particles, parent, self.level.settled) && !is_fine;
 
         let SlotFrame { n, u, w, .. } = SlotFrame::of(particles, parent);
         let inherited = Vec2::new(local.slope.dot(u), local.slope.dot(w));
@@ -282,9 +276,9 @@ impl LevelFront for AdaptiveFront {
         self.parents.level[which].has_placed = true;
         self.around.ring.find_arcs(&frame);
         self.found = found;
-        self.around.begin_circle(!again);
+        self.around.begin_circle(!has_placed);
         self.predict_children(&frame, alone_on_sheet);
-        self.fill_slots(context.particles, which, again);
+        self.fill_slots(context.particles, which, has_placed);
     }
 
     fn project_children(&mut self, context: &mut FrontContext, children: Range<usize>) {
@@ -297,10 +291,9 @@ impl LevelFront for AdaptiveFront {
         for (k, landing) in solutions.iter_mut().enumerate() {
             if let DirectLanding::On(spot) = landing {
                 let circle = &problems[k].circle;
-                let (from, offset) = ((circle.centre, circle.normal), spot.position - circle.centre);
-                if rules.sheets.is_fine()
-                    && !is_on_sheet(rules.sheets, context.probe, from, offset, spot.normal)
-                {
+                let offset = spot.position - circle.centre;
+                let pair = Pair { offset, normal: circle.normal, other: spot.normal };
+                if rules.sheets.is_fine() && !is_on_sheet(rules.sheets, context.probe, circle.centre, pair) {
                     *landing = DirectLanding::NotConverged;
                     continue;
                 }
@@ -341,7 +334,8 @@ impl LevelFront for AdaptiveFront {
         self.growth = 0.0;
     }
 
-    fn add_seed(&mut self, context: &mut FrontContext, position: Vec3, normal: Vec3) -> bool {
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool {
+        let OrientedPoint { position, normal } = seed;
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let sizing = context.sizing();
         let spot = self.solver.look(context.probe, sizing, position);
@@ -377,12 +371,12 @@ impl LevelFront for AdaptiveFront {
         &self.found
     }
 
-    fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour> {
-        self.grids.gather(position, |largest| UNCOVERED * largest, &mut self.found);
+    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour> {
+        self.grids.gather(point.position, |largest| UNCOVERED * largest, &mut self.found);
         self.found.retain(|near| {
             let j = near.index as usize;
             let reach = UNCOVERED * particles.radius[j];
-            particles.normal[j].dot(normal) > 0.0 && near.distance_sq <= reach * reach
+            particles.normal[j].dot(point.normal) > 0.0 && near.distance_sq <= reach * reach
         });
         &mut self.found
     }
@@ -410,15 +404,14 @@ impl LevelFront for AdaptiveFront {
     }
 }
 
-/// Whether a particle at `offset` with the normal `other` lies on the sheet of the point `from`, which faces the same way: it is
-/// not doubtful, or the field between them says so.
-fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, from: (Vec3, Vec3), offset: Vec3, other: Vec3) -> bool {
-    lift(offset, from.1, other) <= sheets.suspicious(0.0) || sheets.is_one_sheet(probe, from, offset, other)
+/// Whether two points that face the same way, the first at `position`, lie on one sheet: the pair is not doubtful, or the field
+/// between them says so.
+fn is_on_sheet(sheets: SheetRule, probe: &mut Probe, position: Vec3, pair: Pair) -> bool {
+    pair.lift() <= sheets.suspicious(0.0) || sheets.is_one_sheet(probe, position, pair)
 }
 
-/// Whether a particle with the normal `other` belongs to the sheet of a point with the normal `normal` from which it was
-/// found; `both` is r_i + r_j.
-fn is_same_sheet_by_size(near: &Neighbour, normal: Vec3, other: Vec3, both: f32) -> bool {
-    let slack = RISE_SLACK * both;
-    is_same_sheet(near.offset, near.distance_sq, normal, other, slack * slack)
+/// [`is_level`] for particles whose radii add up to `both`.
+fn is_level_by_size(pair: Pair, distance_sq: f32, both: f32) -> bool {
+    let slack = ADAPTIVE_SLACK * both;
+    is_level(pair, distance_sq, slack * slack)
 }

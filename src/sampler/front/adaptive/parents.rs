@@ -80,6 +80,8 @@ impl Parents {
             u64::from(parent.particle) << 1 | u64::from(!parent.has_placed)
         });
         self.level.dedup_by_key(|parent| parent.particle);
+        // One that was noted when it was placed has placed its children since.
+        self.level.iter_mut().for_each(|parent| parent.has_placed = true);
         !self.level.is_empty()
     }
 }

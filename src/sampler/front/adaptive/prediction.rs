@@ -87,8 +87,7 @@ impl AdaptiveFront {
                     SlotFate::Capped
                 }
                 OccupantKind::Child(child, clearance) => {
-                    let child = (&child, clearance);
-                    self.enter_child(particles, which, slot as u32, child);
+                    self.enter_child(particles, which, slot as u32, &child, clearance);
                     SlotFate::Open
                 }
             };
@@ -104,7 +103,8 @@ impl AdaptiveFront {
         particles: &mut Particles,
         which: usize,
         slot: u32,
-        (child, clearance): (&PredictedChild, f32),
+        child: &PredictedChild,
+        clearance: f32,
     ) {
         let parent = self.parents.level[which].particle as usize;
         let index = particles.len() as u32;

@@ -1,10 +1,11 @@
 //! The vicinity of a parent: the particles near it, and the arcs of directions that they and its children occupy.
 
-use super::{LISTED, RING, TOUCHING, is_same_sheet_by_size};
+use super::{LISTED, RING, TOUCHING, is_level_by_size};
 use crate::particles::Particles;
 use crate::sampler::front::adaptive::arcs::{PredictedChild, Ring};
 use crate::sampler::neighbours::constants::{FULL_COSINE, LISTED_COSINE};
 use crate::sampler::neighbours::packed::PackedNeighbours;
+use crate::sampler::sheet::Pair;
 use crate::spatial::Neighbour;
 use core::f32::consts::TAU;
 
@@ -44,13 +45,13 @@ pub(super) struct Vicinity {
 }
 
 impl Vicinity {
-    /// Reads the particles `found` around `parent`: into the ring those that its children may collide with, and into
-    /// `neighbours` those before it that repel it. The ones before it are final, and so is the list. Particles before `settled`
-    /// have their exact radius. Says whether all that were found are of the parent's sheet.
+    /// Reads the particles `found` around `parent`: into the ring those that its children may collide with, and into the
+    /// neighbour `lists`, if it has none there yet, those before it that repel it. The ones before it are final, and so is its list.
+    /// Particles before `settled` have their exact radius. Says whether all that were found are of the parent's sheet.
     pub(super) fn read(
         &mut self,
         found: &[Neighbour],
-        neighbours: &mut PackedNeighbours,
+        lists: Option<&mut PackedNeighbours>,
         particles: &Particles,
         parent: usize,
         settled: usize,
@@ -68,7 +69,7 @@ impl Vicinity {
                 return (near.index, false);
             }
             let (other, both) = (particles.normal[j], radius + particles.radius[j]);
-            if is_same_sheet_by_size(near, normal, other, both) {
+            if is_level_by_size(Pair { offset: near.offset, normal, other }, near.distance_sq, both) {
                 if near.distance_sq <= (TOUCHING * both) * (TOUCHING * both) && near.index != grandparent {
                     self.touching.push(self.ring.len() as u32);
                 }
@@ -83,13 +84,13 @@ impl Vicinity {
             is_weighted |= is_listed & (along < FULL_COSINE);
             (near.index, is_listed & (along > LISTED_COSINE))
         });
-        if neighbours.len() == parent {
-            neighbours.push(list);
+        if let Some(lists) = lists {
+            lists.push(list);
             if is_weighted {
-                found.iter().for_each(|near| neighbours.note_weighted(near.index as usize));
+                found.iter().for_each(|near| lists.note_weighted(near.index as usize));
             }
         } else {
-            // The list was made before; walking through it fills the ring and the touching.
+            // Walking through the list fills the ring and the touching.
             list.for_each(drop);
         }
         alone

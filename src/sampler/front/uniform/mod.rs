@@ -17,19 +17,20 @@ mod surroundings;
 use crate::field::Field;
 use crate::math::Bounds;
 use crate::particles::{Particles, SlotFate, Slots};
-use crate::sampler::discovery::sheets::{SheetRule, is_near_own, lift};
 use crate::sampler::front::UNCOVERED;
 use crate::sampler::front::level::{
-    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, initial_slots, is_same_sheet,
+    FrontContext, FrontSetup, Level, LevelFront, ProvisionalChildren, SlotFrame, initial_slots,
 };
 use crate::sampler::front::uniform::gaps::{Gaps, SEAM};
 use crate::sampler::front::uniform::surroundings::{SecondForm, Surroundings};
 use crate::sampler::neighbours::constants::{
     CELL_PER_REACH, FULL_COSINE, GAUSSIAN_RANGE, GAUSSIAN_SKIN, LISTED_COSINE,
 };
+use crate::sampler::neighbours::grids::RadiusRange;
 use crate::sampler::neighbours::packed::PackedNeighbours;
 use crate::sampler::probe::Probe;
 use crate::sampler::projection::{Circle, Landing, Tolerance, tolerance};
+use crate::sampler::sheet::{OrientedPoint, Pair, SheetRule, UNIFORM_SLACK, is_level};
 use crate::spatial::{CellGrid, CellHandle, Neighbour};
 use core::ops::Range;
 use glam::Vec3;
@@ -39,9 +40,6 @@ const SLOT_DIRECTION: [[f32; 2]; 6] = {
     const SIN_60: f32 = 0.866_025_4;
     [[1.0, 0.0], [0.5, SIN_60], [-0.5, SIN_60], [-1.0, 0.0], [-0.5, -SIN_60], [0.5, -SIN_60]]
 };
-
-/// The slack of the sheet test, as a share of the match radius.
-const RISE_SLACK: f32 = 0.5;
 
 /// Allowance for the distance between a provisional and a final place, in r. Children of smooth surfaces move by a hundredth
 /// of it; those that move farther are compared again.
@@ -157,9 +155,10 @@ impl UniformFront {
         (self.rule.is_fine() || self.around.are_doubtful(normal, spacing))
             && found.iter().any(|near| {
                 let other = particles.normal[near.index as usize];
+                let pair = Pair { offset: near.offset, normal, other };
                 (near.index as usize) < self.level.settled
-                    && other.dot(normal) > 0.0
-                    && self.rule.is_doubtful(near.offset, normal, other, spacing)
+                    && pair.faces_one_way()
+                    && self.rule.is_doubtful(pair, spacing)
             })
     }
 
@@ -172,14 +171,14 @@ impl UniformFront {
         parent: usize,
         found: &mut Vec<Neighbour>,
     ) {
-        let (p, n) = (particles.position[parent], particles.normal[parent]);
+        let parent = OrientedPoint::of(particles, parent);
         let suspicious = self.rule.suspicious(2.0 * self.radius);
         found.retain(|near| {
-            let other = particles.normal[near.index as usize];
+            let pair = parent.pair(near.offset, particles.normal[near.index as usize]);
             near.index as usize >= self.level.settled
-                || other.dot(n) <= 0.0
-                || lift(near.offset, n, other) <= suspicious
-                || self.rule.is_one_sheet(probe, (p, n), near.offset, other)
+                || !pair.faces_one_way()
+                || pair.lift() <= suspicious
+                || self.rule.is_one_sheet(probe, parent.position, pair)
         });
         self.around.clear();
         for near in &*found {
@@ -190,25 +189,20 @@ impl UniformFront {
 
     /// The slack of the sheet test, squared.
     fn slack_sq(&self) -> f32 {
-        (RISE_SLACK * self.match_radius) * (RISE_SLACK * self.match_radius)
+        (UNIFORM_SLACK * self.match_radius) * (UNIFORM_SLACK * self.match_radius)
     }
 
     /// Whether a final particle of the same sheet is within the match radius.
-    fn collides(
-        &mut self,
-        probe: &mut Probe,
-        particles: &Particles,
-        (position, normal): (Vec3, Vec3),
-    ) -> bool {
-        self.grid.gather(position, self.match_radius, &mut self.found);
+    fn collides(&mut self, probe: &mut Probe, particles: &Particles, point: OrientedPoint) -> bool {
+        self.grid.gather(point.position, self.match_radius, &mut self.found);
         let slack_sq = self.slack_sq();
         self.found.retain(|near| {
-            let (j, offset) = (near.index as usize, near.offset);
-            j < self.level.settled
-                && is_same_sheet(offset, offset.length_squared(), normal, particles.normal[j], slack_sq)
+            let pair = point.pair(near.offset, particles.normal[near.index as usize]);
+            (near.index as usize) < self.level.settled
+                && is_level(pair, near.offset.length_squared(), slack_sq)
         });
         let spacing = 2.0 * self.radius;
-        is_near_own(self.rule, probe, particles, (position, normal), &self.found, |_| spacing)
+        self.rule.is_near_own(probe, particles, point, &self.found, |_| spacing)
     }
 }
 
@@ -222,7 +216,7 @@ impl LevelFront for UniformFront {
         self.radius = radius;
         self.match_radius = 2.0 * radius * settings.match_tolerance as f32;
         self.tolerance = tolerance(radius, survey.accuracy(), survey.gradient_scale);
-        self.rule = setup.rule([radius; 2]);
+        self.rule = setup.rule(RadiusRange::of(radius));
         self.level = Level::new(*bounds, settings.max_particles as usize);
         self.parents = 0..0;
         self.children.clear();
@@ -317,10 +311,9 @@ impl LevelFront for UniformFront {
             let (rule, spacing) = (self.rule, 2.0 * self.radius);
             let is_stranger = |probe: &mut Probe, position: Vec3, normal: Vec3| {
                 let Circle { centre, normal: above, .. } = problems[k];
-                let offset = position - centre;
-                normal.dot(above) <= 0.0
-                    || rule.is_doubtful(offset, above, normal, spacing)
-                        && !rule.is_one_sheet(probe, (centre, above), offset, normal)
+                let pair = Pair { offset: position - centre, normal: above, other: normal };
+                !pair.faces_one_way()
+                    || rule.is_doubtful(pair, spacing) && !rule.is_one_sheet(probe, centre, pair)
             };
             if let Landing::On { position, normal } = *landing
                 && is_stranger(probe, position, normal)
@@ -358,7 +351,7 @@ impl LevelFront for UniformFront {
                 // No particle is nearer than the clearance minus the distances that both have moved. The clearance counts all
                 // sheets, because the final normal may belong to another sheet than the provisional one.
                 let is_clear = clearance - moved - self.children.drift > self.match_radius;
-                if !is_clear && self.collides(probe, particles, (position, normal)) {
+                if !is_clear && self.collides(probe, particles, OrientedPoint { position, normal }) {
                     SlotFate::Matched
                 } else {
                     let index = self.level.settled;
@@ -388,7 +381,8 @@ impl LevelFront for UniformFront {
         self.children.clear();
     }
 
-    fn add_seed(&mut self, context: &mut FrontContext, position: Vec3, normal: Vec3) -> bool {
+    fn add_seed(&mut self, context: &mut FrontContext, seed: OrientedPoint) -> bool {
+        let OrientedPoint { position, normal } = seed;
         debug_assert!(self.is_done(), "a seed is added between two levels");
         let index = context.particles.len();
         self.seed = self.grid.insert(position, index as u32);
@@ -415,9 +409,9 @@ impl LevelFront for UniformFront {
         &self.found
     }
 
-    fn gather_cover(&mut self, particles: &Particles, position: Vec3, normal: Vec3) -> &mut Vec<Neighbour> {
-        self.grid.gather(position, UNCOVERED * self.radius, &mut self.found);
-        self.found.retain(|near| particles.normal[near.index as usize].dot(normal) > 0.0);
+    fn gather_cover(&mut self, particles: &Particles, point: OrientedPoint) -> &mut Vec<Neighbour> {
+        self.grid.gather(point.position, UNCOVERED * self.radius, &mut self.found);
+        self.found.retain(|near| particles.normal[near.index as usize].dot(point.normal) > 0.0);
         &mut self.found
     }
 

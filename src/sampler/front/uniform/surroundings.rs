@@ -1,8 +1,7 @@
 //! The particles around a parent of the uniform front, processed four at a time: second fundamental form, nearest particle,
 //! sheet test.
 
-use crate::sampler::discovery::sheets::MAX_LIFT;
-use crate::sampler::front::level::MAX_RISE_SQ;
+use crate::sampler::sheet::{MAX_LIFT, MAX_RISE_SQ};
 use glam::{Vec3, Vec4};
 
 /// Particles within this many radii of a parent enter the fit of its curvature. The six ideal neighbours are at 2, the next ring
@@ -60,7 +59,7 @@ impl Surroundings {
         self.chunks[..self.len.div_ceil(CHUNK)].iter().map(|chunk| chunk.map(Vec4::from_array))
     }
 
-    /// Whether any of the particles is [doubtful](crate::sampler::discovery::sheets::is_doubtful) for a parent with the unit normal
+    /// Whether any of the particles is [doubtful](crate::sampler::sheet::SheetRule::is_doubtful) for a parent with the unit normal
     /// `normal`.
     pub(crate) fn are_doubtful(&self, normal: Vec3, spacing: f32) -> bool {
         let unit = 1.0 / (spacing * spacing);
@@ -146,7 +145,7 @@ impl Surroundings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampler::discovery::sheets::SheetRule;
+    use crate::sampler::sheet::{Pair, SheetRule};
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg32;
 
@@ -166,7 +165,7 @@ mod tests {
                 let other = (normal + vector(0.1)).normalize_or(normal) * if k % 3 == 2 { -1.0 } else { 1.0 };
                 let offset = offset - normal * offset.dot(normal) * 0.98;
                 around.push(offset, other, true);
-                let is_one = SheetRule::default().is_doubtful(offset, normal, other, spacing);
+                let is_one = SheetRule::default().is_doubtful(Pair { offset, normal, other }, spacing);
                 expected |= is_one && other.dot(normal) > 0.0;
             }
             assert_eq!(around.are_doubtful(normal, spacing), expected, "case {case}");
