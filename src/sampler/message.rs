@@ -18,7 +18,7 @@ impl Sampler {
                 "No surface in this box: f has no zero there (proven by interval arithmetic).".into()
             }
             StopReason::NoSurface | StopReason::OneParticle
-                if !self.components.singular().is_empty() && (self.particles.is_empty() || self.survey.touches) =>
+                if !self.components.singular().is_empty() && (self.output.particles.is_empty() || self.survey.touches) =>
             {
                 let middle = 0.5 * (self.bounds.lo() + self.bounds.hi());
                 let distance = |p: &DVec3| (*p - middle).length_squared();

@@ -74,23 +74,35 @@ pub struct Sampler {
     survey: Survey,
     attempt: Attempt,
     phase: PhaseState,
-    memory: ProbeMemory,
     components: ComponentSearch,
+    tools: Tools,
+    output: Output,
+    counts: Counts,
+    /// Most bytes that a run may need.
+    memory_limit: usize,
+}
+
+/// What places and moves the particles, with the memory that serves from one run to the next.
+#[derive(Clone)]
+struct Tools {
+    memory: ProbeMemory,
     front: Front,
     /// Coarse fronts, of which a refinement takes several where the surface has several components.
     coarse: CoarseFronts,
     relaxation: Relaxation,
     neighbours: PackedNeighbours,
+}
+
+/// What a run has made so far.
+#[derive(Clone, Default)]
+struct Output {
     particles: Particles,
-    /// Those of a coarse front that lie in the box, while it marches beyond.
+    /// The particles of a coarse front that lie in the box, while the front marches beyond.
     inside: Option<Particles>,
     /// The mesh that a refinement has led to, by the particles at the corners of its faces.
     corners: Vec<u32>,
-    counts: Counts,
     /// Whether particles have moved or gone since the last step.
     moved: bool,
-    /// Most bytes that a run may need.
-    memory_limit: usize,
 }
 
 impl Default for Sampler {
@@ -109,17 +121,16 @@ impl Sampler {
             survey: Survey::default(),
             attempt: Attempt::default(),
             phase: PhaseState::Idle,
-            memory: ProbeMemory::default(),
             components: ComponentSearch::default(),
-            front: Front::new(),
-            coarse: CoarseFronts::default(),
-            relaxation: Relaxation::new(),
-            neighbours: PackedNeighbours::default(),
-            particles: Particles::default(),
-            inside: None,
-            corners: Vec::new(),
+            tools: Tools {
+                memory: ProbeMemory::default(),
+                front: Front::new(),
+                coarse: CoarseFronts::default(),
+                relaxation: Relaxation::new(),
+                neighbours: PackedNeighbours::default(),
+            },
+            output: Output::default(),
             counts: Counts::default(),
-            moved: false,
             memory_limit: usize::MAX,
         }
     }
@@ -128,20 +139,20 @@ impl Sampler {
     /// coarse front has placed beyond the box is not among them.
     #[must_use]
     pub fn particles(&self) -> &Particles {
-        self.inside.as_ref().unwrap_or(&self.particles)
+        self.output.inside.as_ref().unwrap_or(&self.output.particles)
     }
 
     /// The mesh that a refined run has led to: triples of particles, counter-clockwise seen from outside, an oriented manifold
     /// whose border lies on the box. There is none for a front, before the end of the run, and once the particles are relaxed.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        self.corners.as_chunks().0
+        self.output.corners.as_chunks().0
     }
 
     /// Counts of the run so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
-        let front = self.front.active();
+        let front = self.tools.front.active();
         Counts { fates: front.level().fates, gaps_filled: front.filled(), ..self.counts.clone() }
     }
 
@@ -150,7 +161,7 @@ impl Sampler {
     /// beyond 120°: ½ + cosine in between.
     #[must_use]
     pub fn energy(&self) -> &[f64] {
-        self.relaxation.energy()
+        self.tools.relaxation.energy()
     }
 
     /// Repulsion radius r of the run.
@@ -253,20 +264,20 @@ impl Sampler {
         }
         self.settings = *settings;
         self.bounds = *bounds;
-        self.particles.clear();
-        self.particles.origin = field.origin();
-        self.inside = None;
-        self.corners = Vec::new();
-        self.coarse = CoarseFronts::default();
-        self.relaxation.clear();
+        self.output.particles.clear();
+        self.output.particles.origin = field.origin();
+        self.output.inside = None;
+        self.output.corners = Vec::new();
+        self.tools.coarse = CoarseFronts::default();
+        self.tools.relaxation.clear();
         self.counts = Counts::default();
-        self.memory.evaluations = 0;
+        self.tools.memory.evaluations = 0;
         self.look_over(field, is_known);
         let sizing = (settings.sampling == Sampling::Adaptive).then(|| {
             let field = &mut Scaled::new(field, self.survey.scale);
-            Sizing::new(&mut Probe::new(field, &mut self.memory), bounds, settings, &self.survey)
+            Sizing::new(&mut Probe::new(field, &mut self.tools.memory), bounds, settings, &self.survey)
         });
-        self.counts.seeding_evaluations = self.memory.evaluations;
+        self.counts.seeding_evaluations = self.tools.memory.evaluations;
         self.attempt = Attempt::first(settings, self.survey.area, bounds.diagonal(), sizing);
         if settings.method == Method::Refined {
             let field = &mut Scaled::new(field, self.survey.scale);
@@ -303,7 +314,7 @@ impl Sampler {
             let scale = comfortable_scale(field, spread(&self.bounds));
             let is_dense = field.bounded().is_none();
             let scaled = &mut Scaled::new(field, scale);
-            self.survey = survey(&mut Probe::new(scaled, &mut self.memory), &self.bounds, is_dense);
+            self.survey = survey(&mut Probe::new(scaled, &mut self.tools.memory), &self.bounds, is_dense);
             (self.survey.scale, self.survey.double) = (scale, double);
             if self.survey.absence == Absence::Undefined && precision::overflows_double(field, &self.bounds) {
                 self.survey.absence = Absence::TooLarge;
@@ -312,7 +323,7 @@ impl Sampler {
         if self.survey.area == 0.0 {
             let field = &mut Scaled::new(field, self.survey.scale);
             let limits = (self.survey.tolerance(), self.least_gap());
-            let probe = &mut Probe::new(field, &mut self.memory);
+            let probe = &mut Probe::new(field, &mut self.tools.memory);
             while self.components.search(probe, &self.bounds, limits, u32::MAX) == 0 {}
             let found = self.components.points().iter().map(|seed| (seed.position, seed.normal));
             self.survey.adopt(probe.field, found, &self.bounds, self.components.witnessed());
@@ -354,7 +365,7 @@ impl Sampler {
     /// in the middle of a run cannot be caught.
     fn has_room_for(&self, particles: usize) -> bool {
         let bytes = |particles: usize| particles.checked_mul(bytes_per_particle(&self.settings));
-        let more = particles.saturating_sub(self.particles.position.capacity());
+        let more = particles.saturating_sub(self.output.particles.position.capacity());
         bytes(particles).is_some_and(|all| all <= self.memory_limit)
             && bytes(more).is_some_and(|more| Vec::<u8>::new().try_reserve_exact(more).is_ok())
     }
@@ -367,7 +378,7 @@ impl Sampler {
     /// Ends the run where it is; the particles placed so far stay. The next step marks those next to singular points, even if its
     /// budget is 0.
     pub fn cancel(&mut self) {
-        self.inside = None;
+        self.output.inside = None;
         self.next(Input::Cancel);
     }
 
@@ -385,10 +396,10 @@ impl Sampler {
             self.next(Input::Work { field, left: &mut left });
         }
         // The refinement makes its particles anew.
-        self.particles.origin = field.origin();
+        self.output.particles.origin = field.origin();
         self.look_inside();
         let progress = self.progress();
-        self.moved = false;
+        self.output.moved = false;
         progress
     }
 
@@ -400,14 +411,14 @@ impl Sampler {
         };
         let settled = self.settled();
         let is_beyond = |p: &Vec3| !self.bounds.contains(*p);
-        if !is_marching || !self.particles.position[..settled].iter().any(is_beyond) {
-            self.inside = None;
+        if !is_marching || !self.output.particles.position[..settled].iter().any(is_beyond) {
+            self.output.inside = None;
             return;
         }
-        let mut inside = self.inside.take().unwrap_or_default();
-        inside.copy_first(settled, &self.particles);
+        let mut inside = self.output.inside.take().unwrap_or_default();
+        inside.copy_first(settled, &self.output.particles);
         inside.keep_within(&self.bounds);
-        self.inside = Some(inside);
+        self.output.inside = Some(inside);
     }
 
     fn is_under_way(&self) -> bool {

@@ -88,7 +88,7 @@ impl Sampler {
     #[must_use]
     pub fn progress(&self) -> Progress {
         let settled = self.settled();
-        let particles = self.inside.as_ref().map_or(settled, Particles::len);
+        let particles = self.output.inside.as_ref().map_or(settled, Particles::len);
         let (refine_level, refine_levels) = match &self.phase {
             PhaseState::Refinement(refinement) => refinement.level(),
             _ => (0, 0),
@@ -96,25 +96,25 @@ impl Sampler {
         Progress {
             phase: self.phase.name(),
             particles,
-            level: self.particles.level[..settled].last().copied().unwrap_or(0),
+            level: self.output.particles.level[..settled].last().copied().unwrap_or(0),
             refine_level,
             refine_levels,
-            relax_step: self.relaxation.steps_done(),
+            relax_step: self.tools.relaxation.steps_done(),
             relax_steps: self.settings.relax_steps,
-            evaluations: self.memory.evaluations,
+            evaluations: self.tools.memory.evaluations,
             fraction: self.fraction(settled),
             stop_reason: self.phase.stop_reason(),
             message: self.message(),
             radius: self.attempt.radius,
-            moved: self.moved,
+            moved: self.output.moved,
         }
     }
 
     /// Particles in the columns that will stay.
     pub(super) fn settled(&self) -> usize {
         match self.phase {
-            PhaseState::Generation(_) | PhaseState::Filling => self.front.active().level().settled,
-            _ => self.particles.len(),
+            PhaseState::Generation(_) | PhaseState::Filling => self.tools.front.active().level().settled,
+            _ => self.output.particles.len(),
         }
     }
 
@@ -126,7 +126,7 @@ impl Sampler {
             PhaseState::Idle => 0.0,
             PhaseState::Refinement(refinement) => refinement.fraction(),
             PhaseState::Relaxation => {
-                let relaxed = f64::from(self.relaxation.steps_done()) / relax_steps.max(1.0);
+                let relaxed = f64::from(self.tools.relaxation.steps_done()) / relax_steps.max(1.0);
                 generation + (1.0 - generation) * relaxed
             }
             PhaseState::Audit(_) | PhaseState::Marking(_) | PhaseState::Done(_) => 1.0,

@@ -14,13 +14,13 @@ const MAX_NEWTON_STEPS: u32 = 12;
 const MAX_BRACKET_STEPS: u32 = 38;
 
 /// Largest turn of a Newton step on a circle, as the tangent of half the angle: about 23°.
-const MAX_TURN: f32 = 0.2;
+pub(crate) const MAX_TURN: f32 = 0.2;
 
 /// Smallest cos θ: the circle is searched up to about 100° from the tangent plane.
 pub(crate) const MIN_COS: f32 = -0.18;
 
 /// Smallest sine of the angle between circle and surface at which Newton's method is trusted: about 6°.
-const MIN_CROSSING: f32 = 0.1;
+pub(crate) const MIN_CROSSING: f32 = 0.1;
 
 /// Largest ratio of |f| after a Newton step to |f| before it; above it the bracketed search takes over.
 const MAX_RATIO: f32 = 0.7;

@@ -47,7 +47,7 @@ impl Sampler {
             Input::Start => self.begin_attempt(),
             Input::Refuse => PhaseState::Idle,
             Input::Relax(steps) => match phase {
-                PhaseState::Marking(_) | PhaseState::Done(_) if self.particles.len() > 1 => {
+                PhaseState::Marking(_) | PhaseState::Done(_) if self.output.particles.len() > 1 => {
                     self.relax_again(steps)
                 }
                 _ => phase,
@@ -58,14 +58,15 @@ impl Sampler {
                 | PhaseState::Generation(_)
                 | PhaseState::Search
                 | PhaseState::Filling => {
-                    self.front.active_mut().stop(&mut self.particles);
-                    self.particles = self.coarse.end().unwrap_or(core::mem::take(&mut self.particles));
+                    self.tools.front.active_mut().stop(&mut self.output.particles);
+                    self.output.particles =
+                        self.tools.coarse.end().unwrap_or(core::mem::take(&mut self.output.particles));
                     self.drop_beyond();
                     self.attempt.end_refinement();
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 PhaseState::Relaxation => {
-                    self.moved |= self.relaxation.abandon(&mut self.particles);
+                    self.output.moved |= self.tools.relaxation.abandon(&mut self.output.particles);
                     PhaseState::Marking(StopReason::Cancelled)
                 }
                 // Nothing moves any more, but the audit has not come to its end.
@@ -77,9 +78,9 @@ impl Sampler {
                 }
             },
             Input::Work { field, left } => {
-                let mut memory = core::mem::take(&mut self.memory);
+                let mut memory = core::mem::take(&mut self.tools.memory);
                 let next = self.work(&mut Probe::new(field, &mut memory), left, phase);
-                self.memory = memory;
+                self.tools.memory = memory;
                 next
             }
         };
@@ -102,19 +103,19 @@ impl Sampler {
 
     /// Empties the columns and prepares fronts of the present radius.
     fn begin_attempt(&mut self) -> PhaseState {
-        self.moved = true;
-        self.particles.clear();
-        self.neighbours.clear();
+        self.output.moved = true;
+        self.output.particles.clear();
+        self.tools.neighbours.clear();
         // Growing by doubling would hold twice the columns, and four times while they are copied.
         let expected = Attempt::reserved(self.attempt.expected_count(), &self.settings);
-        self.particles.reserve(expected);
-        self.neighbours.reserve(expected);
+        self.output.particles.reserve(expected);
+        self.tools.neighbours.reserve(expected);
         let mut settings = self.settings;
         if self.attempt.refining.is_some() {
             settings.match_tolerance = refine::MATCH_TOLERANCE;
             settings.sampling = Sampling::Uniform;
         }
-        self.front.reset(&FrontSetup {
+        self.tools.front.reset(&FrontSetup {
             settings: &settings,
             bounds: &self.attempt.front_bounds(&self.bounds),
             survey: &self.survey,
@@ -122,7 +123,7 @@ impl Sampler {
             radii: self.attempt.radii(),
             expected,
         });
-        if self.coarse.seed().is_none() {
+        if self.tools.coarse.seed().is_none() {
             self.counts.seeds = 0;
             (self.counts.left_out, self.counts.ended_early) = (0, false);
             self.counts.front_evaluations = 0;
@@ -134,7 +135,7 @@ impl Sampler {
 
     /// Looks for the next survey point that no particle covers and starts a front there.
     fn find_seed(&mut self, probe: &mut Probe, left: &mut u32, mut cursor: SurveyCursor) -> PhaseState {
-        if let Some((position, normal)) = self.coarse.seed() {
+        if let Some((position, normal)) = self.tools.coarse.seed() {
             let seed = OrientedPoint { position, normal };
             return self.begin_front(probe, seed, None).unwrap_or(PhaseState::Search);
         }
@@ -146,7 +147,7 @@ impl Sampler {
             *left -= 1;
             let point = OrientedPoint { position: self.survey.position[i], normal: self.survey.normal[i] };
             let start = probe.evaluations();
-            let is_seed = !self.front.active_mut().is_covered(probe, &self.particles, point)
+            let is_seed = !self.tools.front.active_mut().is_covered(probe, &self.output.particles, point)
                 && self.survey.is_zero(probe, i);
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if is_seed && let Some(next) = self.begin_front(probe, point, Some(cursor)) {
@@ -164,13 +165,13 @@ impl Sampler {
         seed: OrientedPoint,
         after: Option<SurveyCursor>,
     ) -> Option<PhaseState> {
-        if self.particles.len() >= self.settings.max_particles as usize {
-            self.front.active_mut().level_mut().capped = true;
+        if self.output.particles.len() >= self.settings.max_particles as usize {
+            self.tools.front.active_mut().level_mut().capped = true;
             return Some(PhaseState::Search);
         }
         let is_started = self.with_front(probe, |front, context| front.add_seed(context, seed));
         is_started.then(|| {
-            self.counts.seeds += u32::from(self.coarse.seed().is_none());
+            self.counts.seeds += u32::from(self.tools.coarse.seed().is_none());
             PhaseState::Generation(after)
         })
     }
@@ -178,13 +179,13 @@ impl Sampler {
     /// Lets the front grow until it has met itself, another one or the box everywhere.
     fn grow(&mut self, probe: &mut Probe, left: &mut u32, after: Option<SurveyCursor>) -> PhaseState {
         self.spend_on_front(probe, left, |front, context, budget| front.step(context, budget));
-        if !self.front.active().is_done() {
+        if !self.tools.front.active().is_done() {
             return PhaseState::Generation(after);
         }
         let is_dropped = self.drop_lone_seed(probe, after.is_none());
         self.counts.left_out += u32::from(is_dropped);
         match after {
-            Some(cursor) if !self.front.is_capped() => PhaseState::Seeding(cursor),
+            Some(cursor) if !self.tools.front.is_capped() => PhaseState::Seeding(cursor),
             _ => PhaseState::Search,
         }
     }
@@ -193,7 +194,8 @@ impl Sampler {
     /// Says whether it was.
     fn drop_lone_seed(&mut self, probe: &mut Probe, is_witness: bool) -> bool {
         let is_lone = self.with_front(probe, |front, context| front.has_lone_seed(context.particles));
-        let is_kept = is_lone && is_witness && self.coarse.seed().is_none() && self.is_on_own_piece(probe);
+        let is_kept =
+            is_lone && is_witness && self.tools.coarse.seed().is_none() && self.is_on_own_piece(probe);
         if is_lone && !is_kept {
             self.with_front(probe, |front, context| front.drop_last_seed(context));
         }
@@ -204,16 +206,17 @@ impl Sampler {
     fn is_on_own_piece(&mut self, probe: &mut Probe) -> bool {
         /// The reach of a piece is measured along a few paths.
         const ROOM: f64 = 1.05;
-        let last = self.particles.len() - 1;
+        let last = self.output.particles.len() - 1;
         let Some(field) = probe.field.bounded() else { return false };
-        let Some((seed, reach)) = self.components.small_piece(field, self.particles.radius[last]) else {
+        let Some((seed, reach)) = self.components.small_piece(field, self.output.particles.radius[last])
+        else {
             return false;
         };
         let reach = ROOM * reach;
         let slack = f64::from(2.0 * self.attempt.tolerance(&self.survey).residual);
-        let others = self.front.active_mut().within(seed.position, reach as f32);
+        let others = self.tools.front.active_mut().within(seed.position, reach as f32);
         let others = others.iter().map(|near| near.index as usize).filter(|&j| j != last);
-        !holds_any(field, &self.particles, (seed, reach), others, slack)
+        !holds_any(field, &self.output.particles, (seed, reach), others, slack)
     }
 
     /// Calls a method of the front with what it works on.
@@ -225,10 +228,10 @@ impl Sampler {
         let mut context = FrontContext {
             probe,
             sizing: self.attempt.sizing.as_ref(),
-            neighbours: &mut self.neighbours,
-            particles: &mut self.particles,
+            neighbours: &mut self.tools.neighbours,
+            particles: &mut self.output.particles,
         };
-        call(self.front.active_mut(), &mut context)
+        call(self.tools.front.active_mut(), &mut context)
     }
 
     /// Calls a method of the front that uses up the budget, and counts its evaluations.
@@ -248,10 +251,10 @@ impl Sampler {
     /// Looks for the next witness that no particle covers and starts a front there. After the last one the surface is covered
     /// but for the gaps.
     fn search_components(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
-        if self.front.is_capped() {
+        if self.tools.front.is_capped() {
             return self.end_generation(probe);
         }
-        if self.coarse.seed().is_some() {
+        if self.tools.coarse.seed().is_some() {
             return self.begin_filling(probe);
         }
         let tolerance = self.attempt.tolerance(&self.survey);
@@ -272,12 +275,12 @@ impl Sampler {
             let Some(seed) = witness else {
                 return self.begin_filling(probe);
             };
-            let rule = self.front.active().rule();
+            let rule = self.tools.front.active().rule();
             let mut near = self.components.take_near();
             let point = OrientedPoint { position: seed.position, normal: seed.normal };
-            self.front.active_mut().list_cover(&self.particles, point, &mut near);
+            self.tools.front.active_mut().list_cover(&self.output.particles, point, &mut near);
             let start = probe.evaluations();
-            let cover = self.components.cover(probe, &self.particles, seed, near, (tolerance, rule));
+            let cover = self.components.cover(probe, &self.output.particles, seed, near, (tolerance, rule));
             self.counts.seeding_evaluations += probe.evaluations() - start;
             if cover == Cover::Bare
                 && let Some(next) = self.begin_front(probe, point, None)
@@ -292,20 +295,20 @@ impl Sampler {
     /// costs the same whether it places a particle or none: without a bound, a radius larger than the distances between
     /// thousands of sheets makes a long run of few particles.
     fn has_too_many_lone_seeds(&mut self) -> bool {
-        let is_over = self.counts.left_out as usize > MOST_LONE_SEEDS + self.particles.len();
+        let is_over = self.counts.left_out as usize > MOST_LONE_SEEDS + self.output.particles.len();
         self.counts.ended_early |= is_over;
         is_over
     }
 
     fn begin_filling(&mut self, probe: &mut Probe) -> PhaseState {
-        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.front.active_mut().begin_filling();
+        let has_gaps = self.settings.gaps == GapPolicy::Fill && self.tools.front.active_mut().begin_filling();
         if has_gaps { PhaseState::Filling } else { self.end_generation(probe) }
     }
 
     /// Fills gaps until no particle fits into any.
     fn fill(&mut self, probe: &mut Probe, left: &mut u32) -> PhaseState {
         self.spend_on_front(probe, left, |front, context, budget| front.fill(context, budget));
-        let front = self.front.active_mut();
+        let front = self.tools.front.active_mut();
         if !front.is_filled() || front.begin_filling() {
             PhaseState::Filling
         } else {
@@ -315,7 +318,7 @@ impl Sampler {
 
     /// Decides what follows once the surface is covered: another attempt, the relaxation, or the end.
     fn end_generation(&mut self, probe: &mut Probe) -> PhaseState {
-        let count = self.particles.len();
+        let count = self.output.particles.len();
         if count == 0 {
             return self.begin_audit(match self.survey.absence {
                 Absence::Constant => StopReason::Constant,
@@ -326,10 +329,10 @@ impl Sampler {
         if let Some(next) = self.begin_refinement(probe) {
             return next;
         }
-        if !self.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
+        if !self.tools.front.is_capped() && self.attempt.is_corrected(&self.settings, count) {
             return self.begin_attempt();
         }
-        if self.front.active().level().fates.added == 0 && !self.front.is_capped() {
+        if self.tools.front.active().level().fates.added == 0 && !self.tools.front.is_capped() {
             self.begin_audit(StopReason::OneParticle)
         } else if self.settings.relax_steps == 0 && self.settings.sampling == Sampling::Uniform {
             self.begin_audit(self.reason_for_end())
@@ -345,7 +348,7 @@ impl Sampler {
         let Refining { halvings, sizing, bend, failures, .. } = self.attempt.refining.as_mut()?;
         let next = if let Some(point) = self.components.singular().first() {
             Err(Refusal::Singular { at: point.position.as_vec3().into() })
-        } else if self.front.is_capped() {
+        } else if self.tools.front.is_capped() {
             Err(Refusal::Full)
         } else {
             let witnesses = self.components.points().iter().map(|seed| seed.position);
@@ -356,7 +359,7 @@ impl Sampler {
                 bend: *bend,
                 failures: *failures,
             };
-            self.coarse.take_in(probe.field, &surface, &mut self.particles, target)
+            self.tools.coarse.take_in(probe.field, &surface, &mut self.output.particles, target)
         };
         Some(match next {
             Ok(Next::Front(fewer)) => {
@@ -364,11 +367,11 @@ impl Sampler {
                 self.begin_attempt()
             }
             Ok(Next::Refine(components)) => {
-                self.front.release();
+                self.tools.front.release();
                 // They are those of the front.
-                self.neighbours.clear();
+                self.tools.neighbours.clear();
                 // The last front was one of several.
-                self.moved |= self.coarse.are_several;
+                self.output.moved |= self.tools.coarse.are_several;
                 self.drop_beyond();
                 PhaseState::Refinement(components)
             }
@@ -379,8 +382,8 @@ impl Sampler {
     /// Tries a front of half the radius, or goes back to one of the wanted radius. At full resolution a front pays only where it
     /// leaves coarser ones to other components.
     fn refuse(&mut self, refusal: Refusal) -> PhaseState {
-        let least = if self.coarse.are_several { 0 } else { 1 };
-        self.coarse.end();
+        let least = if self.tools.coarse.are_several { 0 } else { 1 };
+        self.tools.coarse.end();
         match &mut self.attempt.refining {
             Some(refining) if refining.halvings > least && refusal.is_coarse() => refining.halvings -= 1,
             refining => {
@@ -396,7 +399,7 @@ impl Sampler {
     fn refine(&mut self, probe: &mut Probe, left: &mut u32, mut refinement: Box<Components>) -> PhaseState {
         let before = refinement.evaluations();
         let sizing = self.attempt.refining.as_ref().and_then(|refining| refining.sizing.as_ref());
-        let step = refinement.step(probe.field, sizing, &mut self.particles, *left);
+        let step = refinement.step(probe.field, sizing, &mut self.output.particles, *left);
         let evaluations = refinement.evaluations() - before;
         probe.count(evaluations);
         self.counts.generation_evaluations += evaluations;
@@ -412,12 +415,12 @@ impl Sampler {
             }
             Ok((units, has_changed)) => {
                 *left = left.saturating_sub(units);
-                self.moved |= has_changed;
+                self.output.moved |= has_changed;
                 if !refinement.is_done() {
                     return PhaseState::Refinement(refinement);
                 }
                 self.counts.refined_levels = Some(refinement.most_halvings());
-                self.corners = refinement.into_corners();
+                self.output.corners = refinement.into_corners();
                 self.attempt.end_refinement();
                 self.begin_audit(StopReason::Complete)
             }
@@ -427,17 +430,17 @@ impl Sampler {
     /// Drops the particles of a coarse front that has grown beyond the box.
     fn drop_beyond(&mut self) {
         if self.attempt.refining.is_some() {
-            let count = self.particles.len();
-            self.particles.keep_within(&self.bounds);
-            self.moved |= self.particles.len() < count;
+            let count = self.output.particles.len();
+            self.output.particles.keep_within(&self.bounds);
+            self.output.moved |= self.output.particles.len() < count;
         }
     }
 
     fn begin_relaxation(&mut self) -> PhaseState {
-        self.corners = Vec::new();
-        self.front.release();
-        self.particles.shrink();
-        self.neighbours.shrink();
+        self.output.corners = Vec::new();
+        self.tools.front.release();
+        self.output.particles.shrink();
+        self.tools.neighbours.shrink();
         let tolerance = self.attempt.tolerance(&self.survey);
         let law = match self.settings.sampling {
             Sampling::Uniform => RepulsionLaw::Gaussian { radius: self.attempt.radius as f32, tolerance },
@@ -447,14 +450,15 @@ impl Sampler {
             },
         };
         let steps = self.settings.relax_steps;
-        let limits = Limits { bounds: self.bounds, largest_lift: self.front.active().rule().largest_lift() };
-        self.relaxation.begin(law, limits, steps, &self.particles, &mut self.neighbours);
+        let limits =
+            Limits { bounds: self.bounds, largest_lift: self.tools.front.active().rule().largest_lift() };
+        self.tools.relaxation.begin(law, limits, steps, &self.output.particles, &mut self.tools.neighbours);
         PhaseState::Relaxation
     }
 
     /// Goes on relaxing the particles of a finished run.
     fn relax_again(&mut self, steps: u32) -> PhaseState {
-        self.settings.relax_steps = self.relaxation.steps_done() + steps;
+        self.settings.relax_steps = self.tools.relaxation.steps_done() + steps;
         self.begin_relaxation()
     }
 
@@ -462,10 +466,16 @@ impl Sampler {
         let start = probe.evaluations();
         let sizing = self.attempt.sizing.as_ref();
         let slice = (*left).min(RELAXATION_SLICE);
-        self.moved |= self.relaxation.step(probe, sizing, &mut self.neighbours, &mut self.particles, slice);
+        self.output.moved |= self.tools.relaxation.step(
+            probe,
+            sizing,
+            &mut self.tools.neighbours,
+            &mut self.output.particles,
+            slice,
+        );
         *left = 0;
         self.counts.relaxation_evaluations += probe.evaluations() - start;
-        if self.relaxation.is_done() {
+        if self.tools.relaxation.is_done() {
             self.begin_audit(self.reason_for_end())
         } else {
             PhaseState::Relaxation
@@ -484,8 +494,8 @@ impl Sampler {
         let start = probe.evaluations();
         let unused = self.components.audit(
             probe,
-            &self.particles,
-            (self.attempt.radius, tolerance, self.front.active().rule()),
+            &self.output.particles,
+            (self.attempt.radius, tolerance, self.tools.front.active().rule()),
             slice,
         );
         self.counts.seeding_evaluations += probe.evaluations() - start;
@@ -498,14 +508,14 @@ impl Sampler {
     }
 
     fn reason_for_end(&self) -> StopReason {
-        if self.front.is_capped() { StopReason::Cap } else { StopReason::Complete }
+        if self.tools.front.is_capped() { StopReason::Cap } else { StopReason::Complete }
     }
 
     /// Marks the particles next to singular points, where there are any.
     fn mark(&mut self, field: &mut dyn Field, reason: StopReason) -> PhaseState {
         if !self.components.singular().is_empty() {
-            singular::mark(field, self.components.singular(), &mut self.particles);
-            self.moved = true;
+            singular::mark(field, self.components.singular(), &mut self.output.particles);
+            self.output.moved = true;
         }
         PhaseState::Done(reason)
     }

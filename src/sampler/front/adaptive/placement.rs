@@ -5,7 +5,7 @@
 use crate::differential::{Curvature, curvatures_of};
 use crate::math::Sym3;
 use crate::sampler::probe::{BATCH, Probe};
-use crate::sampler::projection::{Circle, Landing, MIN_COS, Tolerance, turned};
+use crate::sampler::projection::{Circle, Landing, MAX_TURN, MIN_COS, MIN_CROSSING, Tolerance, turned};
 use crate::sampler::sizing::Sizing;
 use glam::Vec3;
 
@@ -22,14 +22,8 @@ const MAX_STEPS: u32 = 8;
 /// Bound for the slope of the radius along the way from the parent.
 const MAX_SLOPE: f32 = 0.7;
 
-/// Largest turn of a step, in half-angle tangents.
-const MAX_TURN: f32 = 0.2;
-
 /// Largest change of the distance in a step, as a share of the distance.
 const MAX_PULL: f32 = 0.3;
-
-/// Newton's method is used while the circle crosses the surface at more than about 6°: this is the sine of that angle.
-const MIN_CROSSING: f32 = 0.1;
 
 /// Rounds of the safeguarded search. Each finds a root on the circle, then corrects the distance.
 const MAX_ROUNDS: u32 = 6;
