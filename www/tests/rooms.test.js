@@ -7,7 +7,7 @@ import { expect, test } from 'vitest';
 const SRC = fileURLToPath(new URL('../src', import.meta.url));
 
 /** What a panel may know of the engine; it is handed the engine itself. */
-const ENGINE_FACE = ['engine/types', 'engine/columns'];
+const ENGINE_FACE = ['engine/types', 'engine/columns', 'engine/share/base64url'];
 
 /**
  * Who may use whom, by path below src/. The longest entry that fits a file counts; every file may use its own room. What is not

@@ -1,7 +1,8 @@
 /** The two drawings of a particle: its tangent plane from above, and the plane of a slot from the side. */
 import { formatCount } from '../ui/format.js';
+import { s } from '../ui/svg.js';
 import { dot, inPlane, slotPlace } from './geometry.js';
-import { fateShape, label, line, ring, s, segments } from './svg.js';
+import { fateShape, label, line, ring, segments } from './svg.js';
 import { FATES, inRadii, theta } from './words.js';
 
 /**

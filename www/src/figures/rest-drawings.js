@@ -1,8 +1,9 @@
 /** Draws a relaxation step of one particle: the pushes on it and their sum, and the move enlarged. */
 import { formatCount } from '../ui/format.js';
+import { s } from '../ui/svg.js';
 import { dot, inPlane, tangentsOf } from './geometry.js';
 import { pushWords } from './rest.js';
-import { label, line, ring, s } from './svg.js';
+import { label, line, ring } from './svg.js';
 
 /**
  * @typedef {import('./geometry.js').Plane} Plane

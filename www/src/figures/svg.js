@@ -1,17 +1,5 @@
-/** Creates elements of drawings. In a drawing y points up and lengths are in radii. */
-import { setAttribute } from '../ui/dom.js';
-
-/**
- * @param {string} tag
- * @param {{ [name: string]: unknown }} attributes
- * @param {...(Node | string | null)} children
- */
-export function s(tag, attributes, ...children) {
-  const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  for (const [name, value] of Object.entries(attributes)) setAttribute(element, name, value);
-  element.append(...children.filter((child) => child !== null));
-  return element;
-}
+/** Parts of drawings, in which y points up and lengths are in radii. */
+import { s } from '../ui/svg.js';
 
 /** Writes a coordinate with a length that does not depend on the number. @param {number} value */
 const short = (value) => String(Math.round(value * 1e4) / 1e4);

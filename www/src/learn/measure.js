@@ -1,18 +1,11 @@
 /** What the figures say about a run, worked out from its particles. */
 import { NO_PARENT } from '../engine/columns.js';
+import { between, createGrid } from '../ui/neighbours.js';
 
 /**
  * @typedef {import('./lab.js').Run} Run
  * @typedef {import('../engine/types.js').LessonParticles} LessonParticles
  */
-
-/** @param {ArrayLike<number>} positions @param {number} i @param {number} j */
-export const distance = (positions, i, j) =>
-  Math.hypot(
-    positions[3 * i] - positions[3 * j],
-    positions[3 * i + 1] - positions[3 * j + 1],
-    positions[3 * i + 2] - positions[3 * j + 2],
-  );
 
 /**
  * Distance of each particle to its nearest one, over the sum of their radii: 1 where two discs touch. Infinite if there is none
@@ -20,39 +13,19 @@ export const distance = (positions, i, j) =>
  * @param {LessonParticles} particles
  */
 export function nearestDistances({ positions, radii }) {
-  const cell = 2.5 * Math.max(...radii);
-  /** @type {Map<string, number[]>} */
-  const cells = new Map();
-  const at = (/** @type {number} */ i) => [0, 1, 2].map((k) => Math.floor(positions[3 * i + k] / cell));
-  for (let i = 0; i < radii.length; i += 1) {
-    const key = at(i).join();
-    const list = cells.get(key);
-    if (list) list.push(i);
-    else cells.set(key, [i]);
-  }
+  const grid = createGrid(positions, radii.keys(), 2.5 * Math.max(...radii));
   return Float32Array.from(radii, (radius, i) => {
-    const [x, y, z] = at(i);
     let least = Infinity;
-    for (let k = 0; k < 27; k += 1) {
-      const key = [x + (k % 3) - 1, y + (Math.floor(k / 3) % 3) - 1, z + Math.floor(k / 9) - 1].join();
-      for (const j of cells.get(key) ?? [])
-        if (j !== i) least = Math.min(least, distance(positions, i, j) / (radius + radii[j]));
-    }
+    for (const ring of [0, 1])
+      for (const j of grid.around(i, ring))
+        if (j !== i) least = Math.min(least, between(positions, i, j) / (radius + radii[j]));
     return least;
   });
 }
 
 /** Distance of each particle to its parent over 2r, as placed; 1 for a seed. @param {LessonParticles} placed @param {number} radius */
 export const parentDistances = ({ positions, parents }, radius) =>
-  Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : distance(positions, i, parent) / (2 * radius)));
-
-/** Mean and standard deviation of the finite values. @param {ArrayLike<number>} values */
-export function spread(values) {
-  const finite = Array.from(values).filter(Number.isFinite);
-  const mean = finite.reduce((sum, value) => sum + value, 0) / Math.max(1, finite.length);
-  const variance = finite.reduce((sum, value) => sum + (value - mean) ** 2, 0) / Math.max(1, finite.length);
-  return { mean, deviation: Math.sqrt(variance), least: Math.min(...finite) };
-}
+  Float32Array.from(parents, (parent, i) => (parent === NO_PARENT ? 1 : between(positions, i, parent) / (2 * radius)));
 
 /** Number of particles of each level of the first front. @param {LessonParticles} particles */
 export function ringsOf({ levels, fronts }) {

@@ -1,9 +1,10 @@
 /** Two runs side by side, seen by one camera. */
 import { fill, h } from '../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../ui/format.js';
+import { spread } from '../ui/neighbours.js';
 import { tableOf } from '../ui/table.js';
 import { reasonOf } from './figure.js';
-import { nearestDistances, parentDistances, spread } from './measure.js';
+import { nearestDistances, parentDistances } from './measure.js';
 import { createScale } from './parts.js';
 import { byLevel, byValue, Orbit, Picture } from './picture.js';
 

@@ -1,7 +1,8 @@
 /** Controls and small charts that several figures have. */
-import { s } from '../figures/svg.js';
+
 import { h, reducedMotion, uniqueId } from '../ui/dom.js';
 import { icon } from '../ui/icons.js';
+import { s } from '../ui/svg.js';
 
 /**
  * A native range with its name and its value in words.

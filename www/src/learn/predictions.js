@@ -3,12 +3,13 @@ import { momentAt } from '../figures/moment.js';
 import { openParticle } from '../figures/particle.js';
 import { inRadii } from '../figures/words.js';
 import { formatCount, formatFixed, formatSignificant, plural } from '../ui/format.js';
+import { between } from '../ui/neighbours.js';
 import { adaptiveRun } from './adaptive.js';
 import { openBend } from './chapters/circle.js';
 import { costOf } from './chapters/cost.js';
 import { widestHole } from './chapters/rest.js';
 import { NoSurface } from './lab.js';
-import { asFineEverywhere, distance, energiesOf, ringsOf, stepOfRest } from './measure.js';
+import { asFineEverywhere, energiesOf, ringsOf, stepOfRest } from './measure.js';
 
 /** @typedef {import('./predict.js').Prediction} Prediction */
 
@@ -147,7 +148,7 @@ const hole = {
     const last = placed.levels.reduce((most, own) => Math.max(most, own), 0);
     const words = `The widest hole lies beside the particle with the ring, on level ${level} of ${last}.`;
     if (typeof guess !== 'number') return { right: widest.particle, words };
-    const far = distance(placed.positions, guess, widest.particle) / (2 * widest.radius);
+    const far = between(placed.positions, guess, widest.particle) / (2 * widest.radius);
     return {
       right: widest.particle,
       words: `${words} You pressed ${formatFixed(far, 1)} particle distances away from it.`,

@@ -2,6 +2,7 @@
  * A surface in the address of the lesson's page: its formula, its parameters and its box, and the way back to the page from which it
  * comes. What is read from an address may be anything, so every part of it is checked.
  */
+import { fromBase64url, toBase64url } from '../engine/share/base64url.js';
 
 /**
  * @typedef {import('../engine/types.js').Bounds} Bounds
@@ -18,29 +19,14 @@
 const LONGEST = 65_536;
 const MOST_PARAMETERS = 64;
 
-/** @param {string} text */
-function toBase64url(text) {
-  const bytes = new TextEncoder().encode(text);
-  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''))
-    .replaceAll('+', '-')
-    .replaceAll('/', '_')
-    .replace(/=+$/, '');
-}
-
-/** @param {string} text */
-function fromBase64url(text) {
-  const bytes = Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
-  return new TextDecoder('utf-8', { fatal: true }).decode(bytes);
-}
-
 /** Writes any plain data for an address. @param {unknown} data */
-export const packed = (data) => toBase64url(JSON.stringify(data));
+export const packed = (data) => toBase64url(new TextEncoder().encode(JSON.stringify(data)));
 
 /** Reads what `packed` has written; null if it is damaged. @param {string} text @returns {any} */
 export function unpacked(text) {
   if (text.length > LONGEST) return null;
   try {
-    return JSON.parse(fromBase64url(text));
+    return JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(fromBase64url(text)));
   } catch {
     return null;
   }

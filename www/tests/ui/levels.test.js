@@ -5,8 +5,9 @@ import { setLocale } from '../../src/ui/format.js';
 import { fatesOf, movesOf } from '../../src/ui/levels/figures.js';
 import { moveOf } from '../../src/ui/levels/keys.js';
 import { drawnAt, isOutOfSight, placeOf, stepsOf } from '../../src/ui/levels/levels.js';
-import { BINS, degreeBins, hexagonalCount, meanOf, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
+import { BINS, degreeBins, hexagonalCount, nearestBins, nearestOver } from '../../src/ui/levels/spread.js';
 import { describeLevel, flatCount, levelTable, shortOf } from '../../src/ui/levels/table.js';
+import { spread } from '../../src/ui/neighbours.js';
 
 beforeAll(() => setLocale('en-GB'));
 
@@ -182,8 +183,8 @@ describe('how even the particles are', () => {
     const found = nearestOver(Float32Array.of(0, 0, 0, 99, 0, 0), Float32Array.of(0.5, 0.5), [0, 1]);
     expect([...found]).toEqual([Infinity, Infinity]);
     expect(nearestBins(found).reduce((a, b) => a + b)).toBe(0);
-    expect(meanOf(found)).toEqual({ mean: 0, deviation: 0 });
-    expect(meanOf([1, 3, Infinity])).toEqual({ mean: 2, deviation: 1 });
+    expect(spread(found)).toMatchObject({ mean: 0, deviation: 0 });
+    expect(spread([1, 3, Infinity])).toMatchObject({ mean: 2, deviation: 1 });
   });
 
   test('counts what is beyond the ends in the last bins', () => {

@@ -188,7 +188,7 @@ test('the report explains its figures and shows them before and after relaxation
   await expect(page.locator('#explain')).toBeHidden();
   const cells = term.locator('xpath=ancestor::tr').locator('td');
   for (const i of [0, 1]) await expect(cells.nth(i)).toHaveText(/\d/);
-  await expect(page.locator('.plot canvas')).toBeVisible();
+  await expect(page.locator('.plot svg path').first()).toBeVisible();
   await page.getByText('As a table').click();
   expect(await page.locator('.histogram tbody tr').count()).toBeGreaterThan(2);
 });

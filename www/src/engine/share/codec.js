@@ -7,6 +7,7 @@
  *
  * @module
  */
+import { fromBase64url, toBase64url } from './base64url.js';
 import { completeSettings, defaultState, sanitize, surfaceOf } from './state.js';
 
 /**
@@ -67,19 +68,6 @@ export function difference(state, description) {
   return out;
 }
 
-/** @param {Uint8Array} bytes */
-function base64url(bytes) {
-  let text = '';
-  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
-  return btoa(text).replaceAll('+', '-').replaceAll('/', '_').replace(/=+$/, '');
-}
-
-/** @param {string} text @returns {Uint8Array<ArrayBuffer>} */
-function fromBase64url(text) {
-  if (!/^[A-Za-z0-9_-]*$/.test(text)) throw new Error('not base64url');
-  return Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
-}
-
 /** @param {Uint8Array<ArrayBuffer>} bytes @param {CompressionStream | DecompressionStream} stream @param {number} limit */
 async function through(bytes, stream, limit) {
   const reader = new Blob([bytes]).stream().pipeThrough(stream).getReader();
@@ -114,10 +102,10 @@ export async function encode(state, description) {
   const changes = difference(state, description);
   if (Object.keys(changes).length === 0) return '';
   const bytes = new TextEncoder().encode(JSON.stringify(changes));
-  const plain = `#v${VERSION}.j.${base64url(bytes)}`;
+  const plain = `#v${VERSION}.j.${toBase64url(bytes)}`;
   if (bytes.length < WORTH_DEFLATING || typeof CompressionStream === 'undefined') return plain;
   const packed = await through(bytes, new CompressionStream('deflate-raw'), Infinity);
-  const deflated = `#v${VERSION}.z.${base64url(packed)}`;
+  const deflated = `#v${VERSION}.z.${toBase64url(packed)}`;
   return deflated.length < plain.length ? deflated : plain;
 }
 

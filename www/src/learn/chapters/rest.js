@@ -2,7 +2,8 @@
 import { effect } from '@preact/signals-core';
 import { h } from '../../ui/dom.js';
 import { formatCount, formatFixed, formatSignificant } from '../../ui/format.js';
-import { energiesOf, nearestDistances, spread } from '../measure.js';
+import { spread } from '../../ui/neighbours.js';
+import { energiesOf, nearestDistances } from '../measure.js';
 import { createBars, createPlay, createRange, createScale } from '../parts.js';
 import { byLevel, byMark, byValue, Orbit, Picture } from '../picture.js';
 

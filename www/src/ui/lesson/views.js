@@ -3,10 +3,11 @@ import { effect } from '@preact/signals-core';
 import { adaptivePlane } from '../../figures/adaptive.js';
 import { isSearched, lens, profileOf, tangentPlane } from '../../figures/drawings.js';
 import { isAdaptive } from '../../figures/moment.js';
-import { fateShape, s } from '../../figures/svg.js';
+import { fateShape } from '../../figures/svg.js';
 import { ADAPTIVE, ALGORITHM, FATES, inDegrees, inRadii, lineOf } from '../../figures/words.js';
 import { fill, h, uniqueId } from '../dom.js';
 import { formatCount, formatSignificant, MISSING } from '../format.js';
+import { s } from '../svg.js';
 import { createRestViews } from './rest.js';
 
 /**

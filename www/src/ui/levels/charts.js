@@ -1,31 +1,20 @@
 /** Charts of the levels and of the relaxation above the timeline. A press on one, or a drag, leads to that place. Loaded when asked for. */
 import { computed, effect, signal } from '@preact/signals-core';
+import { draw, footOf, scaleOf } from '../chart.js';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed, formatShare, formatSignificant, MISSING, plural } from '../format.js';
+import { spread as statisticsOf } from '../neighbours.js';
 import { clamp } from '../scale.js';
 import { loadSheet } from '../sheet.js';
 import { tableOf } from '../table.js';
 import sheet from './charts.css?url';
 import { fatesOf, movesOf } from './figures.js';
-import { BINS, degreeBins, hexagonalCount, meanOf, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
+import { BINS, degreeBins, hexagonalCount, NEIGHBOURS, nearestBins, nearestOver, SPAN } from './spread.js';
 
 /** @typedef {import('../../engine/types.js').Engine} Engine */
 /** @typedef {import('./player.js').Player} Player */
-/**
- * What a chart shows: stacked bars from 0 up, or a line. `first` is the number of the first place.
- * @typedef {object} Chart
- * @property {string} title
- * @property {'bars' | 'line'} kind
- * @property {{ fate: string, name: string, counts: number[] }[]} rows
- * @property {number} first
- * @property {number | null} at  the place that is shown, null for none of these
- * @property {string} value  of that place, or of all
- * @property {string} label  the chart in words
- * @property {(value: number) => string} format
- * @property {string[]} [ends]  what stands below its ends, in place of the numbers of the places
- * @property {number} [ideal]  where the ideal is, as a share of the width
- * @property {string} [missing]  why nothing is known
- */
+/** @typedef {import('../chart.js').Drawn & {title: string, value: string, label: string, missing?: string}} Chart  `value`: of the place that is
+ * shown, or of all; `label`: the chart in words; `missing`: why nothing is known */
 /** Distances of the particles that are shown to their nearest, over 2r, and which they are in words. @typedef {{ nearest: ArrayLike<number>, words: string } | null} Spread */
 
 /** The most particles whose distances are worked out here, which takes some hundredths of a second. Those of the end of a run are measured by the core. */
@@ -129,7 +118,7 @@ function spreadOf(columns, { upTo, step }) {
 /** @param {Spread} spread @returns {Chart} */
 function nearestChart(spread) {
   const counts = spread ? nearestBins(spread.nearest) : [];
-  const { mean, deviation } = meanOf(spread?.nearest ?? []);
+  const { mean, deviation } = statisticsOf(spread?.nearest ?? []);
   const value = spread ? `${formatFixed(mean, 3)} ± ${formatFixed(deviation, 3)}` : '';
   const [low, high] = SPAN;
   return {
@@ -269,8 +258,8 @@ function chartOf(read, seek) {
     value.textContent = chart.value;
     plot.setAttribute('aria-label', places > 0 ? chart.label : `${chart.title}: not known`);
     if (places > 0) {
-      fill(plot, draw(chart, places), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)));
-      fill(foot, ...footOf(chart, places));
+      fill(plot, draw(chart), h('span', { class: 'chart-most', 'aria-hidden': 'true' }, scaleOf(chart)));
+      fill(foot, ...footOf(chart));
     } else {
       fill(plot, h('p', { class: 'quiet' }, chart.missing ?? NOTHING));
       fill(foot);
@@ -290,68 +279,6 @@ function chartOf(read, seek) {
     if (seek && plot.hasPointerCapture(event.pointerId)) seek(at(event));
   });
   return element;
-}
-
-/** Sums of a stack at each place. @param {Chart['rows']} rows @param {number} places */
-const sums = (rows, places) =>
-  Array.from({ length: places }, (_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
-
-/** Ends of the scale. @param {Chart} chart @returns {[number, number]} */
-function endsOf({ kind, rows }) {
-  const values = sums(rows, rows[0].counts.length);
-  const most = Math.max(...values, 1e-12);
-  if (kind === 'bars') return [0, most];
-  const least = Math.min(...values);
-  // A line that does not change lies in the middle.
-  return most > least ? [least, most] : [0, 2 * most];
-}
-
-/** @param {Chart} chart */
-const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
-
-/** What stands below: the first and last place, and the fates where there are several. @param {Chart} chart @param {number} places */
-function footOf({ rows, first, ends: named }, places) {
-  if (named) return named.map((text) => h('span', null, text));
-  const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + places - 1))];
-  if (rows.length < 2) return ends;
-  const key = rows.map(({ fate, name }) => h('span', null, h('i', { class: `swatch fate-${fate}` }), name));
-  return [ends[0], h('span', { class: 'chart-key' }, key), ends[1]];
-}
-
-const SVG = 'http://www.w3.org/2000/svg';
-
-/** @param {string} tag @param {Record<string, string | number>} attributes */
-function s(tag, attributes) {
-  const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
-  return element;
-}
-
-/** @param {Chart} chart @param {number} places */
-function draw(chart, places) {
-  const { kind, rows, first, at, ideal } = chart;
-  const [low, high] = endsOf(chart);
-  const y = (/** @type {number} */ value) => +(1 - 0.94 * ((value - low) / (high - low))).toFixed(4);
-  const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
-  if (at !== null && at >= first && at < first + places)
-    svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));
-  if (kind === 'line') {
-    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${(0.06 + 0.9 * y(value)).toFixed(4)}`);
-    svg.append(s('path', { class: 'chart-line', d: `M${points.join('L')}` }));
-    svg.append(s('path', { class: 'chart-dots', d: points.map((point) => `M${point}h0`).join('') }));
-    return svg;
-  }
-  const below = new Array(places).fill(0);
-  for (const { fate, counts } of rows) {
-    const d = counts.map((count, k) => {
-      const from = below[k];
-      below[k] += count;
-      return count > 0 ? `M${k + 0.1} ${y(from)}V${y(below[k])}h.8V${y(from)}z` : '';
-    });
-    svg.append(s('path', { class: `fate-${fate}`, d: d.join('') }));
-  }
-  if (ideal !== undefined) svg.append(s('path', { class: 'chart-ideal', d: `M${ideal * places} 0V1` }));
-  return svg;
 }
 
 /** The charts as tables. @param {import('./table.js').LevelTable} table @param {readonly number[]} energy @param {readonly number[]} moves */

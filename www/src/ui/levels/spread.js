@@ -1,4 +1,5 @@
 /** How even the particles are that are shown: distances to the nearest, and numbers of neighbours. */
+import { between, createGrid } from '../neighbours.js';
 
 /** Distances over 2r that the histogram spans, with its number of bins; what is beyond counts in the last one on its side. */
 export const SPAN = /** @type {const} */ ([0.6, 1.2]);
@@ -10,9 +11,6 @@ export const NEIGHBOURS = /** @type {const} */ ([3, 9]);
 const CELL = 2.2;
 const MOST_RINGS = 8;
 
-/** A number for a cell. Two cells may share one: then some particles are compared in vain. @param {number} x @param {number} y @param {number} z */
-const keyOf = (x, y, z) => (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) >>> 0;
-
 /**
  * Returns the distance of each of some particles to the nearest of them, over the diameter of its own disc; infinite where there is none
  * within eight cells.
@@ -20,35 +18,15 @@ const keyOf = (x, y, z) => (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Ma
  */
 export function nearestOver(positions, radii, chosen) {
   const cell = (CELL * chosen.reduce((sum, i) => sum + radii[i], 0)) / Math.max(1, chosen.length);
-  const cellOf = (/** @type {number} */ i) => [0, 1, 2].map((k) => Math.floor(positions[3 * i + k] / cell));
-  /** @type {Map<number, number[]>} */
-  const cells = new Map();
-  for (const i of chosen) {
-    const [x, y, z] = cellOf(i);
-    const list = cells.get(keyOf(x, y, z));
-    if (list) list.push(i);
-    else cells.set(keyOf(x, y, z), [i]);
-  }
+  const grid = createGrid(positions, chosen, cell);
   return Float32Array.from(chosen, (i) => {
-    const [x, y, z] = cellOf(i);
     let least = Infinity;
     // What lies beyond the cells that have been looked at is farther away than their ring is wide.
-    for (let ring = 1; ring <= MOST_RINGS && least > (ring - 1) * cell; ring += 1) {
-      for (let dx = -ring; dx <= ring; dx += 1)
-        for (let dy = -ring; dy <= ring; dy += 1)
-          for (let dz = -ring; dz <= ring; dz += 1) {
-            const isOld = Math.max(Math.abs(dx), Math.abs(dy), Math.abs(dz)) < ring && ring > 1;
-            if (isOld) continue;
-            for (const j of cells.get(keyOf(x + dx, y + dy, z + dz)) ?? [])
-              if (j !== i) least = Math.min(least, between(positions, i, j));
-          }
-    }
+    for (let ring = 0; ring <= MOST_RINGS && least > Math.max(0, ring - 1) * cell; ring += 1)
+      for (const j of grid.around(i, ring)) if (j !== i) least = Math.min(least, between(positions, i, j));
     return least / (2 * radii[i]);
   });
 }
-
-/** @param {ArrayLike<number>} p @param {number} i @param {number} j */
-const between = (p, i, j) => Math.hypot(p[3 * i] - p[3 * j], p[3 * i + 1] - p[3 * j + 1], p[3 * i + 2] - p[3 * j + 2]);
 
 /** Counts distances over 2r in bins. @param {ArrayLike<number>} nearest */
 export function nearestBins(nearest) {
@@ -85,11 +63,3 @@ export function degreeBins(valence) {
  * @param {number} area @param {number} radius
  */
 export const hexagonalCount = (area, radius) => area / (2 * Math.sqrt(3) * radius ** 2);
-
-/** Mean and standard deviation of the finite ones. @param {ArrayLike<number>} values */
-export function meanOf(values) {
-  const finite = Array.from(values).filter(Number.isFinite);
-  const over = 1 / Math.max(1, finite.length);
-  const mean = over * finite.reduce((sum, value) => sum + value, 0);
-  return { mean, deviation: Math.sqrt(over * finite.reduce((sum, value) => sum + (value - mean) ** 2, 0)) };
-}

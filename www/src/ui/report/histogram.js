@@ -1,5 +1,6 @@
 /** Shows the distribution of the nearest distances, as a plot and as a table. */
 import { effect } from '@preact/signals-core';
+import { draw, footOf } from '../chart.js';
 import { fill, h } from '../dom.js';
 import { formatCount, formatFixed } from '../format.js';
 import { coarsen, overDiameters, trim } from './bins.js';
@@ -17,8 +18,9 @@ const IDEAL = 1;
  * @param {import('@preact/signals-core').ReadonlySignal<Report | null>} report
  * @param {import('../../engine/types.js').Engine} engine
  */
-export function createHistogram(report, { theme, columns }) {
+export function createHistogram(report, { columns }) {
   const plot = h('div', { class: 'plot', 'aria-hidden': 'true' });
+  const foot = h('div', { class: 'plot-foot', 'aria-hidden': 'true' });
   const table = h('tbody');
   const unit = h('span', { class: 'quiet' });
   const section = h(
@@ -26,6 +28,7 @@ export function createHistogram(report, { theme, columns }) {
     { class: 'section histogram' },
     h('div', { class: 'section-head' }, h('h3', null, 'Nearest distance'), unit),
     plot,
+    foot,
     h(
       'details',
       null,
@@ -70,25 +73,14 @@ export function createHistogram(report, { theme, columns }) {
         ),
       ),
     );
-    void theme.value;
-    void draw(plot, shown);
+    const { min, max, bins: counts } = shown;
+    const ends = [formatFixed(min, 2), formatFixed(max, 2)];
+    const ideal = (IDEAL - min) / (max - min);
+    const rows = [{ fate: 'new', name: 'particles', counts }];
+    /** @type {import('../chart.js').Drawn} */
+    const chart = { kind: 'bars', rows, first: 0, at: null, format: formatCount, ends, ideal };
+    fill(plot, draw(chart));
+    fill(foot, footOf(chart));
   });
   return section;
-}
-
-/** @type {Promise<typeof import('./histogram-plot.js')> | null} */
-let module = null;
-
-/**
- * @param {HTMLElement} plot
- * @param {{ min: number, max: number, bins: number[] }} bins
- */
-async function draw(plot, bins) {
-  module ??= import('./histogram-plot.js');
-  try {
-    (await module).drawHistogram(plot, bins);
-  } catch {
-    module = null;
-    plot.hidden = true; // The table says the same.
-  }
 }

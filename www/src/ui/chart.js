@@ -1,0 +1,69 @@
+/** Draws charts: stacked bars from 0 up, or a line. A chart fills the width that it has, so that no text is in the drawing. */
+import { h } from './dom.js';
+import { formatCount } from './format.js';
+import { s } from './svg.js';
+
+/**
+ * What a chart shows. `first` is the number of the first place.
+ * @typedef {object} Drawn
+ * @property {'bars' | 'line'} kind
+ * @property {{ fate: string, name: string, counts: readonly number[] }[]} rows
+ * @property {number} first
+ * @property {number | null} at  the place that is shown, null for none of these
+ * @property {(value: number) => string} format
+ * @property {string[]} [ends]  what stands below its ends, in place of the numbers of the places
+ * @property {number} [ideal]  where the ideal is, as a share of the width
+ */
+
+/** Sums of a stack at each place. @param {Drawn['rows']} rows */
+const sums = (rows) => rows[0].counts.map((_, k) => rows.reduce((sum, { counts }) => sum + counts[k], 0));
+
+/** Ends of the scale. @param {Drawn} chart @returns {[number, number]} */
+function endsOf({ kind, rows }) {
+  const values = sums(rows);
+  const most = Math.max(...values, 1e-12);
+  if (kind === 'bars') return [0, most];
+  const least = Math.min(...values);
+  // A line that does not change lies in the middle.
+  return most > least ? [least, most] : [0, 2 * most];
+}
+
+/** The largest value in words. @param {Drawn} chart */
+export const scaleOf = (chart) => chart.format(endsOf(chart)[1]);
+
+/** What stands below: the first and last place, and the fates where there are several. @param {Drawn} chart */
+export function footOf({ rows, first, ends: named }) {
+  if (named) return named.map((text) => h('span', null, text));
+  const ends = [h('span', null, formatCount(first)), h('span', null, formatCount(first + rows[0].counts.length - 1))];
+  if (rows.length < 2) return ends;
+  const key = rows.map(({ fate, name }) => h('span', null, h('i', { class: `swatch fate-${fate}` }), name));
+  return [ends[0], h('span', { class: 'chart-key' }, key), ends[1]];
+}
+
+/** @param {Drawn} chart */
+export function draw(chart) {
+  const { kind, rows, first, at, ideal } = chart;
+  const places = rows[0].counts.length;
+  const [low, high] = endsOf(chart);
+  const y = (/** @type {number} */ value) => +(1 - 0.94 * ((value - low) / (high - low))).toFixed(4);
+  const svg = s('svg', { viewBox: `0 0 ${places} 1`, preserveAspectRatio: 'none', 'aria-hidden': 'true' });
+  if (at !== null && at >= first && at < first + places)
+    svg.append(s('rect', { class: 'chart-at', x: at - first, y: 0, width: 1, height: 1 }));
+  if (kind === 'line') {
+    const points = rows[0].counts.map((value, k) => `${k + 0.5} ${(0.06 + 0.9 * y(value)).toFixed(4)}`);
+    svg.append(s('path', { class: 'chart-line', d: `M${points.join('L')}` }));
+    svg.append(s('path', { class: 'chart-dots', d: points.map((point) => `M${point}h0`).join('') }));
+    return svg;
+  }
+  const below = new Array(places).fill(0);
+  for (const { fate, counts } of rows) {
+    const d = counts.map((count, k) => {
+      const from = below[k];
+      below[k] += count;
+      return count > 0 ? `M${k + 0.1} ${y(from)}V${y(below[k])}h.8V${y(from)}z` : '';
+    });
+    svg.append(s('path', { class: `fate-${fate}`, d: d.join('') }));
+  }
+  if (ideal !== undefined) svg.append(s('path', { class: 'chart-ideal', d: `M${ideal * places} 0V1` }));
+  return svg;
+}
